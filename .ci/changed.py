@@ -146,7 +146,7 @@ ABOUT = {
     ),
     "tests/app/worksheets/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
     "tests/app/studies/test_study_resumes.py": ("app/studies/*.py",),
-    "tests/app/catalogue/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),
+    "tests/app/catalogue/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checks/*.py"),
     "tests/app/http/test_stopping.py": ("app/http/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/web/test_foreign_pages.py": ("app/http/*.py",),
     "tests/app/http/test_contract_all_at_length.py": HTTP,

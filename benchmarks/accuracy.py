@@ -2,6 +2,7 @@
 
 python -m benchmarks.accuracy measure    about 9 minutes: writes templates/oil_film/*.accuracy.json
 python -m benchmarks.accuracy costs      the costs alone
+python -m benchmarks.accuracy own        the errors that other bearings state, from `benchmarks.shapes`
 python -m benchmarks.accuracy_picture  docs/pictures/oil_film_accuracy.png from those files
 
 The converged film: solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random places, which
@@ -23,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import shapes
 from benchmarks.heat_balance_accuracy import heat_balance
 from benchmarks.truths import (
     COEFFICIENTS,
@@ -37,7 +39,7 @@ from benchmarks.truths import (
 from templates.core.arrays import Array
 from templates.core.language.template import Template
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
-from templates.oil_film.oil_film_v2 import OilFilm
+from templates.oil_film.oil_film_v2 import MESH_ERRORS, OilFilm
 from templates.physics.films.film_fit import load_ISO_7902
 from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.journals.journal_coefficients import coefficients_at
@@ -58,6 +60,8 @@ FINER = 7
 MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
+SOLVED = ("reynolds", "mass_conserving")
+"""Levels that know bearings that are not plain."""
 FEWER_POINTS = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]
@@ -278,12 +282,42 @@ def measure() -> None:
         }
         for level, table in tables.items()
     }
+    for level in SOLVED:
+        levels[level] |= own_errors()
     width = axis("b", "width_ratio", WIDTH)
     truths = meanings(FILM, FULL_SHEAR, OIL_SHEAR)
     content = content_of(OilFilm, truths, [axis("eps", "relative_eccentricity", EPS), width], levels)
     write(OilFilm, {**content, "conditions": [heat_balance()]})
     axes = [axis("S_0", "sommerfeld_number", LOADS), axis("b", "width_ratio", PAPER_WIDTH)]
     write(Paper, content_of(Paper, meanings(FILM), axes, {"only": {"cost": {}, **paper()}}))
+
+
+def own_errors() -> dict[str, Any]:
+    """Return what bearings that are not plain state of themselves, as `benchmarks.shapes mesh` found it."""
+    films = shapes.measured_films()
+    expected, held = {}, {}
+    for output, field in MESH_ERRORS.items():
+        name = next(name for name, own in shapes.STATED.items() if own == field)
+        stated, true = (np.array([film[kind][name] for film in films]) for kind in ("stated", "errors"))
+        size = np.pi / 2 if output == "attitude_angle" else 1.0
+        expected[output] = float(f"{np.percentile(stated, 95) / size:.2g}")
+        held[output] = float(f"{(stated >= true).mean():.4g}")
+    about = {
+        "made_by": "python -m benchmarks.shapes mesh",
+        "seed": shapes.SEED,
+        "count": len(films),
+        "held": held,
+    }
+    return {"own": expected, "own_measured": about}
+
+
+def own() -> None:
+    """Write what those bearings state again, and nothing else."""
+    path = FOLDER / "oil_film_v2.accuracy.json"
+    content = json.loads(path.read_text(encoding="utf-8"))
+    for level in SOLVED:
+        content["levels"][level] |= own_errors()
+    write(OilFilm, content)
 
 
 def costs() -> None:
@@ -297,4 +331,4 @@ def costs() -> None:
 
 
 if __name__ == "__main__":
-    {"measure": measure, "costs": costs}[sys.argv[1]]()
+    {"measure": measure, "costs": costs, "own": own}[sys.argv[1]]()

@@ -20,17 +20,22 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.film_cycle_duties import CLEAR, KINDS, band
+from benchmarks.film_cycle_ensemble import FILE
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.physics.orbits.cyclic_film import Duty
 from templates.physics.supplied.fed_cycle import UNREPEATED, FedDuty, fed_film, fed_orbit
 from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
+    LEAST,
+    LEAST_OF_HOLES,
     MORE_ROWS,
     NEAR_HOLES,
     STAYS,
     THIN,
     SuppliedOrbit,
+    Totals,
     supplied_orbit,
 )
 from templates.physics.supplied.supply import Pocket, Supply
@@ -146,6 +151,47 @@ def march(seed: int, duties: int, finer: int) -> None:
                 file.write(json.dumps(line, separators=(",", ":")) + "\n")
 
 
+def held(line: Line, times: float = 1.0) -> list[bool]:
+    """Return whether the errors that level supplied states hold against the finer mesh, in order of `Totals`.
+
+    `times`: the error over the change to that mesh.
+    """
+    least = LEAST if any(line["fed_by"] == one for one in GROOVED[:2]) else LEAST_OF_HOLES
+    stated = astuple(Totals(*line["change"]).error(line["repeat"], least))
+    return [times * change <= error for change, error in zip(line["finer"], stated, strict=True)]
+
+
+def bound_holds(line: Line) -> bool | None:
+    """Return whether the mobility level's bound of the smallest film holds; None where none is stated."""
+    kind = "sleeve_hole" if line["fed_by"] == "slot" else line["fed_by"]
+    if kind not in KINDS or not 0.02 <= line["P"] <= 1 or "own" not in line:
+        return None
+    if not kind.endswith("groove") and line["under_load"] > CLEAR:
+        return None
+    level = "mobility_grooved" if kind.endswith("groove") else "mobility"
+    row, column = band(line["S"], line["b"])
+    cases = json.loads(FILE.read_text(encoding="utf-8"))["cases"]
+    bound = cases[kind][level]["minimum_film_thickness"][row][column]
+    cheap_gap, gap = line["cheap"][level][0], line["own"][0]
+    return None if bound is None else abs(gap / cheap_gap - 1) <= bound
+
+
+def tables() -> None:
+    """Print how many stated errors hold, by seed."""
+    for seed in sorted({line["seed"] for line in kept()}):
+        own = [line for line in kept() if line["seed"] == seed]
+        finer = [line for line in own if line.get("finer")]
+        seconds = np.median([line["seconds"] for line in own])
+        print(f"seed {seed}: {len(own)} duties, {seconds:.2f} s in the median; {len(finer)} on a finer mesh")
+        for times in (1.0, 1.8):
+            if finer:
+                counts = np.sum([held(line, times) for line in finer], axis=0).tolist()
+                print(f"  stated errors over {times} times the change: film, pressure, loss, flow {counts}")
+        checked = [one for one in map(bound_holds, own) if one is not None]
+        print(f"  bounds of mobility: {sum(checked)} of {len(checked)} hold")
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         march(*(int(one) for one in sys.argv[1:4]))
+    tables()

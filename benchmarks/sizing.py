@@ -88,7 +88,7 @@ def space(of: Sizing) -> Space:
     return Space(tuple(Interval(name, low * x, high * x) for name, x, (low, high) in each))
 
 
-def net(of: Sizing) -> DesignEngine:
+def engine(of: Sizing) -> DesignEngine:
     """Return the design of a sizing, of one step."""
     diameter = of.diameter_mm
     width, clearance = diameter * of.width_ratio, diameter * of.clearance_ratio
@@ -157,7 +157,7 @@ def full_seconds(of: Sizing, design: DesignEngine) -> float:
 def started(random: np.random.Generator, number: int, explore: str) -> tuple[Sizing, DesignEngine]:
     """Return a sizing with its limit, and its design."""
     one = sizing(random, heat=bool(number % 2))
-    design, share = net(one), random.uniform(0.5, 0.9)
+    design, share = engine(one), random.uniform(0.5, 0.9)
     one.limit_um = float(share * thickest(one, design, explore) * 1e6)
     return one, design
 

@@ -1,8 +1,8 @@
 """Assemblies that a team makes: a model of this program with fixed parts beside it, or fixed parts alone.
 
-The class of an assembly is that of its model with six parameters more for each fixed part: where it stands on
-its datum. What the model says of its own parts is checked as ever. A fixed part is the shape of a STEP file,
-and its volume is measured. No fixed part may take space of another part, unless its description allows that.
+The class of an assembly is that of its model with six more parameters for each fixed part: its position on
+its datum. The model's own parts pass the usual checks. A fixed part is the shape of a STEP file, and its
+volume is measured. No fixed part may take space of another part, unless its description allows that.
 
 This module imports the kernel only where it draws.
 """
@@ -218,7 +218,7 @@ class AssemblyModel(ImportedModel):
                 yield placed
 
     def place(self, component: str) -> Place:
-        """Return where a fixed part stands on its datum."""
+        """Return the position of a fixed part on its datum."""
         from cad.placement import Place
 
         numbers = dict[str, float]()

@@ -1,4 +1,4 @@
-"""Find the faces of a part that carry a dimension: by what the model declares, and by their size.
+"""Find the faces of a part that carry a dimension: from the model's declaration and from their size.
 
 A face never gets the tolerance of another dimension: where none has the parameter's size, or two dimensions
 claim the same face, the build is refused.
@@ -65,7 +65,7 @@ class Carriers:
         self._seen: dict[str, list[FaceReadback]] = {}
 
     def places(self, name: str) -> list[Place]:
-        """Return where a dimension stands, once for each pair of levels.
+        """Return the position of a dimension for each pair of levels.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Carriers:
         return next((each for each in standing if self._sides(each, size)), one)
 
     def spans(self, name: str) -> list[tuple[float, float]]:
-        """Return where a dimension that repeats along an axis begins and ends, each time [mm]."""
+        """Return the start and end of each repetition of a dimension along an axis [mm]."""
         one, size = self._declared[name], self._sizes[name]
         of = [self._declared[other] for other in one.others_named]
         axis = AXES[of[0].where]
@@ -133,7 +133,7 @@ class Carriers:
         ]
 
     def _levels_along(self, one: ToleranceFaces, axis: Vector) -> list[float]:
-        """Return where planes across an axis lie, from low to high."""
+        """Return the positions of planes across an axis, from low to high."""
         planes = (f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis))
         return sorted({round(f.surface.point.dot(axis), 6) for f in planes})
 
@@ -209,7 +209,9 @@ class Carriers:
 
     def _missing(self, one: ToleranceFaces, size: float) -> tuple[int, ...]:
         detail = f"{one.name} has a tolerance, but no face of {one.part} shows its {size:g} mm"
-        raise GeometryError("tolerance", f"{detail}; leave the tolerance out, or give it a size", (one.name,))
+        raise GeometryError(
+            "tolerance", f"{detail}; omit the tolerance, or give the dimension a size above 0", (one.name,)
+        )
 
 
 def _is_beside(other: ToleranceFaces, one: ToleranceFaces) -> bool:
@@ -232,7 +234,7 @@ def _is_meant(face: FaceReadback, one: ToleranceFaces) -> bool:
 
 
 def _at_end(faces: list[FaceReadback], one: ToleranceFaces) -> Iterator[FaceReadback]:
-    """Of cylinders about an axis those that begin first, or end last, along it."""
+    """Yield the cylinders about an axis that begin first, or end last, along it."""
     axis: Vector = AXES[one.where]
     reaches = {face.number: face.surface.turned(axis).reach for face in faces}
     if one.end == "low":

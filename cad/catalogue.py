@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue, find
+from templates.core.catalogue.discovery import Catalogue, find
 
 BUILT_IN = Path(__file__).parent / "models"
 

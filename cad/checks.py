@@ -1,4 +1,4 @@
-"""Check that a finished solid is the one requested: OpenCASCADE calls wrong solids valid."""
+"""Check that a finished solid is the requested one, because OpenCASCADE calls some wrong solids valid."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
 
 
 def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
-    """Return what lies between the fixed parts of an assembly and all other parts.
+    """Return clearances and overlaps between the fixed parts of an assembly and all other parts.
 
     Where more than `MOST_NAMED` pairs interfere, the rest is not compared: `check_clearances` refuses them.
     """
@@ -141,7 +141,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
             pairs = zip(rigid(wanted), rigid(place), strict=True)
             if not all(np.allclose(a, b, rtol=1e-12, atol=_DIMENSION_TOLERANCE) for a, b in pairs):
                 raise GeometryError(
-                    "place", f"{part.name} of {model.id} does not stand where it was put", model.inputs
+                    "place", f"{part.name} of {model.id} is not at its specified position", model.inputs
                 )
 
 

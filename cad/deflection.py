@@ -1,4 +1,4 @@
-"""Largest distance of the facets of a mesh from the true surface, as its user asks for it.
+"""Deflection: the largest distance of mesh facets from the true surface, as a user requests it.
 
 A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`. Deflections
 have steps, six in a decade, and a mesh has the step that is not coarser than what its user asked for. So a
@@ -99,5 +99,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """The largest diagonal of a body's box [mm]: a body stands at many places without getting finer."""
+    """The largest diagonal of a body's box [mm]: the number of its positions does not matter."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

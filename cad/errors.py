@@ -1,4 +1,4 @@
-"""Errors of a shape whose parameters have passed their checks.
+"""Errors that occur while a shape is built, after its parameters have passed their checks.
 
 Wrong parameters are refused earlier, as `templates.core.errors.InvalidInputs`.
 """

@@ -62,7 +62,7 @@ class Glb:
         size = int.from_bytes(data[20 + length : 24 + length], "little")
         self.binary = data[28 + length : 28 + length + size]
         if len(self.about["meshes"]) != 1 or len(self.about["nodes"]) != 2:
-            raise GeometryError("not_one_solid", "a field is painted on a model of one body in one place")
+            raise GeometryError("not_one_solid", "a field needs a model with one body at one position")
         (self.drawn,) = self.about["meshes"][0]["primitives"]
 
     @cached_property

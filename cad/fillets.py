@@ -1,4 +1,4 @@
-"""The plain sizes of a throw, and from them where its pin and its fillets are.
+"""The plain sizes of a throw, and the positions of its pin and fillets that follow from them.
 
 It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
 """

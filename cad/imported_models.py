@@ -2,7 +2,7 @@
 
 Such a model is a description: which program draws it from which file, and its parameters. The description
 makes a class that stands beside the built-in models. What the program draws is handed to a model by `take`;
-from there on the path is that of every model: a STEP file is written, read again, checked and measured.
+from there on it is treated like every model: a STEP file is written, read again, checked and measured.
 
 There is no closed form of its volume. The volume of the drawn shape stands in for it: this holds the file to
 the drawing, and says nothing about whether the program drew the right thing. A parameter is read back if a
@@ -168,7 +168,7 @@ class ImportedModel(CadModel):
             per_size = _factor(one)
             offered = [size / per_size for size in sizes[_SIZE[one.role]]]
             if not offered:
-                raise LookupError(f"no {one.role} for {one.name}")
+                raise LookupError(f"no {one.role} of the solid can be {one.name}")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
         return read
 
@@ -199,7 +199,7 @@ def _distances(planes: Any) -> Iterator[float]:
 
 
 def _factor(one: Parameter) -> float:
-    """Return how many times a size on the solid [mm] is greater than the parameter's number."""
+    """Return the ratio of a size on the solid [mm] to the parameter's number."""
     return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
 
 
@@ -211,7 +211,7 @@ def shows(one: Parameter, sizes: Sizes) -> bool:
 def role_of(
     old: float, new: float, before: Mapping[str, list[float]], after: Mapping[str, list[float]]
 ) -> Role:
-    """Return how a length shows on a solid, from the sizes before and after a trial that changed it alone.
+    """Return how a length is measured, from the solid's sizes before and after a change of it alone.
 
     It is a size of a kind if that size was there before with the old value, is there after with the new one,
     and was not there before with the new one.
@@ -288,7 +288,9 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
 
     volume = measure(Body(name, solid, colour, ())).volume
     if not volume > 0:
-        raise GeometryError("not_finite", f"{name} has a volume of {volume:.6g} mm³")
+        raise GeometryError(
+            "not_finite", f"{name} has a volume of {volume:.6g} mm³; a solid needs a volume above 0"
+        )
     return Part(name, solid, volume, colour, **more)
 
 

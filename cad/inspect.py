@@ -1,6 +1,6 @@
 """Measure a finished STEP file: the same bytes that a user gets are read again, and measured there.
 
-Nothing here trusts the shape that was built. A part that stands at several places is measured once.
+This module does not use the shape that was built. A part that stands at several places is measured once.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """CadModel: a template with a shape.
 
-A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template.
-Beyond them it says four things, and only the first of them draws; a fifth, `toleranced`, says which faces
-carry which dimension, so that tolerances arrive in the STEP file (`cad.tolerances`):
+A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template. It
+also has four members, of which only the first draws. A fifth, `toleranced`, says which faces carry which
+dimension, so that the STEP file can state tolerances (`cad.tolerances`):
 
 - `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
   nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
@@ -15,7 +15,8 @@ A parameter is one number, or a list where it is declared as a `curve`; never an
 
 Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
 
-This module does not import the kernel: a calculation asks whether a template is a model, and draws none.
+This module does not import the kernel: a calculation checks whether a template is a model, but never draws
+one.
 """
 
 from __future__ import annotations
@@ -175,7 +176,7 @@ class CadModel(TolerancedTemplate):
         return False
 
     def throw_sizes(self) -> Crank | None:
-        """Return where pin and fillets of a throw are; None if it is not one throw."""
+        """Return the positions of a throw's pin and fillets; None if the model is not one throw."""
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
@@ -184,7 +185,7 @@ class CadModel(TolerancedTemplate):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a model from what a user typed; of a list also its text, `[0, 180] deg`.
+        """Return a model from typed inputs; of a list also its text, `[0, 180] deg`.
 
         Raises
         ------

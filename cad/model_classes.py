@@ -13,7 +13,7 @@ from typing import Any
 
 from cad.assemblies import assembly_of
 from cad.imported_models import Description, ImportedModel, Parameter, attribute_of
-from templates.core.catalogue.loading import IMPORTED
+from templates.core.catalogue.modules import IMPORTED
 from templates.core.language.declare import given
 from templates.core.paper.mathml import named_symbol
 

@@ -1,9 +1,9 @@
-"""The kernel on demand: a process that draws nothing, such as the server, does without importing it.
+"""Import the kernel on demand: a process that draws nothing, such as the server, never imports it.
 
-CadQuery, OpenCASCADE and what writes drawings take seconds to import, and more memory than all the rest of
-the server, which needs of a model its parameters only. After `postpone`, what a module imports from them is
-a stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
-every stand-in that a module holds. So nothing fails for this; it comes later.
+CadQuery, OpenCASCADE and the drawing libraries take seconds to import, and more memory than the rest of the
+server, which needs only the parameters of a model. After `postpone`, what a module imports from them is a
+stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
+every stand-in that a module holds. So every use works; only the import comes later.
 
 Modules that need the kernel while they are imported say so by `constant` and `once_loaded`.
 
@@ -205,7 +205,7 @@ class _DisplayModule(ModuleType):
 
 
 def _imported(place: str, name: str) -> object:
-    """Return what `from place import name` gives: an attribute, else a module."""
+    """Return the object of `from place import name`: an attribute, else a module."""
     module = import_module(place)
     return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
 

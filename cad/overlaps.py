@@ -1,4 +1,4 @@
-"""Whether parts that stand together take the same space, and how far apart they are, by their names."""
+"""Overlaps and distances between the parts of a model, by the names of the parts."""
 
 from __future__ import annotations
 
@@ -185,13 +185,15 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
         return Clearance(one, other, distance)
     common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
     if not common.IsDone():
-        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be found")
+        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
     BRepGProp.VolumeProperties_s(common.Shape(), properties)
     volume = float(properties.Mass())
     if volume > _SPECK:
         return Clearance(one, other, 0.0, volume)
     if _has_corner_inside(shape, beside) or _has_corner_inside(beside, shape):
-        raise GeometryError("kernel", f"{one} and {other} overlap, and how much of it cannot be found")
+        raise GeometryError(
+            "kernel", f"{one} and {other} overlap, but the shared volume cannot be determined"
+        )
     return Clearance(one, other, 0.0)
 
 

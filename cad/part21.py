@@ -91,7 +91,7 @@ def tokens(text: str) -> Iterator[str]:
 
 
 def _end(text: str, start: int) -> int:
-    """Return where the token, blank or comment that begins at `start` ends."""
+    """Return the end of the token, blank or comment that begins at `start`."""
     if text[start] == "'":
         return end_of_string(text, start)
     if text.startswith("/*", start):

@@ -7,8 +7,8 @@ A datum is `origin`, the axes of the whole; or a part and a place on it, such as
 - `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of the
   point in which they pass the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is that axis of the whole to which its z axis is most at right angles, of several the
-first.
+The x axis of a datum is the axis of the whole that is most nearly perpendicular to its z axis; of several
+such axes it is the first.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     if numbered := _AXIS.fullmatch(place):
         axes = _axes_of(part, middle)
         if int(numbered[1]) > len(axes):
-            raise _no_datum(name, f"{part_name} has {len(axes)} axes of cylinders, and no {place}")
+            raise _no_datum(name, f"{part_name} has {len(axes)} cylinder axes, so there is no {place}")
         return _frame(*axes[int(numbered[1]) - 1])
-    raise _no_datum(name, f"{place!r} is none of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
+    raise _no_datum(name, f"{place!r} is not one of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
 
 
 def box_of(solids: Sequence[object]) -> Box:

@@ -43,7 +43,7 @@ from cad.step_text import KERNEL
 from cad.tolerances import REPEATED, Limits, carried, in_unit, limits, limits_of
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.loading import is_outside
+from templates.core.catalogue.modules import is_outside
 from templates.core.errors import InvalidInputs
 
 __all__ = [
@@ -85,7 +85,7 @@ class Build:
 
 
 def ignore(done: float, what: str) -> None:
-    """Report progress to nobody."""
+    """Ignore reports of progress."""
 
 
 def as_text(model: CadModel) -> dict[str, str]:
@@ -221,7 +221,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return what the file says beside the shape; nothing where no dimension has a tolerance."""
+    """Return the file's statements beside the shape; none if no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
     solids = {part.name: part.solid for part in parts}

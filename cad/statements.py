@@ -1,8 +1,8 @@
-"""What the text of a STEP file states beside the shape: dimensions, datums, tolerances, properties.
+"""Read the statements of a STEP file beside the shape: dimensions, datums, tolerances, properties.
 
 No kernel reads it: a client may send any bytes. The text is passed over once, statement by statement, and
 only statements of the few sorts that are needed are taken apart, so the time is linear in its length.
-What does not fit together is left out; a comparison with what should be there then shows it.
+Inconsistent statements are left out; a comparison with the expected statements then reveals them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The text of a STEP file, the same for the same parts: what the kernel's writer leaves to chance is set.
+"""The text of a STEP file, the same for the same parts: random parts of the kernel's output are fixed.
 
 Three things in its text tell of the process that wrote it: the time in the header, a counter of assembly
 usages that never restarts, whose digits move the line breaks, and the order of colours, which is that of

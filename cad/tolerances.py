@@ -1,6 +1,6 @@
-"""Which faces of a model carry which dimension, and between which limits a user wants that dimension.
+"""The faces of a model that carry each dimension, and the limits that a user sets for it.
 
-A model says it in `toleranced`, by parameter, in plain words:
+A model declares this in `toleranced`, by parameter:
 
     toleranced = {
         "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
@@ -154,7 +154,7 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
-    """Return what a model declares, by parameter.
+    """Return the declarations of a model, by parameter.
 
     Raises
     ------
@@ -165,25 +165,25 @@ def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
     letters = {one.datum for one in read_.values() if one.datum}
     for name, one in read_.items():
         if one.to and one.to not in letters:
-            raise _wrong(cls, name, f"no dimension is the datum {one.to!r}")
+            raise _wrong(cls, name, f"no dimension declares the datum {one.to!r}")
         if one.faces in REPEATED and not {*one.others_named} <= read_.keys() - {name}:
-            raise _wrong(cls, name, f"{one.faces} names other dimensions of toleranced")
+            raise _wrong(cls, name, f"{one.faces} must name other dimensions of toleranced")
         if one.faces == "between" and not (len(one.where) == 2 and {*one.where} <= read_.keys() - {name}):
-            raise _wrong(cls, name, "between names two other dimensions of toleranced")
+            raise _wrong(cls, name, "between must name two other dimensions of toleranced")
     return read_
 
 
 def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> ToleranceFaces:
     if name not in cls.inputs or unit(cls.inputs[name].meaning.unit).base != unit("m").base:
-        raise _wrong(cls, name, "it is no parameter that is a length")
+        raise _wrong(cls, name, "only a parameter that is a length can be toleranced")
     kinds = [kind for kind in FACES if kind in said]
     if len(kinds) != 1 or not said.keys() <= {*FACES, *FORMS, *_MORE}:
         words = ", ".join((*FACES, *FORMS, *sorted(_MORE)))
-        raise _wrong(cls, name, f"it says exactly one sort of faces; it knows the words {words}")
+        raise _wrong(cls, name, f"name exactly one kind of faces; the valid keys are {words}")
     if kinds[0] in _BY_AXIS and said[kinds[0]] not in ("x", "y", "z"):
-        raise _wrong(cls, name, f"{kinds[0]} names an axis: x, y or z")
+        raise _wrong(cls, name, f"{kinds[0]} must name an axis: x, y or z")
     if said.get("end", "low") not in ("low", "high"):
-        raise _wrong(cls, name, "end is low or high")
+        raise _wrong(cls, name, "end must be low or high")
     forms = {form: float(said[form]) for form in FORMS if form in said}
     if any(not 0 < share <= 1 for share in forms.values()):
         raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
@@ -192,7 +192,7 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
     part, *others = _parts(cls, name, "of", said.get("of", cls.id))
     inside = _parts(cls, name, "inside", said["inside"]) if "inside" in said else []
     if inside and kinds[0] != "walls":
-        raise _wrong(cls, name, "only walls have parts inside")
+        raise _wrong(cls, name, "only `walls` takes `inside`")
     return ToleranceFaces(
         name,
         part,
@@ -211,7 +211,7 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
 def _parts(cls: type[TolerancedTemplate], name: str, word: str, said: Any) -> list[str]:
     named = [said] if isinstance(said, str) else said
     if not (isinstance(named, (list, tuple)) and named and all(isinstance(one, str) for one in named)):
-        raise _wrong(cls, name, f"{word} is the name of a part, or a list of names")
+        raise _wrong(cls, name, f"{word} must be the name of a part, or a list of names")
     return list(named)
 
 

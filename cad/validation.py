@@ -60,4 +60,4 @@ def _lines(data: str, measures: dict[str, Measures], last: int) -> Iterator[str]
     try:
         yield from validations(data, last + 1, measures)
     except KeyError as error:
-        raise UnreadableStep(f"no product of this STEP file is named {error}, as its part is") from error
+        raise UnreadableStep(f"the part {error} has no product of that name in this STEP file") from error

@@ -1,4 +1,4 @@
-"""From where pictures and drawings show a model: from above its front, where a half shell is open."""
+"""The view direction of pictures and drawings: from above the front, where a half shell is open."""
 
 from __future__ import annotations
 

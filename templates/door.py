@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.catalogue.finding import Catalogue, find
+from templates.core.catalogue.discovery import Catalogue, find
 from templates.core.errors import Fault, InvalidInputs, unknown_name
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import criterion_warnings, evaluate, evaluate_at_level
@@ -199,7 +199,7 @@ class Calculation:
         return self._answers[name]
 
     def reasons(self, name: str) -> Any:
-        """Return why points of an array have no value, None at each that has one; None if all have one."""
+        """Return the reason for each point without a value, None for the others; None if all have values."""
         return self.answer(name).reasons
 
 

@@ -97,7 +97,7 @@ async def answer_of(
 async def _calculated_again(
     services: Services, row: Job, client: str, prefer: str | None, sha: str
 ) -> Response | None:
-    """None once the job has its answer again; else what to send in its place."""
+    """Return None once the job has its answer again, else the response to send instead."""
     again = await run_in_threadpool(services.evaluations.request_again, row, client)
     if not await finished(services.jobs, again, prefer):
         return rebuilding(sha, again)

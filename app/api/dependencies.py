@@ -120,7 +120,7 @@ TheOnce = Annotated[Once, Depends(get_once)]
 
 
 async def expensive_steps(request: Request, client: TheClient) -> None:
-    """Let a route evaluate expensive steps in the pool; a dependency of routers."""
+    """Allow a route to evaluate expensive steps in the pool; a dependency of routers."""
     steps = services_of(request).steps
     call_as(Caller(steps, client, steps.begun()))
 
@@ -129,7 +129,7 @@ ExpensiveSteps = Depends(expensive_steps)
 
 
 async def one_stream(request: Request, client: TheClient) -> AsyncIterator[Still]:
-    """Hold a place for a stream, from before its first byte to its end; it asks whether that has come."""
+    """Count a stream from before its first byte to its end, and notice when it has ended."""
     streams = services_of(request).streams
     streams.enter(client)
     try:

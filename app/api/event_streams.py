@@ -40,12 +40,12 @@ Still = Callable[[], Awaitable[bool]]
 
 
 async def always() -> bool:
-    """Return where nothing asks for a key: the stream may always go on."""
+    """Return at once: without keys a stream may always continue."""
     return True
 
 
 async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
-    """Yield the events as they come, to the first one that whoever listens may not have any more."""
+    """Yield the events as they come, until the listener loses permission to receive them."""
     async for event in events:
         if not await still():
             return

@@ -1,7 +1,7 @@
 """Responses of routes: how long a client waits, in which threads, 202 with a job, JSON and its compression.
 
-Routes that may wait for the pool of calculation processes have threads of their own, so that those of the
-others are free.
+Routes that may wait for the pool of calculation processes have their own threads, so that they never block
+the other routes.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
 
 
 def patience(prefer: str | None, default: float) -> float:
-    """Return how long the client waits for an answer [s]: as it prefers, else the default."""
+    """Return how long the client waits for an answer [s]: its preference, else the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
@@ -144,7 +144,7 @@ class Threads:
     async def run_within(
         self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Run a function as `run_for`, and defer the steps that take longer than so long [s].
+        """Run a function as `run_for`, and defer the steps that take longer than this time [s].
 
         The deadline of the calculation limits that time.
         """

@@ -53,7 +53,7 @@ def sign_revision(
     is `withdrawn` by any checker, with a reason; the revision stays as it is.
     """
     if if_match is None:
-        raise PreconditionRequired("send If-Match with `to_sign` of the approvals, in quotes: what you sign")
+        raise PreconditionRequired("send If-Match with the value of `to_sign` from the approvals, in quotes")
     return _answer(approving.sign(id, number, body, if_match, once), 201)
 
 

@@ -31,7 +31,7 @@ def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
 
 
 def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
-    """Return if it is the turn of a step.
+    """Check that it is the turn of a step.
 
     Raises
     ------
@@ -43,13 +43,13 @@ def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
             raise OutOfOrder(f"revision {number} was {row.step} by {row.name} at {row.at}")
     following = next_step(taken)
     if following is not None and step != following:
-        raise OutOfOrder(f"revision {number} is to be {following} before it is {step}")
+        raise OutOfOrder(f"revision {number} must be {following} before it is {step}")
     if following is None and step != "withdrawn":
         raise OutOfOrder(f"revision {number} is released")
 
 
 def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Sequence[ApprovalRow]) -> None:
-    """Return if a principal may take a step.
+    """Check that a principal may take a step.
 
     Raises
     ------

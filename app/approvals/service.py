@@ -28,7 +28,7 @@ class ApprovalService:
         self.database, self.store = database, store
 
     def show(self, id: str, number: int) -> Approvals:
-        """Return the approval of a revision, as whoever asks sees it.
+        """Return the approval of a revision for the acting principal.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class ApprovalService:
         )
 
     def _require_good_files(self, id: str, number: int) -> None:
-        """Return if the STEP files of a revision are in the store with the right bytes; raises NotReady."""
+        """Check that the STEP files of a revision are in the store with the right bytes; raises NotReady."""
         with self.database.read() as session:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():

@@ -1,4 +1,4 @@
-"""Results that are kept to be used again, all together within a limit of the memory that they hold."""
+"""A cache of results, limited by the total memory that they occupy."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Cache:
                 self._kept[key] = _CacheEntry(value, size)
 
     def limit(self, megabytes: int) -> None:
-        """Begin again, empty, with another limit [MiB]."""
+        """Empty the cache and set another limit [MiB]."""
         with self._lock:
             self._kept = _kept(megabytes)
 

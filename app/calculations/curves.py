@@ -1,43 +1,40 @@
-"""Curves from a table of comma-separated values: a header with names and units, a row for each point.
+"""Curves from a file: the columns of a table as quantities, an indicator diagram as one cycle.
 
-`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. Columns are separated by commas,
-semicolons or tabs, as the header shows; decimal commas are understood where the columns have another
-separator. Blank lines, and lines that begin with #, are skipped. Nothing is stored, nothing is guessed: what
-is not plain is refused with its line.
+`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads a file as it reads what
+is pasted on a page, `indicator` makes one cycle of several. Nothing is stored; what is assumed is stated,
+and an unclear cell is refused with its line number.
 """
 
 from __future__ import annotations
 
-import csv
 import re
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from app.calculations.indicator import as_cycle, is_cycle_number
+from app.calculations.table_files import FileText, file_text
+from app.calculations.tables import MOST_FAULTS, Table, TableColumn, table_of
 from app.plain import JsonObject
-from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
+from templates.core.errors import Fault, InvalidInputs, excerpt
 from templates.core.language.meaning import api_name
 from templates.core.units.units import unit
 
-MOST_ROWS, MOST_COLUMNS, MOST_FAULTS, LONGEST_LINE = 20_000, 32, 20, 4000
-MOST_LINES = 5 * MOST_ROWS
-"""With blank lines and comments."""
+MOST_ROWS = 50_000
+MOST_BYTES, MOST_UNPACKED = 4_000_000, 40_000_000
+"""Of a file: as it comes, and of XLSX unpacked."""
 
-_LINE_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"  # of `str.splitlines`
 SUFFIXES = ("deg", "rad", "bar", "Pa", "kPa", "MPa", "psi", "N", "kN", "lbf", "s", "ms", "mm", "m", "rpm")
 """Units that may end a name without brackets."""
 
-_IN_BRACKETS = re.compile(r"(?P<words>[^\[(]*)[\[(](?P<unit>[^\])]*)[\])]")
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
-_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
+_ROW = re.compile(r"row (?P<number>[0-9]+)(?:, column (?P<column>.*))?", re.DOTALL)
 
 
 @dataclass(frozen=True)
-class Column:
-    """A column: its name as an input could have it, and its unit."""
+class ReadCurves:
+    """The columns of a table as quantities by name, and the assumptions made to read it."""
 
-    name: str
-    unit: str
+    curves: dict[str, JsonObject]
+    assumed: list[str]
 
 
 def read_curves(body: bytes) -> dict[str, JsonObject]:
@@ -48,125 +45,85 @@ def read_curves(body: bytes) -> dict[str, JsonObject]:
     InvalidInputs
         Naming every line that is wrong, up to twenty.
     """
-    lines = list(_lines(body))
-    if not lines:
-        raise _wrong("header", "empty", "the table is empty; begin with crank angle [deg], pressure [bar]")
-    number, header = lines[0]
-    separator = next((sign for sign in (";", "\t") if sign in header), ",")
-    columns = _columns(_split(header, separator), number)
-    rows, faults = [], []
-    for number, line in lines[1:]:
-        try:
-            rows.append(_row(_split(line, separator), columns, separator))
-        except FaultyText as error:
-            faults.append(error.fault(f"line {number}"))
-            if len(faults) == MOST_FAULTS:
-                break
-    if faults:
-        raise InvalidInputs(faults)
-    if not rows:
-        raise _wrong("rows", "empty", "there is a header but no row below it")
-    values = zip(*rows, strict=True)
-    return {c.name: {"value": list(v), "unit": c.unit} for c, v in zip(columns, values, strict=True)}
+    return curves_of(body).curves
 
 
-def _wrong(name: str, code: str, detail: str) -> InvalidInputs:
-    return InvalidInputs([Fault(name, code, detail)])
+def curves_of(body: bytes) -> ReadCurves:
+    """Return the columns of a file as quantities, and the assumptions made.
 
-
-def _lines(body: bytes) -> Iterator[tuple[int, str]]:
-    """Yield the lines that say something, with their numbers."""
+    Raises
+    ------
+    InvalidInputs
+        Naming every line that is wrong, up to twenty.
+    """
     try:
-        text = body.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        at = body[: error.start].count(b"\n") + 1
-        raise _wrong(f"line {at}", "not_utf_8", "this is not UTF-8; save the file as CSV in UTF-8") from None
-    if sum(map(text.count, _LINE_ENDS)) > 2 * MOST_LINES:  # a line may end by two signs
-        raise _wrong("rows", "too_many_lines", f"a file has at most {MOST_LINES} lines, blank ones included")
-    count = 0
-    for number, line in enumerate(text.splitlines(), start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        if (count := count + 1) > MOST_ROWS + 1:
-            raise _wrong(
-                f"line {number}", "too_many_rows", f"a table has at most {MOST_ROWS} rows; take fewer"
-            )
-        if len(line) > LONGEST_LINE:
-            message = f"a line has at most {LONGEST_LINE} characters"
-            raise _wrong(f"line {number}", "too_long", message)
-        yield number, line
+        table = as_cycle(_with_units(_table(file_of(body))))
+    except InvalidInputs as error:
+        raise InvalidInputs(map(_by_line, error.faults)) from None
+    curves = {_named(c): {"value": list(c.values), "unit": c.unit} for c in table.columns}
+    return ReadCurves(curves, table.assumed)
 
 
-def _split(line: str, separator: str) -> list[str]:
-    try:
-        (fields,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
-    except (csv.Error, ValueError):
-        return [line]
-    return [field.strip() for field in fields]
+def file_of(body: bytes) -> FileText:
+    """Return the text of a file, within the limits of a file of curves.
+
+    Raises
+    ------
+    InvalidInputs
+        If it is too large, damaged, or of another kind.
+    """
+    return file_text(body, MOST_BYTES, MOST_UNPACKED, MOST_ROWS)
 
 
-def _columns(header: list[str], number: int) -> list[Column]:
-    """Return the columns that a header names."""
-    name = f"line {number}"
-    if len(header) > MOST_COLUMNS:
-        raise _wrong(name, "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
-    columns, faults = [], []
-    for text in header:
-        try:
-            columns.append(_column(text))
-        except FaultyText as error:
-            faults.append(error.fault(name))
-    twice = sorted(name for name, count in Counter(c.name for c in columns).items() if count > 1)
-    faults += (
-        Fault(name, "named_twice", f"two columns are named {n}; give them different names") for n in twice
+def _table(file: FileText) -> Table:
+    seen = Counter[str]()
+
+    def heading(name: str, given: str) -> Fault | None:
+        words, own = _parted(name, given)
+        name_here = api_name(words)
+        seen[name_here] += 1
+        if not name_here or not name_here[0].isalpha() or re.fullmatch(r"column [0-9]+", name):
+            return Fault(name, "missing_name", "it has no name; write it as pressure [bar]")
+        if seen[name_here] == 2:
+            return Fault(name, "named_twice", f"two columns are named {name_here}; give them different names")
+        if not own and not is_cycle_number(name):
+            detail = f"column {excerpt(name)} has no unit; write it like pressure [bar], or [1] for none"
+            return Fault(name, "missing_unit", detail)
+        return None
+
+    table = table_of(
+        file.text,
+        most_rows=MOST_ROWS,
+        most_characters=MOST_BYTES,
+        most_faults=MOST_FAULTS,
+        heading=heading,
+        is_sheet=file.is_sheet,
     )
-    if faults:
-        raise InvalidInputs(faults)
-    return columns
+    return replace(table, assumed=[*file.assumed, *table.assumed])
 
 
-def _column(text: str) -> Column:
-    """Return a column from its heading.
-
-    Raises
-    ------
-    FaultyText
-        If it has no name, no unit or one that is not known.
-    """
-    if match := _IN_BRACKETS.fullmatch(text):
-        words, named = match["words"], match["unit"].strip()
-    else:
-        words, _, named = text.rpartition("_")
-        if named not in SUFFIXES:
-            message = f"column {excerpt(text)!r} has no unit; write it like pressure [bar], or [1] for none"
-            raise FaultyText("missing_unit", message)
-    if not (name := api_name(words)) or not name[0].isalpha():
-        raise FaultyText("missing_name", f"column {excerpt(text)!r} has no name; write it as pressure [bar]")
-    return Column(name[:80], unit("1" if named in ("", "-") else named).text)
+def _parted(name: str, given: str) -> tuple[str, str]:
+    """Return words and unit of a heading, whose unit may end its name."""
+    words, _, last = name.rpartition("_")
+    return (words, last) if not given and last in SUFFIXES else (name, given)
 
 
-def _row(fields: list[str], columns: list[Column], separator: str) -> list[float]:
-    """Return the numbers of a row.
-
-    Raises
-    ------
-    FaultyText
-        If one is missing or none.
-    """
-    if len(fields) != len(columns):
-        message = f"it has {len(fields)} values, the header {len(columns)}"
-        hint = "; with decimal commas, separate the columns by semicolons" if separator == "," else ""
-        raise FaultyText("uneven", message + hint)
-    return [_number(field, column, separator) for field, column in zip(fields, columns, strict=True)]
+def _with_units(table: Table) -> Table:
+    return replace(table, columns=[_united(column) for column in table.columns])
 
 
-def _number(text: str, column: Column, separator: str) -> float:
-    if separator != "," and _DECIMAL_COMMA.fullmatch(text):
-        text = text.replace(",", ".")
-    if not _NUMBER.fullmatch(text):
-        what = f"{excerpt(text)!r} is not a number" if text else "there is no value"
-        raise FaultyText("not_a_number", f"{column.name}: {what}; write it like 1234.5, without a unit")
-    value = float(text)
-    if value in (float("inf"), -float("inf")):
-        raise FaultyText("not_finite", f"{column.name}: {text[:20]} is too large")
-    return value
+def _united(column: TableColumn) -> TableColumn:
+    words, own = _parted(column.name, column.unit)
+    return replace(column, name=words, unit=unit(own or "1").text)
+
+
+def _named(column: TableColumn) -> str:
+    return api_name(column.name)[:80]
+
+
+def _by_line(fault: Fault) -> Fault:
+    """Return a fault named by its line, as that of a file is."""
+    if not (match := _ROW.fullmatch(fault.name)):
+        return fault
+    detail = f"{match['column']}: {fault.detail}" if match["column"] else fault.detail
+    return Fault(f"line {match['number']}", fault.code, detail)

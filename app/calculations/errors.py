@@ -1,7 +1,7 @@
 """Errors of calculations, besides the inputs that templates refuse.
 
-InvalidBody     a body that was read in a calculation process is not what the operation takes
-NoArray         an answer is wanted as an array and does not fit one
+InvalidBody     a body that a calculation process read does not fit the operation
+NoArray         the client asked for an array, but the answer does not fit into one
 TooManyValues   an answer would hold more values than the service gives at once
 """
 

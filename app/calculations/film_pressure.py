@@ -1,8 +1,8 @@
 """The pressure of a journal bearing's oil film over its unrolled surface, for pictures.
 
 A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as
-`templates.physics.films.reynolds`. Outputs of templates stay with the template: this field is solved again on
-a mesh for the eye, 64 × 16 intervals, which errs by 0.1 % of the largest pressure.
+`templates.physics.films.reynolds`. The field is for display only. It is solved again on 64 × 16 intervals,
+with an error of 0.1 % of the largest pressure.
 """
 
 from __future__ import annotations

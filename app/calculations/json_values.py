@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.summary import summarised
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.ledger import Notice
@@ -35,6 +35,7 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
     return {
         "verdict": summary.verdict,
         "counts": dict(summary.counts),
+        "error_unknown": summary.error_unknown,
         **({"governing": summary.governing} if summary.governing else {}),
         "headline": summary.headline,
         "green": summary.green,
@@ -49,7 +50,8 @@ def criterion(judgement: Judgement) -> JsonObject:
         "limit": None if limit is None else _quantity(limit, unit),
         "band": None if judgement.band is None else _band(judgement.band, unit),
         "relative_error": judgement.relative_error,
-        "error_stated": judgement.is_stated,
+        "error_stated": judgement.error_known,
+        "error_known": judgement.error_known,
         "utilisation": judgement.utilisation,
         "margin": None if margin is None else _quantity(margin, judgement.margin_unit),
         "needs": judgement.needs,
@@ -97,7 +99,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Return which version calculated: id, version and the digest of its code."""
+    """Return the version that calculated: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:

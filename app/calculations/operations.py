@@ -89,7 +89,7 @@ def answered(source: Source, question: Question) -> Pieces:
 
 
 def check(cls: type[Template], question: Question) -> None:
-    """Return if nothing is wrong with a question, as far as shows without calculating.
+    """Check a question, as far as possible without calculating.
 
     Raises
     ------

@@ -28,7 +28,7 @@ CHECKED_WITHIN = 2.0
 
 
 def calculated(question: Question, database: Database, catalogues: Catalogues) -> Reply[Question, Pieces]:
-    """Return the answer of a calculation process, unless its caller does not wait so long.
+    """Return the answer of a calculation process, if its caller waits long enough.
 
     Who does not want to wait at all learns nevertheless what is wrong with the question.
 
@@ -51,7 +51,7 @@ def calculated(question: Question, database: Database, catalogues: Catalogues) -
 
 
 def _check(cls: type[Template], question: Question, caller: Caller) -> None:
-    """Refuse what is wrong with a question, as far as shows without calculating.
+    """Refuse the faults of a question, as far as possible without calculating.
 
     A large body is read in a calculation process. If none is free in time, the job itself will say what is
     wrong.

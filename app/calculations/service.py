@@ -49,7 +49,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
 
 
 def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
-    """Return if nothing is wrong with a request to evaluate, as far as shows without calculating.
+    """Check a request to evaluate, as far as possible without calculating.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
 
 
 def check_solve(cls: type[Template], body: SolveIn) -> None:
-    """Return if nothing is wrong with a request to solve, as far as shows without calculating.
+    """Check a request to solve, as far as possible without calculating.
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """Tables as people paste them from a spreadsheet or a measuring program.
 
-Columns are separated by tabs, semicolons or commas. A decimal comma is read where the separator is a tab or
-a semicolon. The first row may hold names, the second one units; a unit may also stand in brackets behind a
-name, `load_x [kN]`. Blank lines are skipped. A fault names the row, counted as in the text, and the column.
-`curves.py` reads the stricter files of the REST interface.
+Columns are separated by tabs, semicolons, commas, or blanks that align them. A decimal comma is read where
+the separator is not a comma; which mark was taken is stated. The first row may hold names, the second one
+units; a unit may also stand behind a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines of
+words above the headings are skipped. A fault names the row, counted as in the text, and the column.
 """
 
 from __future__ import annotations
@@ -15,24 +15,39 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from app.calculations.headings import HeadingUnit, heading_unit, is_unit, parted
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
-from templates.core.units.units import unit
 
 MOST_CHARACTERS, MOST_ROWS, MOST_COLUMNS, MOST_FAULTS = 1_000_000, 10_000, 32, 20
 LONGEST_LINE, LONGEST_NAME = 4000, 80
 
-_HEADING = re.compile(r"(?P<name>[^\[(]*)[\[(](?P<unit>[^\])]*)[\])]")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
+_ALIGNED = re.compile(r" {2,}|[ \u00a0]*\t[ \u00a0]*")
+_HEAD = 60
+"""Lines among which the first row of numbers is sought."""
 
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column: its name, its unit (empty where the table says none), and its numbers."""
+    """A column: its name, its unit (empty where the table says none), and its numbers.
+
+    `is_crank` says that its unit is one of crank angles by name, such as °CA.
+    """
 
     name: str
     unit: str
     values: tuple[float, ...]
+    is_crank: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """The columns of a table, and the assumptions made to read it: the decimal mark, what a unit means."""
+
+    columns: list[TableColumn]
+    assumed: list[str]
 
 
 @dataclass(frozen=True)
@@ -69,7 +84,54 @@ class _Faults:
             raise InvalidInputs(self._kept)
 
 
-_Unit = str | None  # as it stands in a heading; None where it is wrong
+@dataclass
+class _Marks:
+    """The decimal marks of a table as they are met, and the first number that they make ambiguous."""
+
+    is_comma: bool  # whether a comma separates the columns
+    comma: bool = False
+    point: bool = False
+    grouped: tuple[_Line, str, str] | None = None
+
+    def number(self, line: _Line, name: str, cell: str) -> float:
+        """Return the number in a cell, and note its mark.
+
+        Raises
+        ------
+        FaultyText
+            If there is none.
+        """
+        value = _number(cell, self.is_comma)
+        if not self.comma and "," in cell:
+            self.comma = True
+        elif not self.point and "." in cell:
+            self.point = True
+        if self.grouped is None and not self.is_comma and _GROUPED.fullmatch(cell):
+            self.grouped = line, name, cell
+        return value
+
+    def fault(self) -> Fault | None:
+        """Return a fault if both marks occur and a number may mean a thousand times another."""
+        if not (self.comma and self.point and self.grouped):
+            return None
+        line, name, cell = self.grouped
+        digits = re.sub(r"[.,]", "", cell)
+        detail = (
+            f"the table has decimal commas and points, so that {cell} may mean {digits}; use one mark alone"
+        )
+        return line.fault("ambiguous_mark", detail, name)
+
+    @property
+    def assumed(self) -> list[str]:
+        """Return the marks that were taken."""
+        taken = [
+            f"decimal {name}" for name, is_met in (("comma", self.comma), ("point", self.point)) if is_met
+        ]
+        return [" and ".join(taken)] if taken else []
+
+
+_Unit = HeadingUnit | None  # of a heading, with an empty text where it has none; None where it is wrong
+_NO_UNIT = HeadingUnit("")
 Heading = Callable[[str, str], Fault | None]
 """What is wrong with the name and the unit of a column, if anything is."""
 
@@ -82,12 +144,39 @@ def read_table(
     most_faults: int = MOST_FAULTS,
     heading: Heading | None = None,
 ) -> list[TableColumn]:
-    """Return the columns of a table. Linear in the length of the text, which is at most `most_characters`.
+    """Return the columns of a table, as `table_of` does.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming every cell that is wrong.
+    """
+    return table_of(
+        text,
+        most_rows=most_rows,
+        most_characters=most_characters,
+        most_faults=most_faults,
+        heading=heading,
+    ).columns
+
+
+def table_of(
+    text: str,
+    *,
+    most_rows: int = MOST_ROWS,
+    most_characters: int = MOST_CHARACTERS,
+    most_faults: int = MOST_FAULTS,
+    heading: Heading | None = None,
+    is_sheet: bool = False,
+) -> Table:
+    """Return a table. Linear in the length of the text, which is at most `most_characters`.
 
     Parameters
     ----------
     heading
         Judges the name and the unit of each column; what it finds is named by the row of the headings.
+    is_sheet
+        Whether a spreadsheet gave the numbers, whose decimal mark nobody typed.
 
     Raises
     ------
@@ -95,42 +184,98 @@ def read_table(
         Naming every cell that is wrong by its row and column, up to `most_faults`; the last fault says how
         many more there are.
     """
-    lines, is_comma = _lines(text, most_rows, most_characters)
+    lines, is_comma, assumed = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)
     if width > MOST_COLUMNS:
         raise _wrong("table", "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
     faults = _Faults(most_faults)
     names, units, rest = _headings(lines, faults)
     for name, one in zip(names, units, strict=True):
-        if heading is not None and one is not None and (fault := heading(name, one)):
+        if heading is not None and one is not None and (fault := heading(name, one.text)):
             faults.add(lines[0].fault(fault.code, fault.detail, name))
     if not rest:
-        faults.add(Fault("table", "empty", "there is no row of numbers"))
-    rows = [_numbers(line, names, is_comma, faults) for line in rest]
+        faults.add(Fault("table", "empty", "the table has no row of numbers"))
+    marks = _Marks(is_comma)
+    rows = [_numbers(line, names, marks, faults) for line in rest]
+    if not is_sheet and (ambiguous := marks.fault()):
+        faults.add(ambiguous)
     faults.refuse()
-    columns = zip(*rows, strict=True)
-    return [
-        TableColumn(name, one or "", values) for name, one, values in zip(names, units, columns, strict=True)
+    sound = [one or _NO_UNIT for one in units]
+    columns = [
+        _column(name, one, values)
+        for name, one, values in zip(names, sound, zip(*rows, strict=True), strict=True)
     ]
+    if marks.comma or not is_sheet:
+        assumed = marks.assumed + assumed
+    return Table(columns, [*assumed, *dict.fromkeys(one.assumed for one in sound if one.assumed)])
 
 
-def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool]:
-    """Return the lines that are not blank, and whether a comma separates their columns."""
+def _column(name: str, scale: HeadingUnit, values: tuple[float, ...]) -> TableColumn:
+    if scale.factor != 1.0:
+        values = tuple(value * scale.factor for value in values)
+    return TableColumn(name, scale.text, values, scale.is_crank)
+
+
+def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool, list[str]]:
+    """Return the lines of the table, whether a comma separates columns, and the assumptions made."""
     if len(text) > most_characters:
         message = f"a table has at most {most_characters} characters, this one {len(text)}; take fewer rows"
         raise _wrong("table", "too_long", message)
     rows = re.split(r"\r\n|\r|\n", text.removeprefix("\ufeff"))
-    numbered = ((row, line) for row, line in enumerate(rows, start=1) if line.strip(" \t;,"))
+    numbered = (
+        (row, line)
+        for row, line in enumerate(rows, start=1)
+        if line.strip(" \t;,") and not line.lstrip().startswith("#")
+    )
     filled = list(islice(numbered, most_rows + 3))
     if not filled:
         raise _wrong("table", "empty", "the table is empty; paste rows of numbers, with their names above")
     if len(filled) > most_rows + 2:
         raise _wrong("table", "too_many_rows", f"a table has at most {most_rows} rows; take fewer")
-    separator = next((sign for sign in "\t;" if sign in filled[0][1]), ",")
+    separator, first = _layout(filled)
+    assumed = [f"{first} line{'s' if first > 1 else ''} above the headings left out"] if first else []
+    if separator == " ":
+        assumed.append("columns separated by blanks")
+    filled = filled[first:]
     cells = [_cells(row, line, separator) for row, line in filled]
     width = len(_trimmed(cells[0], 1))
+    if separator == " " and len(cells) > 1 and len(cells[0]) != (last := len(cells[-1])):
+        words = filled[0][1].split()
+        cells[0], width = (words, last) if len(words) == last else (cells[0], width)
     lines = [_Line(row, _trimmed(each, width)) for (row, _), each in zip(filled, cells, strict=True)]
-    return lines, separator == ","
+    return lines, separator == ",", assumed
+
+
+def _layout(filled: Sequence[tuple[int, str]]) -> tuple[str, int]:
+    """Return what separates the columns, and how many lines of words stand above the headings."""
+    head = filled[:_HEAD]
+    for separator in "\t;, ":
+        rows = [_trimmed(_cells(row, line, separator), 1) for row, line in head]
+        first = next((n for n, row in enumerate(rows) if len(row) > 1 and all(map(_is_number, row))), None)
+        if first is None:
+            continue
+        width = len(rows[first])
+        if separator == " ":
+            heading = len(_ALIGNED.split(head[first - 1][1].strip())) if first else width
+            if first == 0 or heading == width or len(head[first - 1][1].split()) == width:
+                return separator, 0
+            continue
+        start = first
+        while start and len(rows[start - 1]) == width and not any(map(_is_number, rows[start - 1])):
+            start -= 1
+        if start < first:
+            return separator, start
+        if first == 0:
+            return separator, 0
+    sign = next((sign for sign in "\t;" if sign in head[0][1]), ",")
+    if (
+        len(head) > 1
+        and "," not in head[0][1]
+        and sign == ","
+        and _DECIMAL_COMMA.fullmatch(head[1][1].strip())
+    ):
+        return ";", 0
+    return sign, 0
 
 
 def _trimmed(cells: list[str], least: int) -> list[str]:
@@ -142,10 +287,15 @@ def _trimmed(cells: list[str], least: int) -> list[str]:
 def _cells(row: int, line: str, separator: str) -> list[str]:
     if len(line) > LONGEST_LINE:
         raise _wrong(f"row {row}", "too_long", f"a row has at most {LONGEST_LINE} characters")
+    if separator == " ":
+        words = line.split()
+        return words if all(map(_is_number, words)) else _ALIGNED.split(line.strip())
     try:
         (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=separator != "\t")
     except (csv.Error, ValueError):
-        raise _wrong(f"row {row}", "not_a_row", "its quotes cannot be read; remove them") from None
+        raise _wrong(
+            f"row {row}", "not_a_row", "the quotes in this row cannot be read; remove them"
+        ) from None
     return [cell.strip() for cell in cells]
 
 
@@ -153,13 +303,16 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
     """Return names and units of the columns (None where a unit is wrong), and the lines below them."""
     first = lines[0]
     if not _is_words(first):
-        return [f"column {n}" for n in range(1, len(first.cells) + 1)], [""] * len(first.cells), lines
+        return [f"column {n}" for n in range(1, len(first.cells) + 1)], [_NO_UNIT] * len(first.cells), lines
     split = [_heading(cell, place) for place, cell in enumerate(first.cells, start=1)]
     names = [name for name, _ in split]
     units = _read_units(first, names, [text for _, text in split], faults)
     if len(lines) < 2 or not _is_words(lines[1]) or len(lines[1].cells) != len(names):
         return names, units, lines[1:]
-    below = _read_units(lines[1], names, [cell.strip("[]()") for cell in lines[1].cells], faults)
+    texts = [_bare(cell) for cell in lines[1].cells]
+    if all(one is not None and one.text for one in units) and not all(is_unit(text) for text in texts):
+        return names, units, lines[1:]  # the headings have their units: these words are no numbers
+    below = _read_units(lines[1], names, texts, faults)
     return names, _agreed(lines[1], names, units, below, faults), lines[2:]
 
 
@@ -175,9 +328,14 @@ def _is_number(cell: str) -> bool:
 
 def _heading(cell: str, place: int) -> tuple[str, str]:
     """Name and unit of a heading such as `load_x [kN]`."""
-    match = _HEADING.fullmatch(cell)
-    name, text = (match["name"], match["unit"]) if match else (cell, "")
-    return name.strip()[:LONGEST_NAME] or f"column {place}", text.strip()
+    name, text = parted(cell)
+    return name[:LONGEST_NAME] or f"column {place}", text
+
+
+def _bare(cell: str) -> str:
+    """Return a unit without the brackets around it."""
+    name, text = parted(cell)
+    return text if text and not name else cell
 
 
 def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults: _Faults) -> list[_Unit]:
@@ -185,7 +343,7 @@ def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults:
     units: list[_Unit] = []
     for name, text in zip(names, texts, strict=True):
         try:
-            units.append(unit("1" if text == "-" else text.strip()).text if text.strip() else "")
+            units.append(heading_unit(text) if text.strip() else _NO_UNIT)
         except FaultyText as error:
             faults.add(line.fault("unknown_unit", str(error.fault(name).detail), name))
             units.append(None)
@@ -195,31 +353,31 @@ def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults:
 def _agreed(
     line: _Line,
     names: Sequence[str],
-    above: Sequence[str | None],
-    below: Sequence[str | None],
+    above: Sequence[_Unit],
+    below: Sequence[_Unit],
     faults: _Faults,
 ) -> list[_Unit]:
     """Return the units of the two rows of headings, which may not contradict each other."""
     for name, one, other in zip(names, above, below, strict=True):
-        if one and other and one != other:
-            detail = f"the header says {one}, this row {other}; keep one of them"
+        if one and other and one.text and other.text and one.text != other.text:
+            detail = f"the header says {one.text}, this row {other.text}; keep one of them"
             faults.add(line.fault("two_units", detail, name))
     return [
-        None if one is None or other is None else one or other
+        None if one is None or other is None else one if one.text else other
         for one, other in zip(above, below, strict=True)
     ]
 
 
-def _numbers(line: _Line, names: Sequence[str], is_comma: bool, faults: _Faults) -> list[float]:
+def _numbers(line: _Line, names: Sequence[str], marks: _Marks, faults: _Faults) -> list[float]:
     """Return the numbers of a line; what is none, and a line of another length, is added to the faults."""
     if len(line.cells) != len(names):
         detail = f"it has {len(line.cells)} cells, the first row has {len(names)}"
-        hint = "; with decimal commas, separate the columns by semicolons or tabs" if is_comma else ""
+        hint = "; with decimal commas, separate the columns by semicolons or tabs" if marks.is_comma else ""
         faults.add(line.fault("ragged", detail + hint))
     numbers = []
     for name, cell in zip(names, line.cells, strict=False):
         try:
-            numbers.append(_number(cell, is_comma))
+            numbers.append(marks.number(line, name, cell))
         except FaultyText as error:
             fault = error.fault(name)
             faults.add(line.fault(fault.code, fault.detail, name))

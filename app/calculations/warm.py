@@ -1,7 +1,7 @@
 """The module from which calculation processes are forked: it has imported what they run.
 
-Tables are read and formulas compiled at first use, in each process; that takes 0.3 s at most. To calculate
-every example here would spare it, but the first calculation after a start would wait for all of them.
+Tables are read and formulas compiled at first use, in each process; that takes 0.3 s at most. Calculating
+every example here would avoid that, but the first calculation after a start would wait for all of them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from app.workers.priority import give_way
 
 
 def rehearse(has_come: Callable[[], bool]) -> None:
-    """Let the server go first; called once in every process before its first request."""
+    """Lower this process' priority below the server's; called once before its first request."""
     give_way()
 
 

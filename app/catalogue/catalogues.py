@@ -22,7 +22,7 @@ from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, wi
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate, UnreleasedTemplate
 from templates.core.language.template import Template
 
@@ -57,13 +57,13 @@ class Catalogues:
         return self.snapshot.models
 
     def publish(self, sheets: Sheets, drafts: Drafts) -> None:
-        """Let these worksheets stand among the templates from now on."""
+        """Add these worksheets to the catalogue of templates."""
         with self._joining:
             self._sheets, self._drafts = sheets, drafts
             self._join()
 
     def bring(self, models: Mapping[Key, type[CadModel]]) -> None:
-        """Let these models stand among those of files from now on."""
+        """Add these models to the catalogue."""
         with self._joining:
             self._brought = models
             self._join()
@@ -84,7 +84,7 @@ class Catalogues:
         return self._drafts(id, version)
 
     async def tried(self, id: str, version: int) -> type[Template]:
-        """Return what `to_try` returns, from the event loop: a thread reads the draft.
+        """Return the result of `to_try` to the event loop; a thread reads the draft.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Catalogues:
         """Take notice of files that have changed; nothing changes here."""
 
     def close(self) -> None:
-        """Look at no file any more."""
+        """Stop watching the files."""
 
 
 class TeamCatalogues(Catalogues):
@@ -156,7 +156,7 @@ class TeamCatalogues(Catalogues):
             await _ended(self._looking, left)
 
     def close(self) -> None:
-        """Look at no file any more."""
+        """Stop watching the files."""
         self._thread.shutdown(wait=False, cancel_futures=True)
 
     def _look(self) -> None:
@@ -180,7 +180,7 @@ def _no_drafts(id: str, version: int) -> type[Template]:
 
 
 async def _ended(future: Future[None], seconds: float) -> None:
-    """Wait for a future of a thread, at most so long [s], without any hold on it."""
+    """Wait for a future of a thread, for at most this time [s], without any hold on it."""
     loop, ended = asyncio.get_running_loop(), asyncio.Event()
 
     def wake(_: Future[None]) -> None:

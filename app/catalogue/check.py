@@ -1,6 +1,6 @@
 """Check one file of a team in a process of its own, since it may hang, crash or exhaust memory.
 
-What passes is loaded by the server from the very bytes that were checked.
+If the file passes, the server loads the same bytes that were checked.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from pathlib import Path
 from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded, WorkerError
 from cad.model import CadModel
-from templates.core.catalogue.finding import declared_in
-from templates.core.catalogue.loading import failing_line, load
-from templates.core.checking.check import faults_of
-from templates.core.checking.faults import FileFault
+from templates.core.catalogue.discovery import declared_in
+from templates.core.catalogue.modules import failing_line, load
+from templates.core.checks.check import faults_of
+from templates.core.checks.faults import FileFault
 from templates.core.errors import UnusableFile
 from templates.core.language.template import Template
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import templates
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue, find
+from templates.core.catalogue.discovery import Catalogue, find
 from templates.core.language.template import Template
 
 BUILT_IN = tuple(Path(folder) for folder in templates.__path__)

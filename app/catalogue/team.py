@@ -1,4 +1,4 @@
-"""A team's own files: which there are, which can be used, and what is wrong with the others."""
+"""The files of a team: list them, load the valid ones, and report the faults of the others."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from pathlib import Path
 from app.catalogue.check import Check, loaded_or_faulty
 from app.catalogue.sheets import Key, Sheets
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
-from templates.core.checking.faults import FileFault
-from templates.core.checking.golden import records
+from templates.core.catalogue.discovery import Catalogue
+from templates.core.checks.faults import FileFault
+from templates.core.checks.golden import records
 from templates.core.language.template import VERSIONED, Template
 
 Signature = tuple[tuple[int, int, int] | None, ...]
@@ -86,7 +86,7 @@ class TeamFiles:
 
     @classmethod
     def of_file(cls, path: Path, check: Check) -> TeamFile:
-        """Return one file, examined by itself."""
+        """Return one file, examined separately."""
         return cls((), check)._current(path.parent, _signature(path), path)
 
     @property

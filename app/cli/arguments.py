@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from app.calculations.curves import read_curves
+import click
+
+from app.calculations.curves import curves_of
 from app.plain import Raw
 from templates.core.errors import Fault, InvalidInputs
 
@@ -33,14 +35,17 @@ def argument(name: str, text: str) -> Raw:
 def _curve(name: str, text: str) -> Raw:
     path, _, column = text.rpartition(":") if not Path(text).exists() else (text, "", "")
     try:
-        curves = read_curves(Path(path or text).read_bytes())
+        read = curves_of(Path(path or text).read_bytes())
     except OSError as error:
         raise _wrong(name, "unreadable", f"{path or text} cannot be read: {error.strerror}") from None
     except InvalidInputs as error:
         raise InvalidInputs(fault.within(path or text) for fault in error.faults) from None
+    curves = read.curves
     if (column or name) not in curves:
         message = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
         raise _wrong(name, "no_such_column", f"{message} (it has {', '.join(curves)})")
+    if read.assumed:
+        click.echo(f"{name} from {path or text}: {', '.join(read.assumed)}", err=True)
     return curves[column or name]
 
 

@@ -52,7 +52,7 @@ def list_command(
 @_data
 @click.pass_context
 def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:
-    """Walk along the chain, and name the first row that is changed, missing or inserted.
+    """Verify the chain, and name the first changed, missing or inserted row.
 
     The exit code is 0 if all is sound, 1 if not, 2 if the database cannot be read. Rows at the end that were
     cut off, and a chain that was written again from the start, show only against a hash of `GET
@@ -103,7 +103,7 @@ def _url(settings: Settings) -> str:
 
 
 def _require_audit(session: Session) -> None:
-    """Return if the database has an audit that this program can read; raises CannotRun or StorageError."""
+    """Check that the database has an audit that this program can read; raises CannotRun or StorageError."""
     schema = schema_of(session.connection())
     if schema is None:
         raise CannotRun("The database holds no tables of Crankwright.")

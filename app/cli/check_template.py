@@ -17,7 +17,7 @@ from app.workers.local import LocalProcesses
 from cad.model import CadModel
 from templates.core.language.template import Template
 
-PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.check")
+PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checks.check", "app.catalogue.check")
 
 
 @click.command("check-template")

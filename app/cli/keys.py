@@ -99,9 +99,9 @@ def list_command(data: Path | None) -> None:
 @click.argument("prefix")
 @data_option
 def revoke_command(prefix: str, data: Path | None) -> None:
-    """End the life of the key with this PREFIX, the part between `cw_` and the next `_`.
+    """Revoke the key with this PREFIX, the part between `cw_` and the next `_`.
 
-    The keys that were made by it end with it, and are named.
+    Keys that it made are revoked too; the command names them.
     """
     with opened(data) as identity:
         key, *others = identity.revoke(prefix.removeprefix("cw_")[:10])
@@ -114,7 +114,7 @@ def revoke_command(prefix: str, data: Path | None) -> None:
 @click.argument("name")
 @data_option
 def disable_command(name: str, data: Path | None) -> None:
-    """Let NAME do nothing any more, by whatever key or session."""
+    """Disable NAME: none of its keys and sessions is accepted."""
     _set_disabled(name, data, True)
 
 
@@ -122,7 +122,7 @@ def disable_command(name: str, data: Path | None) -> None:
 @click.argument("name")
 @data_option
 def enable_command(name: str, data: Path | None) -> None:
-    """Let NAME in again."""
+    """Enable NAME again."""
     _set_disabled(name, data, False)
 
 

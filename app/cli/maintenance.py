@@ -152,7 +152,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _refusing() -> Iterator[None]:
-    """End the command with a sentence for whatever keeps it from running."""
+    """End the command with a message for any error that keeps it from running."""
     try:
         yield
     except CannotRun as error:

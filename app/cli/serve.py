@@ -29,7 +29,7 @@ from cad.catalogue import models
 
 
 def fork_ahead(settings: Settings) -> None:
-    """Fork what a service with these settings will ask for; call it before there is a thread or a connection.
+    """Fork the servers that these settings need; call it before any thread or connection exists.
 
     Built-in templates and models are imported first: the processes share the pages of all that is imported.
     That of jobs loads the kernel while the server opens its data; the others are ready at once.

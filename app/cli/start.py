@@ -2,8 +2,8 @@
 
 - Pint comes without Dask, which it would import for arrays that neither a command nor the server has, and
   which takes longer than Pint itself. Dask cannot hold the quantities of such a Pint, so a notebook imports
-  Pint as it is; a server of a team hands Dask packed bytes only. Importing this module does it: import it
-  before all that imports Pint.
+  the unchanged Pint; a server of a team passes only packed bytes to Dask. Importing this module makes the
+  change: import it before any module that imports Pint.
 - `serve` imports without the garbage collector, which would look through all that is new again and again,
   HTTPX without its command line, which brings Rich and Pygments, and the kernel postponed: the server reads
   parameters of models, and processes of their own draw them.
@@ -17,7 +17,7 @@ from importlib import import_module
 
 
 def import_alone(package: str, without: str) -> None:
-    """Import a package while another module is not to be found; nothing changes if either is imported."""
+    """Import a package while another module is hidden; do nothing if either is already imported."""
     if {package, without}.isdisjoint(sys.modules):
         sys.modules[without] = None  # type: ignore[assignment]  # as Python marks what is not to be imported
         try:

@@ -71,7 +71,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _ending_in_order() -> Iterator[None]:
-    """End by an exception when the terminal closes or somebody ends the program, as Ctrl-C does."""
+    """Raise an exception when the terminal closes or the program is terminated, as Ctrl-C does."""
     numbers = (signal.SIGTERM, signal.SIGHUP)
     before = {number: signal.signal(number, _end) for number in numbers}
     try:

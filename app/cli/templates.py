@@ -1,7 +1,7 @@
 """`crankwright evaluate | template | freeze`: the templates in this process, without a service.
 
-Where the settings name no folders of a team, `evaluate` imports only the template that it evaluates. The
-settings, the models with the geometry kernel, and the schema are imported by the commands that need them.
+If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
+the models with the geometry kernel, and the schema are imported by the commands that need them.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from app.cli import start  # noqa: F401  # before all that imports Pint
 from app.catalogue.discovery import find_templates
 from app.cli.arguments import argument
 from app.plain import Raw
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
-from templates.core.paper.mathml import unit_symbol
+from templates.core.units.units import unit_symbol
 
 if TYPE_CHECKING:
     from app.catalogue.team import Snapshot
@@ -35,7 +35,7 @@ FOLDERS = "CRANKWRIGHT_TEMPLATE_FOLDERS"
 
 
 class CatalogueCommand(click.Command):
-    """A command that says what is wrong with the catalogue, not where the program noticed."""
+    """A command that reports the faults of the catalogue without a traceback."""
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
@@ -103,9 +103,15 @@ def template_command() -> None:
 
 
 @template_command.command("list", cls=CatalogueCommand)
-def list_templates() -> None:
-    """Every version of every template."""
-    for cls in _catalogue():
+@click.option("--search", default="", help="a title, standard, author, symbol, or name of a textbook")
+def list_templates(search: str) -> None:
+    """Every version of every template, or those that a search finds."""
+    from app.catalogue.search import matching
+
+    kept, notes = matching(_catalogue(), search) if search.strip() else (list(_catalogue()), [])
+    for note in notes:
+        click.echo(note, err=True)
+    for cls in kept:
         state = f"withdrawn: {cls.withdrawn}" if cls.withdrawn else "released"
         click.echo(f"{cls.id} {cls.version}  ({state})  {cls.title()}")
 
@@ -150,7 +156,9 @@ def freeze_command(id: str, version: int, folder: Path) -> None:
         cls = snapshot.models.get(id, version) if is_model else snapshot.templates.get(id, version)
         click.echo(f"written: {freeze(cls, folder)}")
     except FileExistsError as error:
-        raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
+        raise click.ClickException(
+            f"{error}: a released version cannot change; create a new version"
+        ) from None
 
 
 def _find(id: str, version: int | None) -> type[Template]:

@@ -154,7 +154,9 @@ def review_command(id: str, reviewer: str, digest: str, url: str | None, data: P
     with connected(url, data) as client:
         sheet = client.read_worksheet(id)
         if len(digest) < 12 or not (sheet.digest or "").startswith(digest):
-            raise click.ClickException(f"{id} has digest {sheet.digest}, not {digest}: read its text again")
+            raise click.ClickException(
+                f"{id} has digest {sheet.digest}, not {digest}: read its current text first"
+            )
         _say(client.review_worksheet(sheet, reviewer))
 
 
@@ -217,7 +219,7 @@ def _say(sheet: Sheet) -> None:
 
 
 def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
-    """Return a remark that nobody proved the name of the reviewer, where that is so."""
+    """Return a remark if the name of the reviewer is not verified."""
     return "" if sheet.review_verified else f"{sign}review not verified"
 
 

@@ -33,7 +33,7 @@ class File:
         return cls(Path(name).name or "file", response.content)
 
     def save(self, folder: str | os.PathLike[str] = ".") -> Path:
-        """Write the file into a folder, whole or not at all; where it is then."""
+        """Write the file into a folder, completely or not at all, and return its path."""
         path = Path(folder, self.name)
         temporary = path.with_name(f".{path.name[:200]}.part")
         temporary.write_bytes(self.content)

@@ -49,5 +49,5 @@ def add_key(
 
 
 def revoke_key(principal: str, prefix: str) -> Exchange[Key]:
-    """End the life of a key."""
+    """Revoke a key."""
     return answered(Key, Request("DELETE", f"{BASE}{_PATH}/{principal}/keys/{prefix}"))

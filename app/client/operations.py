@@ -93,9 +93,9 @@ class AnalysisOptions(TypedDict, total=False):
     outputs: list[str]
 
 
-def templates() -> Exchange[list[TemplateSummary]]:
-    """Return every version of every template."""
-    return listed(TemplateList, "/templates")
+def templates(search: str = "") -> Exchange[list[TemplateSummary]]:
+    """Return every version of every template, or those that a search finds."""
+    return listed(TemplateList, "/templates", [("search", search)] if search else [])
 
 
 def faults() -> Exchange[list[FaultyFile]]:
@@ -166,7 +166,7 @@ def solve(
 
 
 def curves(table: bytes | str) -> Exchange[Curves]:
-    """Read curves from a CSV file, in UTF-8; each can be an input."""
+    """Read curves from a CSV or XLSX file; each can be an input. `assumed` says what was assumed."""
     content = table.encode() if isinstance(table, str) else table
     request = Request("POST", f"{BASE}/curves", content, headers={"Content-Type": "text/csv"})
     return answered(Curves, request)

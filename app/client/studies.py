@@ -46,7 +46,7 @@ def begin(design: str, body: Mapping[str, object], key: str | None = None) -> Ex
 
 
 def find(id: str) -> Exchange[Study]:
-    """Return a study as it stands."""
+    """Return the current state of a study."""
     return answered(Study, get(f"/studies/{id}"))
 
 

@@ -1,7 +1,7 @@
 """Analyses that models of a design declare: the outputs that relations use, and their faults.
 
 `"throw": {…, "analyses": {"torsion": {"tolerance": 0.005}}}` lets relations use `throw.torsion.stiffness`.
-Only what a relation, or an iteration, uses is ever computed; an analysis that nobody uses costs nothing.
+The service computes only outputs that a relation or an iteration uses. An unused analysis costs nothing.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _further(cls: type[Template]) -> Mapping[str, str]:
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
-    """Return the analyses that a model declares, as far as they can be made, and what is wrong with them."""
+    """Return the analyses that a model declares, as far as they can be made, and their faults."""
     if not model.analyses:
         return {}, []
     declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}

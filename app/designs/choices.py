@@ -1,7 +1,7 @@
 """The choices that relations test, `film.oil is "SAE 30"`: known from the document alone.
 
-A choice follows from nothing. So a test of it is decided when the network is built, and makes no loop where
-the input that a relation sets is one of the same step.
+A choice does not depend on other values. So its tests are decided when the network is built, and a test
+creates no loop if a relation sets an input of the same step.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document, Version
 from app.plain import Raw
 from app.reference import Reference
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import FaultyText, UnknownTemplate, unknown_name
+from templates.core.language.intake import option_named
 from templates.core.language.spec import Choice
 from templates.core.language.template import Template
 from templates.core.units.expressions import check_word
@@ -80,4 +81,4 @@ def _word(name: str, declared: Choice, raw: Raw) -> str:
     word = given if given is not None else declared.default
     if word is None:
         raise FaultyText("missing", f"{name} is not set: choose one of {', '.join(declared.options)}")
-    return str(word)
+    return option_named(declared.options, str(word)) or str(word)

@@ -13,7 +13,7 @@ from app.designs.parameter_explanation import Explainer, explain, full_name, mod
 from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.errors import NotFound
-from templates.core.judging.criterion import Limit
+from templates.core.criteria.criterion import Limit
 from templates.core.units.relation import Relation
 
 PREFIX = "criteria."  # before the name of a criterion that is called like a parameter of the only model

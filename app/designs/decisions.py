@@ -59,7 +59,7 @@ def read_budget(raw: Raw) -> float:
 def decided(
     asked: DecisionQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[DecisionQuestion, Decision]:
-    """Return the decision as far as its caller waits for it.
+    """Return the decision as far as it is known while its caller waits.
 
     Raises
     ------

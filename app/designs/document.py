@@ -1,4 +1,4 @@
-"""A design as its user wrote it: parameters, steps, models, iterations. This is what a revision keeps.
+"""A design as its user wrote it: parameters, steps, models, iterations. A revision stores this document.
 
 Values stay as typed: a quantity, a relation that begins with `=`, or a list of both.
 """
@@ -228,7 +228,7 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """Return whether a patch goes on inside.
+    """Return whether a patch continues within the value.
 
     In the document, its groups, its steps and models, and their parts.
     """

@@ -3,7 +3,7 @@
 DesignError
     StaleRevision       the design has changed since the client read it
     NotConverged        a declared iteration did not settle within its limit
-    DesignReleased      a design with a released revision is not deleted
+    DesignReleased      a design with a released revision cannot be deleted
 """
 
 from __future__ import annotations

@@ -32,9 +32,9 @@ from app.designs.network import (
 )
 from app.plain import Json, Raw
 from app.reference import Reference
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
+from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
-from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
@@ -130,7 +130,7 @@ def _cell(
 
 
 def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
-    """Yield every step and every model, None where its template is unknown, with what is wrong with it."""
+    """Yield every step and every model, None where its template is unknown, with its faults."""
     for name, step in choices.document.steps.items():
         yield _step(choices, name, step)
     for name, model in choices.document.models.items():
@@ -322,7 +322,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Return a cycle of nodes (its last is its first) in the names that its relations use."""
+    """Yield the nodes of a cycle (the last is the first) by the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name

@@ -1,4 +1,4 @@
-"""Labels of designs in the database: they make no result old."""
+"""Labels of designs in the database. A change of labels invalidates no result."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The network of a design: which value follows from which.
+"""The network of a design: which value depends on which.
 
 Its nodes are cells, which are the values that a user wrote (`scale`, `film.radial_load`); blocks, which are
-steps and models; solids, which are models when built; and analyses of solids. A block follows from its cells,
-and its outputs follow from it. What is measured follows from the solid.
+steps and models; solids, which are models when built; and analyses of solids. A block depends on its cells,
+and its outputs depend on the block. Measurements depend on the solid.
 
 Criteria name values of the network. A name without a dot is a criterion of the design itself, which needs
 `require`. `film.pressure` is the criterion `pressure` of the template of step `film`: the design may replace
@@ -21,8 +21,7 @@ from app.plain import Raw
 from app.reference import Reference
 from app.solids.questions import Question
 from cad.model import CadModel
-from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
-from templates.core.judging.criterion import (
+from templates.core.criteria.criterion import (
     Criterion,
     Limit,
     MissingValue,
@@ -30,7 +29,8 @@ from templates.core.judging.criterion import (
     read_comparison,
     read_criterion,
 )
-from templates.core.judging.limits import GivenLimit
+from templates.core.criteria.limits import GivenLimit
+from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.language.spec import Choice, Declaration, Formula, Input, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.nodes import Kind, kind_of

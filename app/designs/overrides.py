@@ -1,4 +1,4 @@
-"""Other values for a design in a question about it: nothing of them is saved."""
+"""Temporary values that a question uses instead of those of the design; they are never saved."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.designs.variants.table import Overrides, applied, is_place, places
 from app.plain import Raw
 from app.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
+from templates.core.language.intake import option_named
 from templates.core.language.spec import Choice, Table
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
@@ -38,7 +39,7 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
         yield from unknown_names(absent, list(places(graph)), "parameter or input")
     for name, raw in others.items():
         if name == unknown:
-            yield Fault(name, "conflict", f"{name} is what is solved for; it has no other value")
+            yield Fault(name, "conflict", f"{name} is the unknown that is solved for; do not give it a value")
         elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
             yield from _misfit(graph, name, raw)
 
@@ -52,7 +53,7 @@ def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None
     if isinstance(declared, Choice):
-        if raw not in declared.options:
+        if not isinstance(raw, str) or option_named(declared.options, raw) is None:
             yield unknown_name(str(raw), declared.options, "option").within(name)
         return
     if isinstance(declared, Table):

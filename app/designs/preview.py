@@ -32,8 +32,8 @@ from app.solids.rows import built
 from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
 from cad.regenerate import as_quantities
+from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault
-from templates.core.judging.judgement import Judgement
 
 
 @dataclass(frozen=True)

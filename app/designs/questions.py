@@ -1,4 +1,4 @@
-"""Questions about a design: those that the pool calculates as a whole, and what answers follow from."""
+"""Questions about a design that the pool calculates, and the data on which their answers depend."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.tables import RevisionRow
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.template import Template
 

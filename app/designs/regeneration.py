@@ -1,4 +1,4 @@
-"""The job behind a revision: build what is not built, measure, calculate what waited, iterate if declared."""
+"""The job behind a revision: build and measure missing solids, calculate dependent steps, iterate."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """Return the calculation once every model in it is built, and analysed as far as somebody uses it.
+        """Return the calculation once all its models are built and all used analyses are done.
 
         Models may wait for each other's measures, so each round makes what can be made.
         """
@@ -179,7 +179,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """Return the lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
+    """Return the lane of a job, so that a change of a bearing never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

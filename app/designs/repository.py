@@ -97,7 +97,7 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def lean(session: Session, id: str, number: int) -> RevisionRow:
-    """Return a revision whose results are loaded only if somebody reads them from the row.
+    """Return a revision whose results are loaded from the row when they are first read.
 
     Raises
     ------

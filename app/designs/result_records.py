@@ -1,7 +1,7 @@
 """The results that a revision stores, as models; equal texts are read once.
 
-Results are attached to a revision once, but a page asks for them several times, and so does every later look.
-They are kept by their text, so nothing that is old can be returned.
+A revision stores its results once, but every page reads them several times. The cache is keyed by the stored
+text, so it cannot return outdated results.
 """
 
 from __future__ import annotations

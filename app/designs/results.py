@@ -22,9 +22,9 @@ from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
 from cad.model import CadModel
 from cad.regenerate import as_quantities, build_key
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.summary import worst_first
 from templates.core.language.criteria import warned
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import record

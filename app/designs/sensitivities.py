@@ -63,9 +63,9 @@ class SensitivityQuestion:
         """Return all values that are needed."""
         return Targets.of(self.values, [self.subject] if self.subject else [])
 
-    def unit(self, net: DesignEngine) -> str:
+    def unit(self, engine: DesignEngine) -> str:
         """Return the unit in which the value is shown."""
-        return self.subject.criterion.unit if self.subject else net.unit(*self.values)
+        return self.subject.criterion.unit if self.subject else engine.unit(*self.values)
 
     def columns(self, table: Table) -> tuple[Array, Array | None]:
         """Return the value [SI] of each row, and of a criterion the margin, positive where it is met."""
@@ -164,38 +164,38 @@ class DifferenceRows:
         self._check_cost()
         rows = self._points.rows(0, count)
         columns = {place: rows[:, column] for column, place in enumerate(self.places)}
-        return self._net(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
+        return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
 
     def _check_cost(self) -> None:
         """Refuse rows that take long, or many operations in relations between lists."""
         count, wanted = self._points.count, self.asked.wanted
-        seconds = self._net.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
-        values = count * sum(self._net.design.sizes(wanted).values())
+        seconds = self._engine.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
+        values = count * sum(self._engine.design.sizes(wanted).values())
         if seconds > EXPENSIVE:
             raise self._refused(
                 "expensive", f"{count} rows would take about {seconds:.1g} s{self._at()}; {STUDY}"
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(
-                "too_many_values", f"{count} rows of lists this long would take long; {STUDY}"
+                "too_many_values", f"{count} rows of lists this long would take too long; {STUDY}"
             )
 
     def _at(self) -> str:
         """Return the levels of the steps that are calculated."""
-        steps = [step.name for step in self._net.design.steps(self.asked.wanted)]
+        steps = [step.name for step in self._engine.design.steps(self.asked.wanted)]
         used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
         return f" ({', '.join(used)})" if used else ""
 
     def _check(self, value: Array, table: Table) -> None:
         """Refuse a value that has no slope."""
         if value.ndim > 1:
-            raise self._refused("shape", f"{self.asked.name} is a list; a slope is that of a single number")
+            raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 
     def _missing(self, table: Table) -> str:
         """Return why the design itself has no value."""
-        waiting = self._net.design.needs(self.asked.wanted).waiting
+        waiting = self._engine.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
             return f"{self.asked.name} follows from {what}: its slopes are not computed"
@@ -208,7 +208,7 @@ class DifferenceRows:
         return InvalidInputs([Fault(self.asked.name, code, detail)])
 
     @cached_property
-    def _net(self) -> DesignEngine:
+    def _engine(self) -> DesignEngine:
         return DesignEngine.of(
             self.document,
             self.catalogues,
@@ -228,12 +228,12 @@ class DifferenceRows:
     @cached_property
     def _points(self) -> Local:
         at = np.array([self.calculation.value(place) for place in self.places], dtype=float)
-        units = np.array([unit(self._net.unit(place)).factor for place in self.places])
+        units = np.array([unit(self._engine.unit(place)).factor for place in self.places])
         return Local(at, STEP * np.where(at == 0, units, np.abs(at)))
 
     def _item(self, number: int, slopes: Slopes) -> Sensitivity:
         name, place = str(self.places[number]), float(self._points.at[number])
-        over, under = self.asked.unit(self._net), self._net.unit(self.places[number])
+        over, under = self.asked.unit(self._engine), self._engine.unit(self.places[number])
         system, slope_si = self.asked.system, float(slopes.slopes[number])
         slope = slope_in(shown_unit(over, system), shown_unit(under, system), slope_si)
         if slope is None:

@@ -93,7 +93,7 @@ class SaveResult:
     answer: Design | None = None  # as it was written, where no job changes it and no earlier request wrote it
 
     def keep(self, session: Session, once: Once) -> None:
-        """Remember what the request led to, in the unit that writes it."""
+        """Store the result of the request, in the unit that writes it."""
         location = {name: value for name, value in vars(self).items() if name != "answer"}
         once.keep(session, 201 if self.created else 200, location)
 

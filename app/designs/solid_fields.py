@@ -1,8 +1,8 @@
 """Fields that a revision has for the surface of a crankshaft: use of its fillets, shapes of torsional modes.
 
-They follow from steps that take what finite elements answered about the model: from a `fatigue_life` whose
-tensors are those of `unit_loads`, and from a `forced_torsion` whose stiffnesses are those of `chain`. Nothing
-is declared for them, and nothing is stored.
+They come from steps that use finite-element results of the model: a `fatigue_life` with the tensors of
+`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. A user declares nothing for them, and
+the service stores none.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from cad.field_mesh import Field, Glb
 from cad.fillets import Crank
 from cad.model import CadModel
 from templates.core.arrays import Array
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 
 USE, MODES = "load_use", 3  # the output of a life that is painted; how many modes
 RIGID = 1e-6  # of the highest frequency: a mode below turns as a whole
@@ -132,7 +132,7 @@ def _uses(
 
 
 def _points(session: Session, model: RevisionModel) -> Array | None:
-    """Return where the tensors of an analysis are [mm]; they were stored with them."""
+    """Return the points of an analysis' tensors [mm], which are stored with the tensors."""
     if UNIT_LOADS not in model.analyses:
         return None
     stored = analysis_rows.outputs_of(session, model.analyses[UNIT_LOADS].id)
@@ -159,7 +159,7 @@ def _modes(revision: Revision, name: str, whole: WholeShaft) -> Iterator[ModeSha
 
 
 def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | None:
-    """Return which inertias of a train, from 0, are the throws of a shaft, its nose and its flange.
+    """Return the indices, from 0, of the inertias that are a shaft's throws, nose and flange.
 
     The throws are those that cylinders excite, in their order. Nose and flange are the one inertia that an
     elastic shaft joins to the first or the last throw; where there is not one, the throw's own. None if other

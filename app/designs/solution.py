@@ -26,7 +26,7 @@ from app.schemas.bounds import Bounded, at_most
 from app.schemas.criteria import Word
 from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.language.confirming import Root
+from templates.core.language.confirmation import Root
 from templates.core.language.roots import Jump as FoundJump
 from templates.core.units.quantity import TypedQuantity, read, read_beside
 
@@ -91,13 +91,13 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     unknown = Reference.parse(question.unknown)
     [(name, raw)] = question.target.items()
     target = Reference.parse(name)
-    net = DesignEngine.of(document, catalogues, [unknown], wanted=[target], pending=True)
-    low, high = (_single(read, end, net.accepted(unknown), "between") for end in question.between)
+    engine = DesignEngine.of(document, catalogues, [unknown], wanted=[target], pending=True)
+    low, high = (_single(read, end, engine.accepted(unknown), "between") for end in question.between)
     if low >= high:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
-    value = _single(read_beside, raw, net.accepted(target), f"target.{name}")
-    solution = roots_of_design(net, RootQuestion(unknown, (low, high), target, value, question.tolerance))
+    value = _single(read_beside, raw, engine.accepted(target), f"target.{name}")
+    solution = roots_of_design(engine, RootQuestion(unknown, (low, high), target, value, question.tolerance))
     return _SolutionText(solution, document, catalogues).answer(revision)
 
 

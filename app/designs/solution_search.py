@@ -1,7 +1,7 @@
 """Solve a design: every value of one parameter or input between two bounds that gives a wanted output.
 
-The curve between the bounds is a few array calls of the whole design, every step at one level. Its crossings
-are confirmed at the levels of the design, or at those that a tolerance asks for.
+The curve between the bounds is a few array calls of the whole design, every step at one level. Each crossing
+is confirmed at the levels of the design, or at those that a tolerance requires.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class RootQuestion:
 class DesignCurve(SampledCurve):
     """An output of a design as a function of one of its values, each step at one level."""
 
-    net: DesignEngine
+    engine: DesignEngine
     unknown: Reference
     target: Reference
     levels: Mapping[str, str | None]
@@ -80,7 +80,7 @@ class DesignCurve(SampledCurve):
         return Outputs(values, self._reasons(table), self.level, error)
 
     def _table(self, x: Array) -> Table:
-        return self.net({self.unknown: x}, [self.target], levels=self.levels)
+        return self.engine({self.unknown: x}, [self.target], levels=self.levels)
 
     def _reasons(self, table: Table) -> NDArray[np.object_]:
         reasons: NDArray[np.object_] = np.full(table.count, None, dtype=object)
@@ -100,7 +100,7 @@ class DesignRoots:
     requested: DesignCurve
 
 
-def roots_of_design(net: DesignEngine, wanted: RootQuestion) -> DesignRoots:
+def roots_of_design(engine: DesignEngine, wanted: RootQuestion) -> DesignRoots:
     """Return every value of the unknown that gives the target.
 
     Raises
@@ -110,34 +110,36 @@ def roots_of_design(net: DesignEngine, wanted: RootQuestion) -> DesignRoots:
     Unreachable
         If no value between the bounds gives the target, with the range that is reachable.
     """
-    cheap, fine = _levels(net, wanted)
-    x, y = (_meaning(net, reference) for reference in (wanted.unknown, wanted.target))
-    scanned = DesignCurve(x, y, wanted.value, net, wanted.unknown, wanted.target, cheap)
+    cheap, fine = _levels(engine, wanted)
+    x, y = (_meaning(engine, reference) for reference in (wanted.unknown, wanted.target))
+    scanned = DesignCurve(x, y, wanted.value, engine, wanted.unknown, wanted.target, cheap)
     requested = replace(scanned, levels=fine)
     return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested)
 
 
-def _levels(net: DesignEngine, wanted: RootQuestion) -> tuple[dict[str, str | None], dict[str, str | None]]:
+def _levels(
+    engine: DesignEngine, wanted: RootQuestion
+) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels of the curve, and those of its solutions.
 
     None of the first is finer than the second.
     """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
-    cheap = net.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
+    cheap = engine.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
     if wanted.tolerance is not None:
-        return cheap, net.levels_for(rows, outputs, wanted.tolerance)
+        return cheap, engine.levels_for(rows, outputs, wanted.tolerance)
     middle = {wanted.unknown: np.array([rows[wanted.unknown][PROBED // 2]])}
-    fine = net(middle, outputs).levels
-    return {step: _coarser(net, step, level, fine.get(step)) for step, level in cheap.items()}, fine
+    fine = engine(middle, outputs).levels
+    return {step: _coarser(engine, step, level, fine.get(step)) for step, level in cheap.items()}, fine
 
 
-def _coarser(net: DesignEngine, step: str, one: str | None, other: str | None) -> str | None:
+def _coarser(engine: DesignEngine, step: str, one: str | None, other: str | None) -> str | None:
     """Return the cheaper of two levels of a step."""
-    ladder = list(net.graph.blocks[step].cls.levels)
+    ladder = list(engine.graph.blocks[step].cls.levels)
     levels = [level for level in (one, other) if level in ladder]
     return min(levels, key=ladder.index) if levels else one
 
 
-def _meaning(net: DesignEngine, reference: Reference) -> Meaning:
+def _meaning(engine: DesignEngine, reference: Reference) -> Meaning:
     """Return a name of the design as messages call it, with its declared unit."""
-    return Meaning(words=str(reference), unit=net.unit(reference), name=str(reference))
+    return Meaning(words=str(reference), unit=engine.unit(reference), name=str(reference))

@@ -1,4 +1,4 @@
-"""A design as it is sent to a calculation process: its document and the files that its steps are made of."""
+"""A design as it is sent to a calculation process: its document and the files of its templates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.plain import JsonObject
 from app.pool.sources import Source, loaded, source_of
 from app.storage.tables import canonical_json
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.language.template import Template
 
 T = TypeVar("T", bound=Template)
@@ -68,7 +68,7 @@ class DesignTask:
         return cls(canonical_json(document), CatalogueTask.of(steps, models, catalogues))
 
     def read(self) -> tuple[Document, Catalogues]:
-        """Return the design in this process, and what it is made of."""
+        """Return the design in this process, with its templates and models."""
         return Document.model_validate(from_json(self.document)), self.parts.read()
 
 

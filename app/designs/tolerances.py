@@ -1,7 +1,7 @@
-"""Tolerances in a design that nothing calculates with: those of its own parameters and of its models.
+"""Tolerances that no calculation uses: those of the design's own parameters and of its models.
 
-Those of a step's inputs are among the warnings of the step. Those of a model's parameters are stated in its
-STEP file where its faces carry them, and in no other way used.
+A step warns about tolerances of its own inputs. Tolerances of model parameters appear in the STEP file on the
+faces that carry the dimension, and nowhere else.
 """
 
 from __future__ import annotations

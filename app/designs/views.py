@@ -139,7 +139,7 @@ def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Return the author of an action, by their present name; None where nobody noted it."""
+    """Return the author of an action, by their present name; None if none is recorded."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 

@@ -19,8 +19,8 @@ from app.plain import JsonObject, Raw
 from app.pool.errors import StepDeferred
 from app.pool.steps import evaluated_step, fingerprint
 from app.presentation.units import System
-from templates.core.catalogue.finding import Catalogue
-from templates.core.catalogue.loading import is_outside
+from templates.core.catalogue.discovery import Catalogue
+from templates.core.catalogue.modules import is_outside
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import restored

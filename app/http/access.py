@@ -1,12 +1,12 @@
 """Who sends a request: its principal, its client, and the role that its route needs.
 
-Every request acts for the principal whose key or session it carries. Limits and turns are counted by client:
-who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
-`Crankwright-Client`, else the session of a page, else the address that the request came from.
+Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
+If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the
+session of a page, else the address that the request came from.
 
-The role that a route needs is that of its declaration, else it follows from its method; it is checked before
-the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several declarations the
-last one counts.
+A route declares the role that it needs; without a declaration its HTTP method decides. The role is checked
+before the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several
+declarations the last one counts.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Access:
         self.app, self.refuse = app, refuse
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse a key in the address, or pass on as somebody."""
+        """Refuse a key in the address, or identify the sender and pass on."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -99,13 +99,13 @@ class Access:
     async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
         """Return whether a request would be let in as the same principal now.
 
-        A stream lasts longer than a key.
+        A stream may outlive its key.
         """
         guest = await self._guest(door, scope)
         return guest is not None and guest.principal == who
 
     async def _guest(self, door: Door, scope: Scope) -> Guest | None:
-        """Return whoever sends a request; a key that is sent counts alone, even where it is not valid."""
+        """Return the sender of a request; if it carries a key, only the key counts, valid or not."""
         cookies = b""
         for name, value in scope["headers"]:
             if name == b"authorization":
@@ -189,10 +189,10 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route: the gate has read it."""
+        """Do nothing as a dependency of a route; the gate has read the declaration."""
 
     def check(self) -> None:
-        """Let the acting principal pass.
+        """Check the role of the acting principal.
 
         Raises
         ------
@@ -217,12 +217,12 @@ VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
 
 
 def needs(*roles: Role) -> params.Depends:
-    """Declare that a route needs one of these roles; none: that whoever sends the request has signed in."""
+    """Declare that a route needs one of these roles; without roles, that it needs a signed-in sender."""
     return params.Depends(Needs(roles))
 
 
 def public() -> params.Depends:
-    """Declare that a route asks nobody for a key."""
+    """Declare that a route needs no key."""
     return params.Depends(PUBLIC)
 
 
@@ -255,7 +255,7 @@ class Guarded:
 
 
 def install(app: FastAPI) -> None:
-    """Guard all routes that an app has by now, and paths that it has not. Routes are shared by all apps."""
+    """Guard all present routes of an app, and unknown paths. All apps share the routes."""
     for route in app.router.routes:
         if not isinstance(route.handle, Guarded):
             route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]

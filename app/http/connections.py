@@ -1,7 +1,7 @@
-"""Connections that nobody holds for ever: uvicorn's protocol, with limits on heads and on slow clients.
+"""Limits on connections: uvicorn's protocol with limits on request headers and on slow clients.
 
-uvicorn waits without limit for the head of a request, and until a client has read its answer. It reads a
-head of any length, and copies all of it again whenever another piece comes in.
+uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
+accepts headers of any length, and copies all of them again whenever another piece arrives.
 
 From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
 serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this
@@ -82,7 +82,7 @@ class TimedProtocol(HttpToolsProtocol):
         self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _drop_dead_peer(self) -> None:
-        """Have the kernel end the connection of a machine that is gone, as it notices by a stream's pings."""
+        """Have the kernel end the connection of a dead machine, which it detects by a stream's pings."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
             milliseconds = int(1000 * (self.limits.write_seconds + _DEAD))  # a slow reader is judged before
@@ -151,7 +151,7 @@ class TimedProtocol(HttpToolsProtocol):
             self._cut("silent")
 
     def send_400_response(self, msg: str) -> None:
-        """Answer what is not HTTP."""
+        """Answer bytes that are not HTTP with a 400 response."""
         self._refuse(400, "not-http", "Not HTTP", msg)
 
     def _refuse(self, status: int, slug: str, title: str, detail: str) -> None:
@@ -193,7 +193,7 @@ class TimedProtocol(HttpToolsProtocol):
         self._write_timer = self.loop.call_later(self.limits.write_seconds, self._judge_reader, left)
 
     def _judge_reader(self, before: int) -> None:
-        """Cut the connection unless its client has read enough meanwhile."""
+        """Close the connection unless its client has read enough in the meantime."""
         read = before - self.transport.get_write_buffer_size()
         if read < self.limits.rate * self.limits.write_seconds:
             self._reset_on_close()
@@ -208,7 +208,7 @@ class TimedProtocol(HttpToolsProtocol):
         self.transport.abort()
 
     def _reset_on_close(self) -> None:
-        """Have the kernel drop what it holds for the client, instead of delivering megabytes for hours."""
+        """Have the kernel drop the unsent bytes, instead of delivering megabytes for hours."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6):
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))

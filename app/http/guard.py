@@ -1,10 +1,10 @@
-"""The outermost layer of the application: no other site reads, writes or frames anything through a browser.
+"""The outermost layer of the application: it keeps other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
 1. The header `Host` names a host that the service answers to.
-2. What changes something comes from the service's own pages, or from no page at all. Other sites may link to
-   a page; they may not load anything from here.
+2. A request that changes something must come from the service's own pages, or from no page at all. Other
+   sites may link to a page; they may not load anything from here.
 3. Every answer forbids sniffing, framing and reading by other origins.
 """
 
@@ -94,7 +94,7 @@ class Guard:
 
 
 def install(app: FastAPI, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
-    """Put the guard around all of an app, its answer to an unexpected error included."""
+    """Wrap a whole app in the guard, its answer to an unexpected error included."""
     # `add_middleware` would leave Starlette's handler of unexpected errors outside.
     build = app.build_middleware_stack
     app.build_middleware_stack = lambda: Guard(build(), hosts, refuse)  # type: ignore[method-assign]
@@ -184,7 +184,7 @@ def _check_site(looked: Looked) -> None:
 
 
 def _check_link(looked: Looked) -> None:
-    """Let other sites link to a page, and refuse whatever else of theirs loads something from here."""
+    """Allow links from other sites to a page, and refuse every other request of theirs."""
     modes, places = looked.get(b"sec-fetch-mode", ()), looked.get(b"sec-fetch-dest", ())
     if any(mode != b"navigate" for mode in modes) or any(place != b"document" for place in places):
         _check_site(looked)

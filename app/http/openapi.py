@@ -1,8 +1,8 @@
-"""The description of the interface at /openapi.json, made to say what the service does, and its page /docs.
+"""The OpenAPI document at /openapi.json, corrected to match the service, and its page /docs.
 
-FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
-a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them.
+FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of a
+path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
+refused; `itemSchema` is OpenAPI 3.2. Some parts are written in the form that client generators understand.
 Problems that follow from what an operation takes are added here too; a route declares those of its own.
 
 `Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.

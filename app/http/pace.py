@@ -1,7 +1,7 @@
-"""Large bodies and large answers move piece by piece, one of them in each turn of the event loop.
+"""Large bodies and large answers are transferred in pieces, one piece per turn of the event loop.
 
-Otherwise twenty uploads at the same time would each move in every turn, and whoever sends a short request
-would wait for all of them several times.
+Otherwise each of twenty simultaneous uploads would transfer a piece in every turn, and a short request would
+wait for all of them several times.
 """
 
 from __future__ import annotations

@@ -8,6 +8,6 @@ from starlette.convertors import StringConvertor, register_url_convertor
 
 
 def register_id(name: str, words: Iterable[str]) -> None:
-    """Let `{id:name}` in a route stand for any text but these words."""
+    """Register `{id:name}` for routes: it matches any text except these words."""
     pattern = f"(?!(?:{'|'.join(sorted(words))})$)[^/]+"
     register_url_convertor(name, type(f"{name}_id", (StringConvertor,), {"regex": pattern})())

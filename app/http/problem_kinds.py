@@ -1,6 +1,6 @@
 """The kinds of problems, and the table from errors to them: the domains know nothing of HTTP.
 
-A kind names its `type`, `/problems/<slug>`, its status and title, and what helps.
+A kind names its `type`, `/problems/<slug>`, its status, title and remedy.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""The web server: uvicorn with limits on connections, and an end within the drain time whatever still runs.
+"""The web server: uvicorn with limits on connections, and a shutdown that never exceeds the drain time.
 
 SIGTERM and SIGINT begin the end. Requests in flight have most of the drain time to be answered, then jobs are
-put back into the queue and all rows are committed. What hangs all the same is ended hard: first by a thread,
-and if that cannot run because something keeps the interpreter lock, by the interpreter's own watchdog. A
-second signal ends at once. The process leaves without Python's own clean-up, which would wait for threads and
-run the destructors of the geometry kernel.
+put back into the queue and all rows are committed. If the process still hangs, a thread kills it; if that
+thread cannot run because something holds the interpreter lock, the interpreter's own watchdog does. A second
+signal ends at once. The process leaves without Python's own clean-up, which would wait for threads and run
+the destructors of the geometry kernel.
 """
 
 from __future__ import annotations
@@ -96,14 +96,14 @@ class Server(uvicorn.Server):
         threading.Thread(target=self._guard, name="end", daemon=True).start()
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Begin the end, or hurry it."""
+        """Begin the shutdown; a second signal ends the process at once."""
         self._is_signalled = True
         self._signals.put(sig)
         self.should_exit = True
         faulthandler.dump_traceback_later(self.drain_seconds + 1, exit=True)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Answer what is in flight, run the end of the lifespan, and leave if a signal was the cause."""
+        """Answer requests in flight, end the lifespan, and exit if a signal was the cause."""
         await super().shutdown(sockets)
         if self._is_signalled:
             if running := what_runs():
@@ -126,7 +126,7 @@ class Server(uvicorn.Server):
         self._leave(1)
 
     def _leave(self, code: int) -> NoReturn:
-        """Kill the family, write the log, and end this process."""
+        """Kill the child processes, write the log, and end this process."""
         family.kill()
         writer = threading.Thread(target=self.flush, daemon=True)  # standard error may take nothing any more
         writer.start()
@@ -135,7 +135,7 @@ class Server(uvicorn.Server):
 
 
 def what_runs() -> list[str]:
-    """Return what the server is busy with: requests, threads, processes."""
+    """Return the running requests, threads and processes."""
     count = family.use().count
     return [*what_is_in_flight(), *_busy_threads(), *([f"{count} processes"] if count else [])]
 
@@ -155,7 +155,7 @@ def _busy_threads() -> list[str]:
 
 @contextmanager
 def on_stop_signal(act: Callable[[], None]) -> Iterator[None]:
-    """Act at SIGINT and SIGTERM, then do what the server does; for use within its lifespan."""
+    """Act on SIGINT and SIGTERM before the server does; for use within its lifespan."""
     if threading.current_thread() is not threading.main_thread():  # a server in a thread gets no signals
         yield
         return

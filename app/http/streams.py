@@ -1,4 +1,4 @@
-"""Limits of open streams of events: each holds memory and a connection as long as its client likes."""
+"""Limits on open event streams: each holds memory and a connection until its client closes it."""
 
 from __future__ import annotations
 

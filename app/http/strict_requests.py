@@ -1,4 +1,4 @@
-"""Requirements for every request: a small body, valid JSON, a precondition on changes.
+"""Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
 `StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
 nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
@@ -107,7 +107,7 @@ class StrictRequest(Request):
         return self._body
 
     async def discard(self) -> None:
-        """Receive the body and forget it: a client that still sends may not read an answer yet."""
+        """Receive and discard the body, because a client that still sends may not read an answer yet."""
         async for _ in self._received():
             pass
 
@@ -200,7 +200,7 @@ class _Parameter:
         self._is_required = field.field_info.is_required()
 
     def value(self, received: Mapping[str, str], faults: list[object]) -> object:
-        """Return the value that was received, or its default; add what is wrong with it to the faults."""
+        """Return the value that was received, or its default; add its faults to the list."""
         if (text := received.get(self.alias)) is None:
             faults += [_missing(*self._place)] if self._is_required else ()
             return self._default
@@ -240,7 +240,7 @@ class PlainRoute(StrictRoute):
         return None
 
     async def _values(self, request: StrictRequest) -> dict[str, object]:
-        """Return what the endpoint takes.
+        """Return the arguments of the endpoint.
 
         Raises
         ------
@@ -354,7 +354,7 @@ async def _read(request: StrictRequest) -> object:
 
 
 async def _check_intricacy(request: StrictRequest) -> bool:
-    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn.
+    """Count what makes parsing expensive; a large body in pieces, so that other requests run.
 
     Returns whether a text may have U+0000.
     """

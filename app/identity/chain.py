@@ -1,7 +1,8 @@
 """The hash chain of the audit: each sealed row has the next number and the hash of the previous row.
 
-A hash is the SHA-256 of what a row says, its number and the hash before, as canonical JSON. Whoever changes,
-takes out or puts in a row has to write all that follow again, and then meets no hash that was exported.
+A hash is the SHA-256 of a row's content, its number and the previous hash, as canonical JSON. Anybody who
+changes, removes or inserts a row must rewrite all later rows, and their hashes then differ from an exported
+hash.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
 
 
 def _said(row: AuditRow) -> dict[str, object]:
-    """Return what a row says, by its columns."""
+    """Return the content of a row, by its columns."""
     return {name: getattr(row, name) for name in _SAID}
 
 
@@ -94,7 +95,7 @@ def head(session: Session) -> Link:
 
 
 def verify(session: Session, exported: str | None = None) -> ChainCheck:
-    """Walk along the chain to its first broken row, or to its end.
+    """Verify the chain up to its first broken row, or to its end.
 
     Parameters
     ----------
@@ -139,7 +140,7 @@ def _sealed(session: Session) -> Iterator[AuditRow]:
 
 
 def _fault(row: AuditRow, last: Link) -> str:
-    """Return what is wrong with a row behind a sound one; empty if nothing is."""
+    """Return the fault of a row that follows a sound row; empty without a fault."""
     seq, name = row.seq, f"row {row.seq} ({row.action} of {row.object} by {row.name}, {row.at})"
     if not isinstance(seq, int):
         return f"{name} was changed: its number is none"
@@ -161,7 +162,7 @@ def _is_text(row: AuditRow) -> bool:
 
 
 def waiting(session: Session) -> list[AuditRow]:
-    """Return the oldest rows that are not sealed, without those that hold what is not text.
+    """Return the oldest unsealed rows, without those whose values are not text.
 
     `verify` names these.
     """
@@ -181,7 +182,7 @@ def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
 
 
 def _unsealed(session: Session) -> list[dict[str, object]]:
-    """Return what the rows of `waiting` say; without the ORM, unless one of them is damaged."""
+    """Return the contents of the rows of `waiting`, without the ORM unless a row is damaged."""
     session.flush()
     try:
         rows = _UNSEALED.run(session, {"most": SOME})

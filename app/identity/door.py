@@ -1,7 +1,7 @@
 """Identify the sender of a request: by its key, or by the session of a browser.
 
-Until there is a principal, everybody is LOCAL; from then on keys are asked for, and that never ends. What was
-verified is trusted for `FRESH` seconds: so long a revoked key may live on another server.
+Before the first principal exists, everybody is LOCAL; from then on every request needs a key. A verified key
+is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ class Door:
         self.forget()
 
     def forget(self) -> None:
-        """Verify again whatever comes: something has changed."""
+        """Verify every key and session again, because something has changed."""
         self._by_key: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
-        """Return whether the service asks nobody for a key; nobody passes before that is read.
+        """Return whether the service needs no keys; no request passes before this is known.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Rate:
         self._counts: Counter[str] = Counter()
 
     def take(self, who: Principal, per_minute: float) -> None:
-        """Let a request through.
+        """Take a request from the bucket.
 
         Raises
         ------

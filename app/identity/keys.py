@@ -1,7 +1,7 @@
-"""Keys of the interface: `cw_<prefix>_<secret>`. The database has their SHA-256 alone.
+"""Keys of the interface: `cw_<prefix>_<secret>`. The database stores only their SHA-256.
 
-A secret has 256 random bits, so a fast hash keeps it: a slow one would only protect what can be guessed, and
-would let anybody keep the server busy.
+A secret has 256 random bits, so a fast hash is enough. A slow one protects only secrets that can be guessed,
+and would let anybody keep the server busy.
 """
 
 from __future__ import annotations

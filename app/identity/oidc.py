@@ -100,7 +100,7 @@ class Provider:
             The state is another, the code is not taken, or the token is not signed for this sign-in.
         """
         if not hmac.compare_digest(state.encode(), begun.state.encode()):
-            raise ProviderRefused("this sign-in was not begun in this browser: begin again")
+            raise ProviderRefused("this sign-in did not start in this browser: sign in again")
         sent = {
             "grant_type": "authorization_code",
             "code": code,

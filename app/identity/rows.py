@@ -31,7 +31,7 @@ def any_principal(session: Session) -> bool:
 
 
 def holder(session: Session, prefix: str, key: str) -> Guest | None:
-    """Return the owner of a key; None if the key is not valid, for whatever reason.
+    """Return the owner of a key; None if the key is not valid, for any reason.
 
     Whether there is such a prefix makes no difference in what is done.
     """

@@ -38,12 +38,12 @@ class Sealer:
         self._thread.start()
 
     def stop(self) -> None:
-        """Seal what is there, and end."""
+        """Seal the waiting rows, then stop."""
         self._stopping.set()
         self._thread.join()
 
     def run(self) -> int:
-        """Seal all rows that are there; return how many. It writes only if there are any."""
+        """Seal all waiting rows and return their number; write only if there are any."""
         total = 0
         while self._is_wanted() and (count := self._database.write(self._unit)):
             total += count

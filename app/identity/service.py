@@ -191,7 +191,7 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """End the life of a key, of one principal if that is named; of a revoked one nothing changes.
+        """Revoke a key, of one principal if that is named; a revoked key stays as it is.
 
         The keys that its principal has made by it end as well, but for the one by which it is revoked: so one
         changes from an old key to its successor. The key comes first in what is returned, then those others.
@@ -261,7 +261,7 @@ class Identity:
         self._write(lambda session: rows.end_session(session, digest(token)))
 
     def _write(self, unit: Callable[[Session], T]) -> T:
-        """Run a unit of work; whatever this server has verified before counts no longer."""
+        """Run a unit of work, then verify every key and session of this server again."""
         try:
             return self._database.write(unit)
         finally:

@@ -95,7 +95,7 @@ def admit(session: Session, limits: Limits) -> None:
 
 
 def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
-    """Refuse whoever has used all.
+    """Refuse a principal that has used up a limit.
 
     Raises
     ------
@@ -107,12 +107,12 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
-        raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)
+        raise LimitReached(f"{name} has used {amounts}; neither waiting nor deleting files frees it", None)
 
 
 @contextmanager
 def working_for(database: Database, principal: str | None) -> Iterator[None]:
-    """Act for a principal by its id, and note how long that takes; LOCAL where nobody is named."""
+    """Act for a principal by its id, LOCAL without one, and record the time that this takes."""
     if principal is None or principal in BUILT_IN:
         with acting_as(LOCAL):
             yield

@@ -124,7 +124,7 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 
 
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
-    """Return whether both versions measure the same by a name, in whatever units."""
+    """Return whether a name has the same kind of quantity in both versions, in any units."""
     one, other = before.units[name], after.units[name]
     return one == other or misfit(kind_of(one), unit(other), one) is None
 

@@ -117,7 +117,7 @@ def _written(parts: dict[str, object]) -> DesignImpact:
 
 
 def unusable(about: dict[str, object], absent: list[str]) -> DesignImpact:
-    """Return a design that uses what the catalogue does not have.
+    """Return a design that uses a version that the catalogue lacks.
 
     Neither it nor its upgrade can be calculated.
     """

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from templates.core.criteria.comparison import Verdict
+from templates.core.criteria.criterion import Criterion
+from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault
-from templates.core.judging.comparison import Verdict
-from templates.core.judging.criterion import Criterion
-from templates.core.judging.judgement import Judgement
 from templates.core.units.units import Value, registry, unit
 
 

@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{number}/impact`: which designs another version moves, and how."""
+"""`/templates/{id}/versions/{number}/impact`: which designs another version changes, and how."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The order of designs that a version moves, worst first; and of the verdicts of one design."""
+"""The order of the affected designs, worst first, and of the verdicts of one design."""
 
 from __future__ import annotations
 

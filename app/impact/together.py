@@ -1,7 +1,8 @@
 """Designs of one form calculated together: each is a row of the same array calls.
 
-What cannot be is left to `alone`: steps whose level follows from a tolerance, values that are measured on
-solids, iterations, inputs at several points. So is a call that refuses as a whole.
+`alone` calculates the other designs: those with steps whose level follows from a tolerance, values that are
+measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
+refused.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from app.designs.network import Block, Graph, Subject
 from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
+from templates.core.criteria.comparison import VERDICTS
 from templates.core.errors import Fault, TemplateError
-from templates.core.judging.comparison import WORST_FIRST
 from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 
@@ -54,17 +55,17 @@ class Together:
         if document.iterations:
             return None
         try:
-            net = DesignEngine.of(document, catalogues, varied)
+            engine = DesignEngine.of(document, catalogues, varied)
         except TemplateError:
             return None
-        graph = net.graph
+        graph = engine.graph
         blocks = graph.blocks.values()
         if any(_chooses_by_tolerance(one) or _is_incomplete(one) for one in blocks) or _is_measured(graph):
             return None
         outputs, parameters = tuple(_outputs(graph)), tuple(_parameters(graph))
         units = {str(reference): graph.unit_of(reference) for reference in (*outputs, *parameters)}
-        subjects = net.subjects(net.criteria())
-        return cls(net.design, outputs, parameters, subjects, units)
+        subjects = engine.subjects(engine.criteria())
+        return cls(engine.design, outputs, parameters, subjects, units)
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
         """Return the outcome of each row; None if they are calculated alone."""
@@ -117,7 +118,7 @@ class Together:
                 units=self.units,
                 judged={
                     name: JudgedCriterion.in_row(
-                        WORST_FIRST[int(codes[row])],
+                        VERDICTS[int(codes[row])],
                         self.subjects[name].criterion,
                         float(column.margin[row]),
                     )
@@ -163,7 +164,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 
 
 def _is_incomplete(block: Block) -> bool:
-    """Return whether a model lacks parameters, or nobody asks for any output of a step.
+    """Return whether a model lacks parameters, or no output of a step is requested.
 
     It is checked alone.
     """

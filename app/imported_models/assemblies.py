@@ -26,7 +26,7 @@ from cad.errors import GeometryError, UnreadableModel
 from cad.imported_models import Description, ProgramResult
 from cad.model import CadModel
 from cad.model_classes import description_of
-from templates.core.catalogue.loading import is_outside
+from templates.core.catalogue.modules import is_outside
 from templates.core.errors import UnknownTemplate
 
 LARGEST = 128 * 2**20
@@ -64,7 +64,7 @@ def described_assembly(
     for fixed, there in sources:
         if id in there.holds:
             raise UnreadableModel(
-                "cycle", f"{fixed.name}: {there.origin} is made of {id} itself; choose another"
+                "cycle", f"{fixed.name}: {there.origin} contains {id} itself; choose another part"
             )
         if there.sha not in files:
             files[there.sha] = store.read(there.sha)

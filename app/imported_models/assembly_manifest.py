@@ -156,7 +156,7 @@ def read(content: bytes) -> AssemblyManifest:
             f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
         )
         raise UnreadableModel(
-            "manifest", f"the manifest of the assembly is wrong: {'; '.join(wrong)}"
+            "manifest", f"the manifest of the assembly is not valid: {'; '.join(wrong)}"
         ) from None
 
 
@@ -176,5 +176,5 @@ def _number(name: str, text: str, wanted: str, most: float) -> float:
         raise ValueError(f"{name}: give a single quantity, such as 1.5 {wanted}")
     number = float(unit(wanted).from_si(typed.si))
     if not abs(number) <= most:
-        raise ValueError(f"{name}: {text[:60]} is beyond {most:g} {wanted}")
+        raise ValueError(f"{name}: {text[:60]} exceeds the limit of {most:g} {wanted}")
     return round(number, 9) + 0.0

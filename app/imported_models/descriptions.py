@@ -110,7 +110,7 @@ def described_creo(
     for one in described.parameters:
         if one.role and not shows(one, sizes):
             raise UnreadableModel(
-                "check", f"{one.name}: no {one.role} of {one.value:g} {one.unit} on the solid"
+                "check", f"{one.name}: the solid has no {one.role} of {one.value:g} {one.unit}"
             )
     return described
 
@@ -156,7 +156,7 @@ def _trials(
     context: JobContext,
     deadline: Deadline,
 ) -> dict[str, Role]:
-    """Return how lengths show on the solid: each is changed alone, and the sizes are compared."""
+    """Return how each length is measured on the solid: change it alone and compare the sizes."""
     before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
     lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
     for number, one in enumerate(lengths):

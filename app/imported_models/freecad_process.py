@@ -94,7 +94,7 @@ class FreeCadProcess:
         cancelled: threading.Event,
         seconds: float = math.inf,
     ) -> FreeCadAnswer:
-        """Have FreeCAD open the file again, set some parameters, and draw, in so many seconds at most.
+        """Have FreeCAD open the file again, set some parameters, and draw, within this number of seconds.
 
         Raises
         ------

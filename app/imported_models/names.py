@@ -18,7 +18,7 @@ LONGEST = 60
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Return if an imported model may have this id.
+    """Check that an imported model may have this id.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
         raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as main_cap")])
     snapshot = catalogues.snapshot
     if any(name == id for name, _ in (*snapshot.templates.quarantined, *snapshot.models.quarantined)):
-        raise ModelIdTaken(f"{id} is the id of a file of the team")
+        raise ModelIdTaken(f"{id} is the id of one of the team's files")
     if id in snapshot.templates.ids:
         raise ModelIdTaken(f"{id} is the id of a template")
     if any(

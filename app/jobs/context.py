@@ -53,12 +53,12 @@ class JobContext:
 
     @property
     def is_cancelled(self) -> bool:
-        """Return whether somebody cancelled the job, or the server stops."""
+        """Return whether the job was cancelled or the server is stopping."""
         return self._cancelled.is_set()
 
     @property
     def cancelled(self) -> threading.Event:
-        """Set once somebody has cancelled the job, or the server stops."""
+        """Set once the job is cancelled or the server stops."""
         return self._cancelled
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
@@ -80,7 +80,7 @@ class JobContext:
         )
 
     def quietly(self) -> Runner:
-        """Run functions of which nobody hears how far they are: they are many, and the job counts them."""
+        """Run many functions without reporting the progress of each; the job counts them."""
         return _Quietly(self._batch, self._limits, self._cancelled)
 
     def close(self) -> None:

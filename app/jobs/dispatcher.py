@@ -143,7 +143,7 @@ class Dispatcher:
         self._stopping.set()
 
     def stop(self, patience: float = 10.0) -> None:
-        """Kill what runs, put it back into the queue, and wait for the threads, at most for so long [s].
+        """Kill running jobs, put them back into the queue, and wait for the threads for this time [s].
 
         A thread that calculates by itself cannot be stopped: its job is put back at the next start.
         """
@@ -207,14 +207,14 @@ class Dispatcher:
         return self.kinds[kind].lane if kind in self.kinds else FAST
 
     def _lane(self, lane: str) -> Lane:
-        """Return a lane by its name; a kind that nobody registered waits in the fast one."""
+        """Return a lane by its name; jobs of an unregistered kind wait in the fast lane."""
         beside = {name: kind.lane for name, kind in self.kinds.items() if kind.lane != FAST}
         if lane == FAST:
             return Lane(tuple(beside))
         return Lane(tuple(name for name, its in beside.items() if its == lane), is_common=False)
 
     def _execute(self, job: Job) -> None:
-        """Run a claimed job to whatever end."""
+        """Run a claimed job until it ends in any way."""
         cancelled = self._running[job.id].cancelled
         if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
             cancelled.set()
@@ -269,7 +269,7 @@ class Dispatcher:
             self._fail(job, context, self._describe(error), crashes=crashes)
 
     def _lost(self, job: Job, context: JobContext, error: WorkerLost) -> None:
-        """Try again on another machine: that one has gone says little about the job, unless it goes on so."""
+        """Retry on another machine: only repeated losses of machines say something about the job."""
         losses = job.losses + 1
         logger.warning("Job %s (%s) was lost, time %d: %s", job.id, job.kind, losses, error)
         if losses < MAX_LOSSES:

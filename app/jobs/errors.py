@@ -5,7 +5,7 @@ JobError
  ├── JobFinished    the job has ended, so it cannot be cancelled
  ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
- ├── JobLost        the servers or workers that ran the job were lost, time after time
+ ├── JobLost        the servers or workers that ran the job were lost repeatedly
  ├── JobRests       raised by a handler: the job goes on later, others come first
  └── JobFailed      raised by a handler: the job ends with this error
 """

@@ -2,10 +2,10 @@
 
 The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
 its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a
-reader who sees a number sees all below it as well. A sequence does not promise that: its numbers precede the
-commits.
+reader who sees a number also sees all lower ones. A database sequence does not guarantee that, because it
+assigns numbers before the commit.
 
-The rows are the truth. What a subscriber is sent is a hint with its event at hand; see `Subscription`.
+The rows are authoritative. A subscriber receives a hint together with the event; see `Subscription`.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ class Events:
                 subscriber.send(event)
 
     def look(self, topics: Iterable[str] | None = None) -> None:
-        """Send what other servers have written of topics that somebody listens to, or of all of them.
+        """Send events that other servers wrote for topics with listeners, or for all topics.
 
         The newest page of rows is enough: subscribers read by themselves what they lack before it.
         """
@@ -188,7 +188,7 @@ class Events:
                     self.publish(*events_above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
-        """Return those of these topics, or of all, to which somebody listens here."""
+        """Return those of these topics, or of all, that have listeners on this server."""
         with self._lock:
             return set(self._topics) if topics is None else self._topics.keys() & set(topics)
 

@@ -78,7 +78,7 @@ class Leases:
                 self._dispatcher.interrupt(job.id, job.attempt)
 
     def reap(self) -> None:
-        """Queue again once what nobody has prolonged."""
+        """Queue jobs with expired leases again, once."""
         for job in self._database.write(self._reaped):
             logger.warning("job %s (%s) was left behind by its server, loss %d", job.id, job.kind, job.losses)
 

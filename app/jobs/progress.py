@@ -1,6 +1,6 @@
 """Progress of running jobs for other servers: stored in their rows, and read from there.
 
-Progress is not an event that is kept: only the latest counts, and it costs one small write now and then.
+Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ class ProgressKeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """End; what is not stored is not: who goes on with the job begins from zero."""
+        """Stop; progress that is not stored is lost, and a server that resumes the job begins from zero."""
         self._stopping.set()
         self._some.set()
         if self._thread.ident is not None:
             self._thread.join(_PATIENCE)
 
     def keep(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Have the progress of a job stored; see `app.jobs.context.Keep`."""
+        """Store the progress of a job; see `app.jobs.context.Keep`."""
         with self._lock:
             self._latest[job.id] = job, fraction, log
         self._some.set()
@@ -91,7 +91,7 @@ class ProgressFollower:
         self._shown: dict[str, tuple[int, float, str]] = {}  # by job: attempt, progress, text
 
     def look(self, hints: Iterable[str] | None = None) -> None:
-        """Read the rows of jobs that other servers hint at, or of all that somebody listens to."""
+        """Read the rows of jobs that other servers name, or of all jobs with listeners."""
         if hints is None:
             heard = self._events.heard()
         else:

@@ -197,7 +197,7 @@ def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> se
 
 
 def reap(session: Session) -> list[Job]:
-    """Queue again what nobody has prolonged in time, and count the loss; return these jobs."""
+    """Queue jobs with expired leases again, count the loss, and return these jobs."""
     repeatable(session)
     is_late = or_(JobRow.lease_until < present(), JobRow.lease_until.is_(None))
     late = select(JobRow.id).where(JobRow.state == "running", is_late).with_for_update(skip_locked=True)

@@ -42,7 +42,7 @@ def show_job(id: str, jobs: TheJobs) -> Job:
     dependencies=[needs("viewer", "admin")],
 )
 def cancel_job(id: str, jobs: TheJobs, client: TheClient) -> Job:
-    """Cancel a job that is queued or running; one that another client asked for too goes on for that."""
+    """Cancel a queued or running job; a job that another client also requested continues."""
     return jobs.cancel(id, client)
 
 

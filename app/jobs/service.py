@@ -91,7 +91,7 @@ class Jobs:
         self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
     def run_within(self, around: Callable[[Job], AbstractContextManager[object]]) -> None:
-        """Have each job run within a context of its own."""
+        """Run each job within a context of its own."""
         self._dispatcher.around = around
 
     def start(self, lanes: Mapping[str, int] | None = None) -> None:
@@ -218,20 +218,20 @@ class Jobs:
             return turns.count_queued(session, lane=lane) > 0
 
     def usual_seconds(self, kind: str) -> float:
-        """Return how long the latest jobs of a kind's lane took on average [s]."""
+        """Return the mean duration of the latest jobs in the lane of a kind [s]."""
         return self._dispatcher.durations.mean(self._dispatcher.lane(kind))
 
     def queued(self, session: Session) -> int:
-        """Return how many jobs wait."""
+        """Return the number of waiting jobs."""
         return turns.count_queued(session)
 
     def oldest_queued_age(self, session: Session) -> int:
-        """Return how long the oldest job has waited [s of operation]; 0 if none waits."""
+        """Return the waiting time of the oldest job [s of operation]; 0 if none waits."""
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
     def wake(self, kind: str | None = None) -> None:
-        """Have the queue looked at, by all threads or by those of a kind's lane."""
+        """Wake all threads of the queue, or those of a kind's lane."""
         self._dispatcher.wake(kind)
         self.events.tell([f"queue:{kind or ''}"])
 
@@ -241,7 +241,7 @@ class Jobs:
             return _existing(session, id)
 
     def problem(self, id: str | None) -> Problem | None:
-        """Return why a job failed or was cancelled; None if it was not, or if there is no job at all."""
+        """Return why a job failed or was cancelled; None otherwise, or without a job."""
         return None if id is None else self.get(id).problem
 
     def page(self, limit: int, before: str | None = None) -> list[Job]:
@@ -333,7 +333,7 @@ def _existing(session: Session, id: str) -> Job:
 
 
 def _administers() -> bool:
-    """Return whether an administrator acts, who ends jobs whoever waits for them."""
+    """Return whether an administrator acts, who may end any job."""
     who = acting()
     return who.id not in BUILT_IN and who.may("admin")
 

@@ -1,8 +1,8 @@
-"""The queue of jobs: which it still takes, and turns, by which clients alternate. All SQL about turns.
+"""The queue of jobs: its limits, and the turns by which clients alternate. All SQL about turns.
 
 A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
-run by turn, those of one turn by age. So a newcomer comes second, however many jobs of another client wait.
-Every lane has turns of its own. Every function runs in the transaction of its caller.
+run by turn, those of one turn by age. So a new client's job is second in line, however many jobs of another
+client wait. Every lane has turns of its own. Every function runs in the transaction of its caller.
 """
 
 from __future__ import annotations

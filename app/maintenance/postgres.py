@@ -50,7 +50,7 @@ def snapshot(url: str) -> Iterator[Snapshot]:
 
 
 def schema_of(url: str) -> str:
-    """Return the schema of a database; empty if it holds no tables at all.
+    """Return the schema of a database; empty if it has no tables.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def _run(name: str, url: str, options: list[str]) -> None:
 def _require_schema(connection: Connection) -> None:
     newest = known_schemas()[0]
     if not inspect(connection).has_table("alembic_version"):
-        raise CannotRun("The database is empty, or none of Crankwright's.")
+        raise CannotRun("The database is empty, or it does not belong to Crankwright.")
     schema = connection.scalar(text("SELECT version_num FROM alembic_version"))
     if schema != newest:
         raise CannotRun(f"The database has schema {schema}, this program {newest}: use that of the servers.")

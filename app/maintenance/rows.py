@@ -65,7 +65,7 @@ SENT = (("worksheet_version", IMPORTED_WORKSHEETS, "import"), ("imported_model",
 
 
 def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[NamedFile]:
-    """Yield the question and the answer of a job, of whatever kind, that keeps them as files."""
+    """Yield question and answer of a job of any kind that stores them as files."""
     if "body" not in payload:
         return
     yield NamedFile(payload["body"], None, id, "body")

@@ -1,7 +1,7 @@
 """Structured logs on standard error, as text or JSON lines, each with the id of the request behind it.
 
-Bodies, queries, cookies and keys are never logged. A thread of its own writes: a terminal that does not take
-the lines delays nobody, and what is beyond the room of the queue is dropped and counted.
+Bodies, queries, cookies and keys are never logged. A separate thread writes the lines, so a blocked terminal
+delays nobody. Lines that exceed the queue are dropped and counted.
 """
 
 from __future__ import annotations

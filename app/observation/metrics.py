@@ -1,7 +1,7 @@
 """Figures for Prometheus at `/metrics`: requests, jobs, commits, pools, failures, memory and processor time.
 
-To answer costs the same however many designs there are: of the database only the jobs that have not ended
-are counted, by an index.
+The cost of an answer does not depend on the number of designs: the only database query counts unfinished
+jobs, by an index.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class RequestFigures(Collector):
         registry.register(self)
 
     def add(self, route: str, method: str, status: int, seconds: float) -> None:
-        """Count an answer that took so long [s]."""
+        """Count an answer that took this time [s]."""
         row = self._rows.get((route, method, status))
         if row is None:
             row = self._rows[route, method, status] = _Row()

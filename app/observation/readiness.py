@@ -1,4 +1,4 @@
-"""`/readyz`: can the service do its work now? It writes, looks at free space, job processes and a file store.
+"""`/readyz`: whether database writes, free space, job processes and the file store allow work now.
 
 The answer takes the same time however many designs there are, and comes even if the writer hangs.
 """
@@ -92,7 +92,7 @@ class Files:
 
 
 def _look_at(writing: asyncio.Future[None]) -> None:
-    """Take the error of a write that ends after its test, which nobody else does."""
+    """Retrieve the error of a write that ends after its test, since no other caller does."""
     if not writing.cancelled():
         writing.exception()
 

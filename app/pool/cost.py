@@ -1,7 +1,7 @@
 """Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
-An order of magnitude, known before anything is calculated, and rather too high than too low: what is
-expensive leaves the server's process (see `app.pool.pool`).
+The estimate is an order of magnitude, known before the calculation, and rather too high than too low. An
+expensive calculation leaves the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import numpy as np
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
 from templates.core.language.body import Body
-from templates.core.language.climbing import reachable
-from templates.core.language.confirming import POLISHES
+from templates.core.language.confirmation import POLISHES
+from templates.core.language.level_choice import reachable
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.scan import SAMPLES
 from templates.core.language.spec import Curve, Table
@@ -61,7 +61,7 @@ def estimated_seconds(
 def array_seconds(
     cls: type[Template], level: str | None, points: int, outputs: Collection[str], calls: int, places: int
 ) -> float:
-    """Estimate the time of array calls for so many points [s], in SI, with nothing read, written or kept.
+    """Estimate the time of array calls for a number of points [s], in SI, with nothing read, written or kept.
 
     `places` are those of the longest curve, 1 if there is none.
     """
@@ -113,7 +113,7 @@ _quick: WeakKeyDictionary[type[Template], bool] = WeakKeyDictionary()
 
 
 def _bodies_seconds(cls: type[Template], points: int) -> float:
-    """Estimate the time of all bodies of a worksheet at so many points [s]; 0 if it is a file."""
+    """Estimate the time of all bodies of a worksheet at a number of points [s]; 0 if it is a file."""
     if cls.sheet is None:
         return 0.0
     if cls not in _costs:
@@ -161,7 +161,7 @@ def _levels(
 
 
 def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[tuple[str, ...], str]:
-    """Return the levels that answer the question these inputs ask, and the one that is taken by itself."""
+    """Return the levels that suit these inputs, and the default one."""
     if cls.ladder is Template.ladder:
         return cls.levels, cls.default_level
     probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}
@@ -192,7 +192,7 @@ def _wanted(cls: type[Template], outputs: Collection[str] | None) -> list[str]:
 def _evaluating(
     cls: type[Template], levels: Iterable[str], points: int, outputs: Collection[str] | None
 ) -> float:
-    """Estimate the time of one evaluation of so many points at these levels together [s]."""
+    """Estimate the time of one evaluation of a number of points at these levels together [s]."""
     wanted = _wanted(cls, outputs)
     plain = PER_CALL + PER_OUTPUT * len(wanted) + PER_VALUE * points * len(wanted)
     plain += _bodies_seconds(cls, points)
@@ -203,7 +203,7 @@ def _evaluating(
 
 
 def _level_seconds(cls: type[Template], level: str, points: int) -> float:
-    """Return the measured time of a level for so many points [s]; None if it was not measured."""
+    """Return the measured time of a level for a number of points [s]; None if it was not measured."""
     measured = accuracy(cls)
     cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
     single = float(cost.get("single", 0.0))

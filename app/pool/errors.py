@@ -1,7 +1,7 @@
 """Errors of the pool.
 
 QueueFull
- └── TooManyCalculations   as many wait as may
+ └── TooManyCalculations   the queue of calculations is full
 StepDeferred               an expensive step was not calculated in the time that its caller waits
 """
 

@@ -102,7 +102,7 @@ class CalculationPool:
     def submit(
         self, client: str, function: Callable[[*Ts], object], *args: *Ts, lane: Lane = "answers"
     ) -> Calculation:
-        """Have a function calculated when it is the client's turn.
+        """Calculate a function when it is the client's turn.
 
         Raises
         ------
@@ -164,7 +164,7 @@ class CalculationPool:
             thread.join()
 
     def _loser(self, client: str) -> Calculation | None:
-        """Return the calculation that must give way to one of this client; None if the queue is not full."""
+        """Return the calculation to remove in favour of this client; None if the queue is not full."""
         queue = [calculation for calculation in self._queue if calculation.lane == "answers"]
         if len(queue) - self._room("answers") < self.most_waiting:
             return None

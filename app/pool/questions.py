@@ -2,9 +2,9 @@
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
 solutions, explanations with their sensitivities, analyses of tolerances, single variants and the impact of
-versions. What was begun for a client who
-waits no longer goes on: the job takes it over and keeps the answer as an artifact, and the client comes back
-for it. A job is known by the key of its question, so an equal question finds its job, or the answer itself.
+versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
+artifact, which the client fetches later. A job is known by the key of its question, so an equal question finds
+its job, or the answer itself.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def json_form(asked: type[Q]) -> Form[Q]:
 
 
 def json_answer(model: type[M]) -> Callable[[Pieces], M]:
-    """Return what reads a kept answer that is a model."""
+    """Return the function that reads a stored answer as a model."""
     return lambda kept: model.model_validate_json(kept.joined())
 
 
@@ -120,7 +120,7 @@ class Kind(Generic[Q, A]):
 
     @property
     def all_failures(self) -> tuple[type[Exception], ...]:
-        """Return what a question of this kind brings about."""
+        """Return the exceptions that a question of this kind may raise."""
         return (*FAILURES, *self.failures)
 
     @property

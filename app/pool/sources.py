@@ -10,8 +10,8 @@ from pathlib import Path
 import templates
 from cad.imported_models import ImportedModel
 from cad.model_classes import class_of as class_of_description
-from templates.core.catalogue.finding import declared_in, declared_in_file
-from templates.core.catalogue.loading import load, origin
+from templates.core.catalogue.discovery import declared_in, declared_in_file
+from templates.core.catalogue.modules import load, origin
 from templates.core.language.template import Template
 from templates.core.sheets.sheet import from_text
 

@@ -50,7 +50,7 @@ class Steps:
         return PendingCalculations(self.pool, self.left)
 
     def drop(self, job: str) -> None:
-        """End what was left to a job that nobody has begun."""
+        """End a calculation that was left to a job which never began."""
         if begun := self.left.get(job):
             begun.close(failed=True)
 
@@ -260,7 +260,7 @@ class PendingCalculations:
 
 
 def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
-    """Return a digest of inputs as typed, the same in whatever order their parts are written."""
+    """Return a digest of inputs as typed, regardless of the order of their parts."""
     return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
 
 

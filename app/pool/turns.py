@@ -51,7 +51,7 @@ def first(waiting: Collection[W], running: Counter[str]) -> W | None:
 
 
 def last_of_the_greediest(waiting: Collection[W], newcomer: str) -> W | None:
-    """Return the one that gives way to a newcomer.
+    """Return the calculation to remove in favour of a new one.
 
     The latest of the client that has most waiting, if that is more.
 

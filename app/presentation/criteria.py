@@ -1,4 +1,4 @@
-"""Criteria in words, for pages and reports alike: what was compared, what is used, left, and missing.
+"""Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
 Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
 `app/web/verdict/criteria.js` writes the same while a user types; `tests/app/web` compares the two.
@@ -13,12 +13,13 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
+from templates.core.criteria.judgement import is_model
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 _ONE_NAME = re.compile(r"\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*")
-NOT_STATED = "the error of the calculation is not stated"
+UNKNOWN = "error unknown"
 
 
 class Amount(Protocol):
@@ -65,7 +66,7 @@ class JudgedCriterion(Protocol):
     @property
     def relative_error(self) -> float | None: ...  # noqa: D102
     @property
-    def error_stated(self) -> bool | None: ...  # noqa: D102
+    def error_known(self) -> bool | None: ...  # noqa: D102
     @property
     def utilisation(self) -> float | None: ...  # noqa: D102
     @property
@@ -77,6 +78,8 @@ class JudgedCriterion(Protocol):
     @property
     def reason(self) -> str | None: ...  # noqa: D102
     @property
+    def level(self) -> str | None: ...  # noqa: D102
+    @property
     def where(self) -> Mapping[str, object] | None: ...  # noqa: D102
     @property
     def points(self) -> int | None: ...  # noqa: D102
@@ -86,6 +89,8 @@ class JudgedCriterion(Protocol):
     def unverified(self) -> str | None: ...  # noqa: D102
     @property
     def waived(self) -> str | None: ...  # noqa: D102
+    @property
+    def truth(self) -> str | None: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -96,6 +101,7 @@ class Line:
     step: str  # the block whose value is judged; empty for none
     title: str
     verdict: str
+    tag: str
     verdict_words: str
     compared: str
     used: str
@@ -106,6 +112,7 @@ class Line:
     give: tuple[str, ...]
     remarks: tuple[str, ...]
     unverified: bool = False
+    is_open: bool = False
 
 
 def line(criterion: JudgedCriterion) -> Line:
@@ -115,7 +122,8 @@ def line(criterion: JudgedCriterion) -> Line:
         step=step_of(criterion),
         title=title(criterion),
         verdict=criterion.verdict,
-        verdict_words=WORDS[criterion.verdict],
+        tag=tag(criterion),
+        verdict_words=verdict_words(criterion),
         compared=compared(criterion),
         used="" if criterion.utilisation is None else numbers.share(criterion.utilisation),
         share=criterion.utilisation,
@@ -125,6 +133,7 @@ def line(criterion: JudgedCriterion) -> Line:
         give=tuple(criterion.give or ()),
         remarks=remarks(criterion),
         unverified=criterion.unverified is not None,
+        is_open=is_open(criterion),
     )
 
 
@@ -149,9 +158,33 @@ def step_of(criterion: JudgedCriterion) -> str:
 
 
 def title(criterion: JudgedCriterion) -> str:
-    """Return the subject of the criterion in words; of a value calculated within it, its own name."""
-    left = sides(criterion.require)[0]
-    return plain_name(left if _ONE_NAME.fullmatch(left) else criterion.name)
+    """Return the subject of the criterion in words; of a value calculated within it, its own name.
+
+    Where the subject does not hold the criterion's own name, that follows: another one may judge the same.
+    """
+    left, own = sides(criterion.require)[0], plain_name(Reference.parse(criterion.name).own_name)
+    subject = plain_name(left) if _ONE_NAME.fullmatch(left) else own
+    return subject if own in subject else f"{subject} ({own})"
+
+
+def verdict_words(criterion: JudgedCriterion) -> str:
+    """Return the verdict in words, with what is unknown about it."""
+    words = WORDS[criterion.verdict]
+    return f"{words}; {UNKNOWN}" if _is_error_unknown(criterion) else words
+
+
+def tag(criterion: JudgedCriterion) -> str:
+    """Return the classes of the verdict on a page."""
+    return f"{criterion.verdict} error-unknown" if _is_error_unknown(criterion) else criterion.verdict
+
+
+def is_open(criterion: JudgedCriterion) -> bool:
+    """Return whether a finer level may tell more."""
+    return criterion.verdict == "undecided" or (_is_error_unknown(criterion) and criterion.level is not None)
+
+
+def _is_error_unknown(criterion: JudgedCriterion) -> bool:
+    return criterion.verdict in ("met", "not_met") and not criterion.error_known
 
 
 def compared(criterion: JudgedCriterion) -> str:
@@ -202,8 +235,10 @@ def error(criterion: JudgedCriterion) -> str:
     """Return the error of the value, in words."""
     if criterion.value is None:
         return ""
-    if not criterion.error_stated or criterion.relative_error is None:
-        return "not stated"
+    if not criterion.error_known:
+        return "unknown"
+    if criterion.relative_error is None:
+        return "open"
     return f"± {numbers.percent(criterion.relative_error)}"
 
 
@@ -219,12 +254,12 @@ def missing(criterion: JudgedCriterion) -> str:
 def remarks(criterion: JudgedCriterion) -> tuple[str, ...]:
     """Return restrictions of the verdict.
 
-    An error not stated, a limit not verified, a waiver, the worst place.
+    An error not stated, a limit not verified, a waiver, the model, the worst place.
     """
     said = (
-        NOT_STATED if criterion.value is not None and not criterion.error_stated else "",
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
         f"waived: {criterion.waived}" if criterion.waived else "",
+        criterion.truth if criterion.truth and is_model(criterion.truth) else "",
         _where(criterion),
         criterion.reason if criterion.reason and missing(criterion) != criterion.reason else "",
     )

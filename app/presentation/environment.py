@@ -1,4 +1,4 @@
-"""Jinja as pages and reports use it: everything is escaped, formulas become MathML, numbers are aligned."""
+"""Jinja for pages and reports: it escapes everything, writes formulas as MathML and aligns numbers."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def capital(words: str) -> str:
 
 
 def isolated(text: object) -> Markup:
-    """Return a text of a user, escaped, in an element of its own that turns nothing beside it."""
+    """Return a user's text, escaped, in an element that isolates its writing direction."""
     return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
 
 

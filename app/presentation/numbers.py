@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
-from templates.core.paper.mathml import unit_symbol
+from templates.core.units.units import unit_symbol
 
 DIGITS = 5
 LARGEST_PLAIN = 1e6  # from here on with a power of ten
@@ -120,7 +120,7 @@ def _list(values: list[object]) -> str:
 
 
 def _remark(values: object) -> str:
-    """Return how many values a long list has, and where the least and the largest are."""
+    """Return the length of a long list, and its smallest and largest values with their positions."""
     if not isinstance(values, list) or size(values) <= FEW:
         return ""
     ends = extremes(values)

@@ -1,6 +1,6 @@
 """Systems of units for display: `?units=us` asks for answers in inches and pounds instead of as declared.
 
-Values are calculated in SI whatever is shown; what was typed is never converted.
+All calculations are in SI, whatever units are shown. Typed values are never converted.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from app.solids import measures, rows
 from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.solids.schemas.models import Measurements
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.paper.verdicts import checks
 

@@ -172,7 +172,7 @@ def _rows(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _most(table: object, length: int) -> list[int]:
-    """Return which rows, counted from 1, have the largest numbers, in their order.
+    """Return the rows with the largest numbers, counted from 1, in their order.
 
     None of what is no table.
     """

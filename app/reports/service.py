@@ -1,7 +1,7 @@
 """Reports: a revision gathered into one report, and the jobs that draw its pictures.
 
-A revision's report is the same each time; only files that jobs write when first asked for (pictures, the
-drawing) may come later, and the report says so.
+The report of a revision never changes. Only pictures and the drawing, which jobs make on first request, may
+come later; the report then says so.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from app.presentation import numbers
 from app.reports.cells import Cell, cell, flat, in_si, typed
 from app.reports.content import Formula, Identity, Line, Rule, Step, StepWarning
 from app.reports.plots import plots_of
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.spec import Formula as DeclaredFormula
 from templates.core.language.spec import Input, Profile

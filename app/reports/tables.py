@@ -176,7 +176,7 @@ def _single(row: Row) -> tuple[Value, ...]:
 
 
 def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
-    """Return arrays side by side: name, unit, values; with several axes, one column for each place."""
+    """Write arrays side by side: name, unit, values; with several axes, one column for each index."""
     columns: list[Column] = []
     for row in arrays:
         assert isinstance(row.value, list), "an array"
@@ -209,7 +209,7 @@ def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
 
 
 def _sheet_name(block: str, taken: Sequence[str]) -> str:
-    """Return a name that spreadsheets allow, and that no other sheet has, whatever its capitals."""
+    """Return a valid sheet name that differs from all others, regardless of case."""
     there = {name.lower() for name in taken}
     plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 4]
     numbered = chain([plain], (f"{plain} {i}" for i in count(2)))

@@ -1,8 +1,8 @@
 """Typeset a report as PDF by Typst. Worker processes import this module, so it imports little.
 
 The typesetter gets a fixed document, `report.typ`, and the report as data. Nothing that a user wrote is ever
-read as markup: texts come from the data as strings, formulas as MathML whose elements the document knows.
-Its letters are those that come with Typst; the system's serve only what these lack, such as other alphabets.
+read as markup: texts come from the data as strings, formulas as MathML whose elements the document knows. The
+fonts come with Typst; fonts of the system serve only for characters that these lack, such as other alphabets.
 """
 
 from __future__ import annotations

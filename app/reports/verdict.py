@@ -7,6 +7,7 @@ from app.presentation.criteria import Line, headline_of, line, tone
 from app.reports.cells import clean
 from app.reports.content import Criterion, ReportVerdict
 from app.schemas import criteria as schemas
+from templates.core.criteria.judgement import is_model
 
 
 def judged(revision: RevisionWorksheet) -> ReportVerdict:
@@ -43,7 +44,8 @@ def _where(one: Line) -> str:
 
 def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
     """Return a criterion as a row of the report."""
-    basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", criterion.truth)))
+    truth = None if is_model(criterion.truth) else criterion.truth  # a remark names the model
+    basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(
         words=clean(_where(one)),

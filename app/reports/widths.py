@@ -1,9 +1,9 @@
 """Upper bounds of the widths of formulas on paper, so that the typesetter measures only what may be too wide.
 
 To see whether a formula fits its line, the typesetter sets it once to measure it and once to print it. A
-bound needs no setting: every sign counts with at least the widest advance of its sort in New Computer Modern
-Math, every operator with the widest space on both sides. Lengths are in em. A sign that is not known here
-may come from any font of the system; then there is no bound, and the formula is measured.
+bound needs no typesetting: every character counts with at least the widest advance of its class in New
+Computer Modern Math, every operator with the widest space on both sides. Lengths are in em. An unknown
+character may come from any system font; then there is no bound, and the typesetter measures the formula.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files of the store that no row refers to: left over by deleted builds, or by a server that was killed."""
+"""Files of the store that no row refers to: left by deleted builds, or by a server that was killed."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def delete_events(session: Session, kept: float, most: int) -> int:
 
 
 def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:
-    """Return some of the builds that no revision uses and nobody has wanted for this long [s], by key."""
+    """Return some builds that no revision uses and nobody requested for this long [s], by key."""
     unwanted = select(BuildRow.key).where(BuildRow.key > after, _is_unwanted(session, kept))
     return list(session.scalars(unwanted.order_by(BuildRow.key).limit(most)))
 

@@ -52,7 +52,7 @@ class Retention:
         self._thread.join()
 
     def run(self) -> dict[str, int]:
-        """Delete one round of what is due; return how many of each kind were deleted."""
+        """Delete one round of expired data; return the number deleted of each kind."""
         counts = {
             "keys": self._repeat(partial(rows.delete_keys, kept=self._keys, most=SOME_ROWS)),
             "events": self._repeat(partial(rows.delete_events, kept=self._events, most=SOME_ROWS)),

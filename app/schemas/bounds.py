@@ -1,6 +1,6 @@
 """JSON objects with a bounded number of names, so that a large wrong object gives few errors.
 
-Pydantic looks at every entry of an object before it counts them, and describes each that is wrong.
+Pydantic validates every entry of an object before it counts the entries, and reports each invalid one.
 """
 
 from __future__ import annotations

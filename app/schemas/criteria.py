@@ -9,7 +9,10 @@ from pydantic import Field
 from app.schemas.answers import Answer, Measured, Quantity, Shown
 
 Word = Literal["met", "not_met", "undecided", "not_checked"]
-"""`undecided`: the limit lies within the error of the value; `not_checked`: value or limit is missing."""
+"""The verdict on the value itself, unless the limit lies within its error as far as that is known.
+
+`undecided`: it does; `not_checked`: value or limit is missing.
+"""
 
 
 class Band(Measured):
@@ -33,7 +36,10 @@ class Criterion(Answer):
     limit: Quantity | None = None
     band: Band | None = Field(None, description="of the value; absent where its error is not known")
     relative_error: float | None = None
-    error_stated: bool = Field(True, description="whether the error of the model was measured at all")
+    error_known: bool = Field(
+        True, description="whether every contribution to its error is known; if not, `met` confirms nothing"
+    )
+    error_stated: bool = Field(True, description="the same as `error_known`")
     utilisation: float | None = Field(None, description="above 1 it is not met; none of a temperature")
     margin: Quantity | None = Field(None, description="positive is safe; of a temperature in K")
     needs: float | None = Field(None, description="the relative error that would decide")
@@ -57,6 +63,11 @@ class Verdict(Answer):
 
     verdict: Word
     counts: dict[str, int]
-    governing: str | None = Field(None, description="the first criterion that was checked, worst first")
+    error_unknown: int = Field(0, description="criteria that are met, with an unknown error")
+    governing: str | None = Field(
+        None,
+        description="the first criterion that was checked, worst first; "
+        "one met by a limit fixed in its template only if no limit of its value is missing",
+    )
     headline: str = Field(description="such as `3 met, 1 undecided, 2 not checked`")
-    green: bool = Field(description="all are met, every error of a model is stated, nothing is unverified")
+    green: bool = Field(description="all are met, every error is known, nothing is unverified")

@@ -1,4 +1,4 @@
-"""A pasted table, and what becomes of its columns in the fields of a form."""
+"""A pasted table, and how its columns fill the fields of a form."""
 
 from __future__ import annotations
 
@@ -36,6 +36,7 @@ class PastedTable(Bounded):
     model_config = _STRICT
 
     text: str
+    file: str = Field("", description="a file in base64, which is read in place of the text")
     fields: list[TableField] = Field(max_length=200)
     columns: list[ChosenColumn] | None = Field(None, max_length=32, description="null for a proposal")
     offset: str = Field("", max_length=100, description="added to the angles, such as `10 deg`")
@@ -56,5 +57,8 @@ class ReadTable(Answer):
     first: list[list[float]] = Field(description="the first rows, as they are taken")
     rows: int
     notes: list[str] = []
+    assumed: list[str] = Field(
+        [], description="what was assumed: the decimal mark, cycles that were averaged"
+    )
     faults: list[str] = []
     texts: dict[str, str] = Field({}, description="by field; none while something is wrong")

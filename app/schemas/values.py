@@ -1,6 +1,6 @@
 """Input values in the description of the interface.
 
-Only its form: which units fit, and which names a choice has, is in the schema of each template and model.
+It describes only the form. The schema of each template and model says which units and options are valid.
 """
 
 from __future__ import annotations

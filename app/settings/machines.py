@@ -1,6 +1,6 @@
 """Settings of the machines: CRANKWRIGHT_ENGINE chooses where jobs run; export of traces.
 
-What Dask sends is pickle, so whoever can connect can run code: beyond this machine, TLS proves who connects.
+Dask sends pickles, so anybody who can connect can run code. Beyond this machine, TLS authenticates the peers.
 """
 
 from __future__ import annotations
@@ -38,9 +38,7 @@ def check_engine(engine: str) -> str:
         return engine
     scheme, host = _scheme_and_host(engine)
     if scheme == "tcp" and not is_loopback(host):
-        raise ValueError(
-            f"{engine} would carry jobs beyond this machine without TLS: use tls://, with {FILES}"
-        )
+        raise ValueError(f"{engine} would send jobs to other machines without TLS: use tls://, with {FILES}")
     if not is_installed():
         raise ValueError(f"{engine} needs Dask, and {TEAM}")
     return engine
@@ -67,7 +65,7 @@ def check_collector(url: str | None) -> str | None:
     except ValueError:  # of a port that is not a number
         is_address = False
     if not is_address or parts.query or parts.fragment or parts.username:
-        raise ValueError(f"traces are sent to an address without user or query, such as {COLLECTOR}")
+        raise ValueError(f"give an address without user or query for traces, such as {COLLECTOR}")
     if not has_traces():
         raise ValueError(f"traces need OpenTelemetry, and {TRACES}")
     return url
@@ -102,7 +100,7 @@ def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
         There is none.
     """
     if not any(lanes.values()):
-        raise ValueError('a worker needs at least one place, such as {"geometry": 1}')
+        raise ValueError('a worker needs at least one slot, such as {"geometry": 1}')
     return lanes
 
 

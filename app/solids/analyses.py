@@ -26,7 +26,7 @@ from cad.analysis.kinds import BORE_COMPLIANCE, SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 
 ANALYSIS = "analysis"
 

@@ -94,7 +94,7 @@ def is_stored(outputs: Outputs, output: str, store: Artifacts) -> bool:
 
 
 def bore_of(shape: CadModel) -> BorePlace:
-    """Return where the split bore of a model is.
+    """Return the position of a model's split bore.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def bore_of(shape: CadModel) -> BorePlace:
 
 
 def shaft_of(shape: CadModel) -> Shaft:
-    """Return where a model is held and loaded.
+    """Return the planes at which a model is held and loaded.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def shaft_of(shape: CadModel) -> Shaft:
 
 
 def throw_of(shape: CadModel, question: Question) -> Crank | None:
-    """Return where pin and fillets are, for an analysis that has to know; None for others.
+    """Return the positions of pin and fillets if the analysis needs them, else None.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     whole = shaft_of_throws(shape)
     sizes = shape.throw_sizes() if whole is None else sizes_of_throw(whole)
     if sizes is None and whole is not None:
-        raise AnalysisError("no_throw", f"{UNIT_LOADS} does not know split pins: give pin_split 0")
+        raise AnalysisError("no_throw", f"{UNIT_LOADS} does not support split pins: give pin_split 0")
     if sizes is None:
         raise AnalysisError("no_throw", f"{shape.id} is not one throw of a crank")
     return sizes

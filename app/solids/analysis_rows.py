@@ -49,7 +49,7 @@ def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str,
 
 
 def stresses(session: Session, build: str, question: Question) -> Outputs:
-    """Return the stored stresses of a build, whatever level was asked for.
+    """Return the stored stresses of a build, at any level.
 
     Their meshes follow from the stress.
     """

@@ -1,7 +1,7 @@
 """Builds, made in a worker process and recorded with their STEP files; other files only when asked for.
 
-A file that a row names and that is missing or damaged is made again: equal rows give equal bytes, so the hash
-in the row proves it.
+If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
+the row verifies the result.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from cad.regenerate import (
     regenerate_shape,
 )
 from cad.stamp import takes_stamp
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.progress import report
 
 logger = logging.getLogger(__name__)

@@ -26,7 +26,7 @@ from cad.model import CadModel
 from cad.regenerate import as_text, build_key
 from cad.stamp import is_copy
 from cad.statements import UNITS, Value, compared, is_validated, read_statements
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError
 
 BUILD = "build"

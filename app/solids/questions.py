@@ -1,7 +1,7 @@
 """Finite-element analyses of a solid, and the cache key of each result.
 
-For the REST interface and for relations of designs. Which analyses exist stands in `cad.analysis.kinds`; that
-module does not import the kernel that computes them.
+For the REST interface and for relations of designs. `cad.analysis.kinds` lists the analyses; it does not
+import the kernel that computes them.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class Question:
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
 
     def whatever_level(self) -> Question:
-        """Return the same of stress, whose mesh is refined until it settles; under 1 N·m."""
+        """Return the question without level, under 1 N·m: a stress refines its own mesh."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
@@ -225,7 +225,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
         detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 1 is; {cls.id} is not one"
         return Fault("model", "no_throws", detail)
     detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
-    return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")
+    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses one throw: {detail}")
 
 
 def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:

@@ -1,7 +1,7 @@
 """All SQL of builds and their artifacts, and the ages of unused builds.
 
-A build that no revision uses is deleted after a time, see `app.retention`. Whoever wants a build renews its
-age in the unit of work that counts on it, or learns there that it is gone.
+A build that no revision uses is deleted after a time, see `app.retention`. A caller that needs a build renews
+its age in the unit of work that relies on it, or learns there that it was deleted.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from app.solids import rows
 from app.storage.errors import CannotRebuild, NotFound
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, build_key, made_by
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError, UnknownTemplate
 
 OLDER = "an older version of this program"

@@ -64,7 +64,7 @@ class Artifacts(Protocol):
         ...
 
     def fetch(self, sha: str) -> Path:
-        """Return where the verified bytes lie; raises ArtifactMissing, ArtifactDamaged."""
+        """Return the path of the verified bytes; raises ArtifactMissing, ArtifactDamaged."""
         ...
 
     def read(self, sha: str) -> bytes:
@@ -104,7 +104,7 @@ class Artifacts(Protocol):
         ...
 
     def probe(self) -> None:
-        """Return if the store answers; raises ArtifactsUnreachable."""
+        """Check that the store answers; raises ArtifactsUnreachable."""
         ...
 
 
@@ -248,7 +248,7 @@ class ArtifactStore:
         sync_folder(self.folder)
 
     def probe(self) -> None:
-        """Return if the folder is there; raises ArtifactsUnreachable."""
+        """Check that the folder is there; raises ArtifactsUnreachable."""
         try:
             self.folder.stat()
         except OSError as error:
@@ -278,7 +278,7 @@ class ArtifactStore:
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
-        """Set aside what is not a file and has taken the place of one, such as a folder."""
+        """Set aside an object that is not a file but has the name of one, such as a folder."""
         if target.is_dir() and not target.is_symlink():
             aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
             aside.parent.mkdir(exist_ok=True)
@@ -314,7 +314,7 @@ class ArtifactStore:
 
 
 def require_name(sha: str) -> None:
-    """Return if this is a hash: names come from URLs, and any other could lead out of the store.
+    """Check that this is a hash: names come from URLs, and any other could lead out of the store.
 
     Raises
     ------

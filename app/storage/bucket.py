@@ -1,12 +1,12 @@
 """Artifacts in a bucket of S3, served from verified copies on this machine.
 
-In the bucket lie `<sha>`, the files; `database`, whose files they are; `sweeps`, who collected them last;
-`quarantine/<sha>.<tag>`, copies of files with other bytes than their name says; `discarded/<sha>`, files that
-no row named, until the next sweep.
+The bucket holds `<sha>`, the files; `database`, the identity of their database; `sweeps`, the last
+collections; `quarantine/<sha>.<tag>`, copies of files with other bytes than their name says;
+`discarded/<sha>`, files that no row named, until the next sweep.
 
-What is trusted: a copy, once its bytes were hashed, as long as inode, size and times stay (`ArtifactStore`);
-an object, once its bytes were hashed or sent by this process, as long as its tag stays, which changes with
-its bytes.
+A copy is trusted once its bytes have been hashed, as long as its inode, size and times do not change
+(`ArtifactStore`). An object is trusted once this process has hashed or sent its bytes, as long as its ETag
+does not change.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ class BucketStore:
         self._bucket.replace(name, text.encode())
 
     def probe(self) -> None:
-        """Return if the bucket answers; raises ArtifactsUnreachable."""
+        """Check that the bucket answers; raises ArtifactsUnreachable."""
         self._bucket.probe()
 
     def _download(self, sha: str) -> bytes:

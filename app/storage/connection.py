@@ -39,7 +39,7 @@ def opened_database(
 
 
 def require_answer(settings: Settings) -> None:
-    """Return if the settings fit together and a shared database takes connections; a file needs neither.
+    """Check that the settings fit together and a shared database takes connections; a file needs neither.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def require_answer(settings: Settings) -> None:
 
 
 def require_connection(url: str) -> None:
-    """Return if a URL names a file, or a database that takes connections.
+    """Check that a URL names a file, or a database that takes connections.
 
     Raises
     ------
@@ -80,14 +80,14 @@ def require_connection(url: str) -> None:
     except DBAPIError as error:
         reason = str(error.orig).strip().partition("\n")[0]
         raise DatabaseUnavailable(
-            f"CRANKWRIGHT_DATABASE_URL does not lead to a database ({reason})"
+            f"CRANKWRIGHT_DATABASE_URL does not point to a database ({reason})"
         ) from error
     finally:
         engine.dispose()
 
 
 def require_database(url: str) -> None:
-    """Return if a URL names a kind of database that there is; raises NotForTeams."""
+    """Check that a URL names a kind of database that there is; raises NotForTeams."""
     try:
         backend = make_url(url).drivername.partition("+")[0]
     except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted

@@ -1,8 +1,8 @@
 """Detect a copy of the database that shares the file store: neither may delete the other's files.
 
-A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so that
-does not tell copies apart. What each collection leaves behind does: a number chosen at random, in the
-database and in the store. A database that finds a number there which is not its own has a copy that collects.
+A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so the
+identity does not distinguish copies. A random number does, which each collection writes to the database and
+to the store. A database that finds a number there which is not its own has a copy that collects.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _chosen(session: Session, mark: _Mark | None, number: int) -> bool:
 
 
 def _mark(store: Artifacts) -> _Mark | None:
-    """Return the mark in the store, if it has one; what nobody can read counts as a copy's."""
+    """Return the mark in the store, if it has one; an unreadable mark counts as that of a copy."""
     text = store.read_note(NOTE)
     if text is None:
         return None

@@ -1,6 +1,6 @@
 """Files written whole and durably: no reader sees half of one, and a crash of the machine loses none.
 
-Two locks keep what removes a file apart from what puts one, in one process or among several.
+Two locks separate the removal of a file from its creation, within one process and among several.
 """
 
 from __future__ import annotations

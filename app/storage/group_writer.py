@@ -1,9 +1,9 @@
 """The writer of SQLite: one thread commits all waiting units of work in one transaction.
 
 SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
-in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+in one transaction needs one sync for all of them, and no writer ever finds the database locked.
 
-The file is watched while it is in use: once damage has shown, nothing is written any more.
+The writer watches for damage of the file, and writes nothing more once it has found any.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ class Watch:
         self.damage: DatabaseDamaged | None = None
 
     def refuse(self) -> None:
-        """Return if no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
+        """Check that no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
         if self.damage is not None:
             raise self._again(self.damage)
         self.require_file()
 
     def require_file(self) -> None:
-        """Return if the file is still that of the start: SQLite would make an empty one in its place."""
+        """Check that the file is still that of the start: SQLite would make an empty one in its place."""
         if self._path is None or self._file is None:
             return
         with suppress(OSError):
@@ -61,7 +61,7 @@ class Watch:
         raise self._named(DatabaseDamaged(str(self._path), [lost]))
 
     def raise_if_damage(self, error: BaseException | None) -> None:
-        """Return unless an error says that the database is damaged; raises DatabaseDamaged."""
+        """Raise DatabaseDamaged if an error says that the database is damaged."""
         if error is not None and is_damage(error):
             raise self._named(error) from error
 

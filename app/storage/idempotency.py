@@ -1,8 +1,8 @@
 """Idempotent requests: a repeated Idempotency-Key makes one change only.
 
-The key is kept in the transaction of the change itself, so that after a crash a repeated request finds
-either the change or nothing. Where several servers share a database it is inserted before anything else: of
-two requests that they carry out at the same time, the second waits there for the first.
+The key is kept in the transaction of the change itself, so that after a crash a repeated request finds either
+the change or nothing. Where several servers share a database it is inserted before anything else: the second
+of two simultaneous requests waits there for the first.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Check that a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
 
-SQLite keeps no checksums. A page that was overwritten shows by a broken tree, an index that disagrees with
-its table, or a text that is not JSON; a changed digit inside a text does not show.
+SQLite keeps no checksums. An overwritten page appears as a broken tree, an index that disagrees with its
+table, or a text that is not JSON. A changed digit inside a text cannot be detected.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _one_at_a_time = threading.Lock()
 
 
 def refuse_damage(url: str) -> None:
-    """Return if a database is whole, or new, or none of SQLite's.
+    """Check that a database is whole, or new, or none of SQLite's.
 
     The time is proportional to its size, some seconds for a gigabyte; an unchanged file is read once.
 
@@ -86,7 +86,7 @@ def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
 
 
 def is_damage(error: BaseException) -> bool:
-    """Return whether an error says that the database is not as it was written."""
+    """Return whether an error means that the database is damaged."""
     cause = error.orig if isinstance(error, DBAPIError) else error
     if isinstance(cause, sqlite3.Error):
         code = getattr(cause, "sqlite_errorcode", 0) or 0

@@ -12,7 +12,7 @@ from app.storage.database import Database
 
 
 def lock(session: Session, name: str) -> None:
-    """Let units of work that lock the same name run one after another, whatever servers they run on.
+    """Serialise units of work that lock the same name, on all servers.
 
     It holds until the end of the transaction. SQLite runs one unit at a time anyway.
     """

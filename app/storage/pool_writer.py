@@ -1,7 +1,7 @@
 """The writer of PostgreSQL: every unit of work in a transaction and on a connection of its own.
 
-PostgreSQL groups the syncs of simultaneous commits by itself. Groups of ours were 2.4 times slower there, and
-those of several servers could lock each other out (docs/decisions/049-two-writers.md).
+PostgreSQL groups the syncs of simultaneous commits by itself. Grouped commits were 2.4 times slower there,
+and the groups of several servers could deadlock (docs/decisions/049-two-writers.md).
 """
 
 from __future__ import annotations

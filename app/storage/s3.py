@@ -126,7 +126,7 @@ class Bucket:
                 yield seen["path"], Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
 
     def probe(self) -> None:
-        """Return if the bucket is there and can be read: it says that it has no object of a certain name."""
+        """Check that the bucket is there and can be read: it says that it has no object of a certain name."""
         with self._asked("probe"):
             obstore.get(self._questions, _PROBE)
 
@@ -182,7 +182,7 @@ def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConf
 
 
 def _retries(seconds: float) -> RetryConfig:
-    """Return options of retries: no failure is tried again that came after so long [s], as silence does."""
+    """Return retry options: a request that failed after this time [s], such as a time-out, is not retried."""
     return {
         "max_retries": 2,
         "retry_timeout": timedelta(seconds=seconds),

@@ -115,7 +115,9 @@ def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
     except ArtifactsUnreachable as error:
         raise _refused(f"{where}: {error.reason}. {_remedy(error.reason)}") from None
     except Exception as error:  # the client refuses the name, the address or the environment
-        raise _refused(f"{where} is refused by the client ({type(error).__name__}); write {FORMS}") from None
+        raise _refused(
+            f"{where} was refused by the S3 client ({type(error).__name__}); write {FORMS}"
+        ) from None
     return bucket
 
 

@@ -4,7 +4,7 @@ At every execution SQLAlchemy looks up the compiled statement, prepares each val
 takes several times as long as SQLite itself. On SQLite a `Statement` hands its text and its values to the
 driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
 
-Upserts are rows that several servers may insert at the same time, without reading first.
+An upsert writes a row that several servers may insert at the same time, without reading it first.
 """
 
 from __future__ import annotations

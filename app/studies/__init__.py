@@ -1,1 +1,1 @@
-"""Studies: many rows of one design, calculated in chunks that survive a crash, read and chosen from."""
+"""Studies: many rows of one design, calculated in chunks that survive a crash."""

@@ -1,4 +1,4 @@
-"""Arrays as bytes: an `.npz` whose bytes follow from its contents alone, whatever the date."""
+"""Arrays as bytes: an `.npz` file whose bytes depend only on its contents, not on the date."""
 
 from __future__ import annotations
 

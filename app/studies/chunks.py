@@ -78,7 +78,7 @@ def called(
 ) -> Table:
     """Return the table of some rows, shape (N, d); without `measures`, with those of the design itself."""
     values = {**placed(ready, rows), **(tried(ready, len(rows)) if measures is None else measures)}
-    return ready.net(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
+    return ready.engine(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
 
 
 def tried(ready: TaskState, count: int) -> dict[Reference, Array]:

@@ -16,7 +16,7 @@ from app.studies.sensitivities import Shares, sensitivities
 from app.studies.task import read_body
 from app.studies.variant_design import DesignFactory
 from templates.core.arrays import Integers
-from templates.core.judging.comparison import MET
+from templates.core.criteria.comparison import is_met
 
 
 class StudyConclusion:
@@ -77,8 +77,8 @@ def _shares_met(run: Run, stored: StoredRows, worst: AnyArray) -> dict[str, obje
     """Return the share of the rows that meet all criteria, and each of them; nothing where there are none."""
     if not run.plan.required:
         return {}
-    shares = {name: float(np.mean(stored.codes(name) == MET)) for name in run.plan.required}
-    return {"share": float(np.mean(worst == MET)), "shares": shares}
+    shares = {name: float(np.mean(is_met(stored.codes(name)))) for name in run.plan.required}
+    return {"share": float(np.mean(is_met(worst))), "shares": shares}
 
 
 def _feasible(

@@ -1,7 +1,7 @@
 """Estimate the processor time of a study from a few rows, calculated before it is accepted.
 
-The tables of levels know neither criteria nor a heat balance. The size of chunks still follows from them: a
-measured one would make equal studies unequal.
+The cost tables of levels include neither criteria nor a heat balance. The chunk size still comes from them,
+because a measured size would make equal studies unequal.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Pace:
     row: float
 
     def seconds(self, rows: int, calls: int = 0) -> float:
-        """Return the time of so many rows in so many calls, by default in as few as possible [s]."""
+        """Return the time of this number of rows in a number of calls, by default as few as possible [s]."""
         return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
 
 
@@ -44,7 +44,7 @@ def estimated(
     levels: Levels,
     confirm: Levels | None,
 ) -> float:
-    """Return the processor time of a study of so many rows [s]."""
+    """Return the processor time of a study of this number of rows [s]."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace

@@ -15,8 +15,8 @@ from app.presentation.units import System, shown_unit, shown_value
 from app.studies.archive import AnyArray, write_each
 from app.studies.schemas import StudyRow
 from app.studies.views import RowList
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, VERDICTS
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.judging.comparison import WORST_FIRST
 
 MOST_XLSX = 20_000  # rows of a sheet: a spreadsheet program takes a million, but not gladly
 SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sorted ones lie in all chunks
@@ -25,9 +25,9 @@ SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sort
 def heads(listing: RowList, system: System) -> list[list[str]]:
     """Return the two rows above the numbers: names, then units."""
     criteria = listing.plan.criteria
-    names = ["row", *listing.names, *criteria, "verdict", "level", "reason"]
+    names = ["row", *listing.names, *criteria, "verdict", "error unknown", "level", "reason"]
     units = [shown_unit(unit, system) for unit in listing.units.values()]
-    return [names, ["", *units, *("" for _ in criteria), "", "", ""]]
+    return [names, ["", *units, *("" for _ in criteria), "", "", "", ""]]
 
 
 def lines(listing: RowList, system: System) -> Iterator[list[Value]]:
@@ -44,7 +44,8 @@ def _line(listing: RowList, row: StudyRow, system: System) -> list[Value]:
     values = [_cell(shown_value(value, units[name], system)) for name, value in row.values.items()]
     verdicts = [row.verdicts.get(name, "") for name in listing.plan.criteria]
     levels = " ".join(f"{step}:{level}" for step, level in row.level.items())
-    return [row.row, *values, *verdicts, row.verdict or "", levels, harmless(row.reason or "")]
+    unknown = " ".join(row.error_unknown)
+    return [row.row, *values, *verdicts, row.verdict or "", unknown, levels, harmless(row.reason or "")]
 
 
 def _cell(value: object) -> float | str:
@@ -99,7 +100,9 @@ def _arrays(listing: RowList) -> Iterator[tuple[str, AnyArray]]:
     yield "row", numbers
     for name in listing.names:
         yield name, listing.column(name)[numbers]
-    words = np.array(WORST_FIRST)
+    words = np.array(VERDICTS)
     for criterion in listing.plan.criteria:
-        yield f"verdict {criterion}", words[listing.stored.codes(criterion)[numbers]]
+        codes = listing.stored.codes(criterion)[numbers]
+        yield f"verdict {criterion}", words[codes]
+        yield f"error unknown {criterion}", codes == MET_ERROR_UNKNOWN
     yield "refused", listing.stored.is_refused[numbers]

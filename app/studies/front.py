@@ -8,7 +8,7 @@ import numpy as np
 
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array, Integers, Mask
-from templates.core.judging.comparison import MET, UNDECIDED
+from templates.core.criteria.comparison import UNDECIDED, is_met
 
 MOST_CONFIRMED = 64  # rows that are calculated again for one objective
 MOST_FRONT = 200
@@ -19,7 +19,7 @@ def ranked(objective: Array, worst: AnyArray, most: int, *, undecided: bool = Fa
 
     With `undecided`, rows whose limits lie within the error of their level are among them.
     """
-    usable = np.isfinite(objective) & ((worst == MET) | ((worst == UNDECIDED) & undecided))
+    usable = np.isfinite(objective) & _may_be_met(worst, undecided=undecided)
     rows = np.flatnonzero(usable)
     return rows[np.argsort(objective[rows], kind="stable")[:most]]
 
@@ -31,7 +31,7 @@ def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Int
 
     They are in the order of the first objective; of more, those are kept that are spread evenly over it.
     """
-    usable = np.isfinite(objectives).all(axis=1) & ((worst == MET) | ((worst == UNDECIDED) & undecided))
+    usable = np.isfinite(objectives).all(axis=1) & _may_be_met(worst, undecided=undecided)
     rows = np.flatnonzero(usable)
     order = rows[np.lexsort(objectives[rows].T[::-1])]
     kept = order[_undominated(objectives[order])]
@@ -40,8 +40,13 @@ def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Int
     return kept
 
 
+def _may_be_met(worst: AnyArray, *, undecided: bool) -> Mask:
+    mask: Mask = is_met(worst) | ((worst == UNDECIDED) & undecided)
+    return mask
+
+
 def _undominated(sorted_rows: Array) -> Mask:
-    """Return which rows are not dominated by an earlier one; they are sorted by their columns.
+    """Return a mask of the rows that no earlier row dominates; rows are sorted by their columns.
 
     Only rows that are kept are compared with, so that the cost is that of rows times front.
     """

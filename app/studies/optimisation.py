@@ -16,9 +16,10 @@ from templates.core.arrays import Array, Integers
 
 SETTLED = {
     "settled": "promise and confirmed values agree, and all criteria that are held are met",
+    "unconfirmed": "all criteria that are held are met, but the error of the confirming levels is unknown",
     "undecided": "a limit lies within the error of the confirming levels",
     "infeasible": "no row that was looked at meets all criteria",
-    "not_settled": "promise and confirmed values did not come to agree",
+    "not_settled": "the search has not settled",
 }
 
 
@@ -51,7 +52,8 @@ def _result(run: Run, outcome: Outcome) -> StudyResult:
     numbers = _numbers(run, stored, outcome.places)
     best = rows_found(run, stored, numbers, confirmed=run.plan.confirm is not None)
     notes = [SETTLED[outcome.state], *outcome.notes]
-    result = {"settled": outcome.state == "settled", "global": "not proven", "notes": notes}
+    is_settled = outcome.state in ("settled", "unconfirmed")
+    result = {"settled": is_settled, "global": "not proven", "notes": notes}
     if outcome.trade:
         result["trade"] = [_trade(run, promised) for promised in outcome.trade]
     several = len(_objectives(run)) > 1

@@ -1,4 +1,4 @@
-"""Plan a study before it begins: levels, size of a chunk, units, estimate. In a process."""
+"""Plan a study before it begins, in a calculation process: levels, chunk size, units, estimate."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from app.studies.row_table import Rows, given_rows
 from app.studies.solid_count import counted
 from app.studies.task import Task, TaskState, prepared
 from templates.core.arrays import Array
+from templates.core.criteria.comparison import NOT_CHECKED
 from templates.core.errors import Fault, InvalidInputs, unknown_names
-from templates.core.judging.comparison import NOT_CHECKED
 
 CHUNK_SECONDS = 0.5  # estimated, of the rows of a chunk: cancelling and a crash lose less than a second
 MOST_IN_CHUNK, STEP_OF_CHUNK = 8192, 4096
@@ -89,11 +89,11 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     ready = prepared(task)
     body, given = ready.asked.body, None
     if body.method == "table":
-        given = given_rows(rows or {}, ready.net)
+        given = given_rows(rows or {}, ready.engine)
     count = _count(ready.asked, given)
     _check_built(ready.asked, count)
     probe = _probe(ready.asked, count, given)
-    criteria = _judged(body.hold, ready.net.criteria())
+    criteria = _judged(body.hold, ready.engine.criteria())
     few = probe[:TRIED]
     first = called(ready, few, None, tuple(criteria))
     behind = ready.solids.resolved(placed(ready, few), len(few), None, ()).levels
@@ -107,13 +107,13 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     if body.confirm is not None:
         confirm = {**levels, **_levels(ready, probe, criteria, body.confirm.tolerance, 1.0)}
     names = [*task.varied, *map(str, ready.asked.wanted)]
-    limits = {name: criterion_of(ready.net, name).unit for name in criteria}
+    limits = {name: criterion_of(ready.engine, name).unit for name in criteria}
     plan = Plan(
         places=list(task.varied),
         outputs=[str(output) for output in ready.asked.wanted],
         criteria=criteria,
         required=required,
-        units={name: ready.net.unit(Reference.parse(name)) for name in names} | limits,
+        units={name: ready.engine.unit(Reference.parse(name)) for name in names} | limits,
         levels=levels,
         confirm=confirm,
         rows=count,
@@ -157,13 +157,13 @@ def _levels(
     ready: TaskState, rows: Array, criteria: Collection[str], tolerance: float, share: float
 ) -> dict[str, str | None]:
     values = {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
-    return ready.net.levels_for(values, ready.asked.wanted, tolerance, share, criteria=criteria)
+    return ready.engine.levels_for(values, ready.asked.wanted, tolerance, share, criteria=criteria)
 
 
 def _chunk(ready: TaskState, criteria: Collection[str], levels: Levels) -> int:
     """Return rows of a chunk: as many as take half a second, and a multiple of what an array call takes."""
     wanted = ready.asked.wanted  # by tables, so that equal studies have equal chunks
-    seconds = ready.net.seconds(STEP_OF_CHUNK, wanted, levels, criteria=criteria, by_tables=True)
+    seconds = ready.engine.seconds(STEP_OF_CHUNK, wanted, levels, criteria=criteria, by_tables=True)
     per_row = seconds / STEP_OF_CHUNK
     fitting = max(1, min(MOST_IN_CHUNK, int(CHUNK_SECONDS / max(per_row, 1e-9))))
     return fitting // STEP_OF_CHUNK * STEP_OF_CHUNK or fitting
@@ -177,7 +177,7 @@ def _searched(
         return []
     searched = [levels, confirm or levels]
     for step in levels if confirm else ():
-        ladder = ready.net.graph.blocks[step].cls.levels
+        ladder = ready.engine.graph.blocks[step].cls.levels
         cheaper = ladder[: ladder.index(levels[step])] if levels[step] in ladder else ()
         searched += [{**levels, step: level} for level in cheaper]
     return searched[: 2 + MOST_COMPARED]

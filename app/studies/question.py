@@ -39,7 +39,7 @@ class StudyQuestion:
         return directions(self.body)[0]
 
 
-def asked_of(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> StudyQuestion:
+def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> StudyQuestion:
     """Return a body read against the network of its design.
 
     Raises
@@ -48,11 +48,11 @@ def asked_of(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> StudyQu
         With everything that is wrong.
     """
     _refuse(list(_contradictions(body, varied)))
-    space = Space(tuple(_variables(body, varied, net)))
+    space = Space(tuple(_variables(body, varied, engine)))
     names = dict.fromkeys([*body.minimise, *body.maximise, *body.outputs])
     wanted = tuple(map(Reference.parse, names))
     _refuse(_too_many(body, space))
-    points = points_of(body, space, net)
+    points = points_of(body, space, engine)
     return StudyQuestion(body, space, tuple(map(Reference.parse, varied)), wanted, points)
 
 
@@ -70,13 +70,15 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
     if body.method == "optimise" and not has_goal:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")
     elif not (body.outputs or has_goal):
-        yield Fault("outputs", "missing", "name what each row keeps, such as film.minimum_film_thickness")
+        yield Fault(
+            "outputs", "missing", "name the outputs that each row keeps, such as film.minimum_film_thickness"
+        )
     if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
         yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
     if body.steps is not None and body.method != "grid":
         yield Fault("steps", "contradiction", f"{body.method} takes no `steps`, only grid does; leave it out")
     for name in sorted({*body.minimise} & {*body.maximise}):
-        yield Fault("maximise", "contradiction", f"{name} is minimised as well")
+        yield Fault("maximise", "contradiction", f"{name} cannot be both minimised and maximised")
 
 
 def _is_local(body: StudyIn) -> bool:
@@ -90,13 +92,13 @@ _WITHOUT_POINTS = {
 }
 
 
-def _variables(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> Iterator[Variable]:
+def _variables(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Iterator[Variable]:
     """Yield the variables in the order of the columns; the keys of a stored body have another."""
     faults: list[Fault] = []
     for name in varied if body.vary else ():
         vary = body.vary[name]
         try:
-            yield _variable(name, vary, net.unit(Reference.parse(name)))
+            yield _variable(name, vary, engine.unit(Reference.parse(name)))
         except InvalidInputs as error:
             faults += [fault.within("vary") for fault in error.faults]
     _refuse(faults)
@@ -122,7 +124,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
     return value
 
 
-def points_of(body: StudyIn, space: Space, net: DesignEngine) -> Points | None:
+def points_of(body: StudyIn, space: Space, engine: DesignEngine) -> Points | None:
     """Return the rows of a method by number; None if the method finds them by itself."""
     match body.method:
         case "grid":
@@ -136,7 +138,7 @@ def points_of(body: StudyIn, space: Space, net: DesignEngine) -> Points | None:
         case "sensitivity" if body.kind == "sobol":
             return SobolPoints(space, body.points or 1024, body.seed)
         case "sensitivity":
-            return _around(space, net)
+            return _around(space, engine)
     return None
 
 
@@ -144,7 +146,9 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     intervals = [variable.name for variable in space.variables if isinstance(variable, Interval)]
     given = body.steps if isinstance(body.steps, Mapping) else dict.fromkeys(intervals, body.steps)
     strange = (name for name in given if name not in intervals)
-    faults = [Fault("steps", "unknown_name", f"{name} has no bounds to vary between") for name in strange]
+    faults = [
+        Fault("steps", "unknown_name", f"{name} has no bounds; give it bounds in `vary`") for name in strange
+    ]
     for name in intervals:
         if (given.get(name) or 0) < 2:
             faults.append(Fault("steps", "missing", f"give at least 2 steps for {name}"))
@@ -152,7 +156,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     return {name: int(given[name] or 0) for name in intervals}
 
 
-def _around(space: Space, net: DesignEngine) -> Local:
+def _around(space: Space, engine: DesignEngine) -> Local:
     """Return the design's own values, or the middle of an interval that leaves them out."""
     at, steps, faults = [], [], []
     for variable in space.variables:
@@ -160,7 +164,7 @@ def _around(space: Space, net: DesignEngine) -> Local:
             detail = "a slope needs `between`, two bounds"
             faults.append(Fault(f"vary.{variable.name}", "no_interval", detail))
             continue
-        nominal = float(np.asarray(net.nominal(Reference.parse(variable.name))))
+        nominal = float(np.asarray(engine.nominal(Reference.parse(variable.name))))
         inside = variable.low <= nominal <= variable.high
         at.append(nominal if inside else (variable.low + variable.high) / 2)
         steps.append(_STEP * (variable.high - variable.low))

@@ -1,9 +1,9 @@
 """Chunks whose artifacts are lost or damaged: a job calculates them again, to the same bytes.
 
-That is a job of its own for rows that somebody reads, or the job of a study that reads its own while it runs.
+A separate job does this for rows that a client reads; a running study repairs its own rows within its job.
 
-The study is repeated with the chunks that are left, until all that were recorded are there again. It goes no
-further: a cancelled study gets no new rows, and nothing is concluded or built a second time.
+The study is repeated with the chunks that are left, until all that were recorded are there again. The repair
+stops there: a cancelled study gets no new rows, and nothing is evaluated or built a second time.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.tables import StudyChunkRow
 from app.studies.archive import AnyArray, Archive
 from templates.core.arrays import Array, Integers, Mask
-from templates.core.judging.comparison import MET, NOT_CHECKED
+from templates.core.criteria.comparison import MET, NOT_CHECKED
 
 PLACE, OUTPUT, ERROR, VERDICT = "place/", "output/", "error/", "verdict/"
 """Prefixes of the names of the arrays of a chunk."""
@@ -54,7 +54,7 @@ class StoredRows:
         return np.concatenate([np.empty(0), *self._each(name, np.nan)]).astype(np.float64)
 
     def codes(self, criterion: str) -> AnyArray:
-        """Return the verdicts on a criterion, as places in `WORST_FIRST`."""
+        """Return the verdicts on a criterion, as places in `VERDICTS`."""
         return np.concatenate([np.empty(0, np.int8), *self._each(f"{VERDICT}{criterion}", NOT_CHECKED)])
 
     def worst(self, criteria: Sequence[str]) -> AnyArray:
@@ -69,7 +69,7 @@ class StoredRows:
 
     @cached_property
     def is_refused(self) -> Mask:
-        """Return which rows have a reason instead of values."""
+        """Return a mask of the rows that have a reason instead of values."""
         reasons = [reason.astype(np.int32) for reason in self._each("reason", -1)]
         return np.concatenate([np.empty(0, np.int32), *reasons]) >= 0
 

@@ -1,6 +1,6 @@
-"""Find the solid of each row of a study, and put its measures into columns. In a calculation process.
+"""Find the solid of each row of a study and put its measures into columns, in a calculation process.
 
-A row waits for its solids: until all are known, a chunk answers which ones it lacks. A model may take a
+A row waits for its solids: until all are known, a chunk reports the missing ones. A model may take a
 measure of another, so its parameters are known only once that one is built.
 """
 
@@ -81,18 +81,18 @@ class RowsWithSolids:
 
 
 def measures_of_rows(
-    net: DesignEngine, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
+    engine: DesignEngine, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
 ) -> list[Reference]:
     """Return the measures that a study needs and that differ from row to row, or are not `known`.
 
     Only what the study names counts: its outputs and objectives, and the criteria of `hold`.
     """
-    held = [subject for name, subject in subjects(net.graph).items() if name in (body.hold or ())]
+    held = [subject for name, subject in subjects(engine.graph).items() if name in (body.hold or ())]
     wanted = Targets.of(outputs, held)
-    due = needs(net.graph, wanted.references, net.varied, wanted.inside)
-    moving = net.design.moving
+    due = needs(engine.graph, wanted.references, engine.varied, wanted.inside)
+    moving = engine.design.moving
     return sorted(
-        (r for r in due.waiting if r not in measured or net.graph.blocks[r.block].solid in moving), key=str
+        (r for r in due.waiting if r not in measured or engine.graph.blocks[r.block].solid in moving), key=str
     )
 
 
@@ -121,14 +121,14 @@ def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
 class RowSolids:
     """The solids of rows: of which models, and what is measured on them."""
 
-    net: DesignEngine
+    engine: DesignEngine
     measures: tuple[Reference, ...]
 
     @cached_property
     def models(self) -> list[Block]:
-        """Return the models that are built, in the order in which they follow from each other."""
+        """Return the models to build, each after the models on which it depends."""
         names = {reference.block for reference in self.measures}
-        return [node for node in self.net.graph.order if isinstance(node, Block) and node.name in names]
+        return [node for node in self.engine.graph.order if isinstance(node, Block) and node.name in names]
 
     def measures_of(self, model: str) -> list[Reference]:
         """Return the references to measures of a model."""
@@ -136,8 +136,8 @@ class RowSolids:
 
     def drivers(self, model: Block) -> list[Reference]:
         """Return the places that rows vary and from which the parameters of a model follow."""
-        places = self.net.varied - set(self.measures)
-        return sorted((p for p in places if model in varying(self.net.graph, [p])), key=str)
+        places = self.engine.varied - set(self.measures)
+        return sorted((p for p in places if model in varying(self.engine.graph, [p])), key=str)
 
     @property
     def analysed(self) -> set[str]:
@@ -164,7 +164,7 @@ class RowSolids:
         """Fill in the columns of one model."""
         names = [name for name, cell in model.cells.items() if not isinstance(cell.declared, Choice)]
         references = [model.cells[name].reference for name in names]
-        table = self.net({**rows, **result.columns}, references, levels=levels)
+        table = self.engine({**rows, **result.columns}, references, levels=levels)
         result.levels |= table.levels
         columns = [table.columns[reference] for reference in references]
         matrix = _side_by_side(columns, len(result.waiting))
@@ -188,7 +188,7 @@ class RowSolids:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
 
     def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
-        """Return the parameters of a solid as text, or what is wrong with them."""
+        """Return the parameters of a solid as text, or their faults."""
         words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
         try:
             shape = model.cls.from_si({**words, **values})

@@ -38,7 +38,7 @@ def columns_named(rows: Rows | None) -> list[str]:
     )
     faults = [_uneven(number, row, first) for number, row in islice(uneven, MOST_FAULTS)]
     if len(first) > MOST_VARIED:
-        faults.append(Fault("rows", "too_many_columns", f"at most {MOST_VARIED} places vary"))
+        faults.append(Fault("rows", "too_many_columns", f"at most {MOST_VARIED} parameters can vary"))
     refuse(faults)
     return list(first)
 
@@ -49,7 +49,7 @@ def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fa
     return Fault(f"rows.{number}", "uneven", detail)
 
 
-def given_rows(rows: Rows, net: DesignEngine) -> Array:
+def given_rows(rows: Rows, engine: DesignEngine) -> Array:
     """Return the values [SI] of the rows, shape (N, d).
 
     Raises
@@ -57,7 +57,7 @@ def given_rows(rows: Rows, net: DesignEngine) -> Array:
     InvalidInputs
         Naming every cell that is wrong, up to `MOST_FAULTS`: its column, and its row where it has one.
     """
-    units = {name: net.unit(Reference.parse(name)) for name in columns_named(rows)}
+    units = {name: engine.unit(Reference.parse(name)) for name in columns_named(rows)}
     faults: list[Fault] = []
     if isinstance(rows, Mapping):
         columns = [_column(name, rows[name], unit, faults) for name, unit in units.items()]
@@ -66,14 +66,14 @@ def given_rows(rows: Rows, net: DesignEngine) -> Array:
     refuse(faults)
     lengths = {len(column) for column in columns}
     if len(lengths) > 1:
-        raise InvalidInputs([Fault("rows", "uneven", "the columns of a table are of equal length")])
+        raise InvalidInputs([Fault("rows", "uneven", "the columns of a table must have equal lengths")])
     if max(lengths) > MOST_ROWS["table"]:
         raise InvalidInputs([too_long("table", max(lengths))])
     return np.stack(columns, axis=-1)
 
 
 def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
-    """Return a column [SI]; what is wrong with it is added to the faults, and the column is empty then."""
+    """Return a column [SI]; add its faults to the list, and return an empty column then."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -81,13 +81,13 @@ def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
         return np.empty(0)
     column = np.atleast_1d(np.asarray(value, dtype=np.float64))
     if column.ndim > 1:
-        faults.append(Fault(f"rows.{name}", "shape", "a column has one number for each row"))
+        faults.append(Fault(f"rows.{name}", "shape", "a column needs one number for each row"))
         return np.empty(0)
     return column
 
 
 def _cells(name: str, rows: Sequence[Mapping[str, Raw]], unit: str, faults: list[Fault]) -> Array:
-    """Return the cells of a column [SI]; what is wrong with them is added to the faults."""
+    """Return the cells of a column [SI]; add their faults to the list."""
     column = np.full(len(rows), np.nan)
     for number, row in enumerate(rows):
         try:

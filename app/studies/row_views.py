@@ -11,7 +11,7 @@ from app.studies.row_columns import OUTPUT, PLACE, StoredRows
 from app.studies.run import Run
 from app.studies.schemas import Best
 from templates.core.arrays import Integers
-from templates.core.judging.comparison import WORST_FIRST
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.units.units import unit
 
 
@@ -31,17 +31,24 @@ def rows_found(run: Run, stored: StoredRows, numbers: Integers, *, confirmed: bo
                 "row": number,
                 "at": quantities(plan.units, plan.places, places[n].tolist()),
                 "outputs": quantities(plan.units, plan.outputs, outputs[n].tolist()),
-                "confirmed": confirmed,
-                **_verdicts({name: int(code[n]) for name, code in codes.items()}),
-                **({"verdict": WORST_FIRST[int(worst[n])]} if plan.required else {}),
+                "confirmed": confirmed and int(worst[n]) != MET_ERROR_UNKNOWN,
+                **verdict_fields({name: int(code[n]) for name, code in codes.items()}, plan.required),
             }
         )
         for n, number in enumerate(numbers.tolist())
     ]
 
 
-def _verdicts(codes: Mapping[str, int]) -> dict[str, object]:
-    return {"verdicts": {name: WORST_FIRST[code] for name, code in codes.items()}} if codes else {}
+def verdict_fields(codes: Mapping[str, int], required: Sequence[str]) -> dict[str, object]:
+    """Return the verdicts of a row, the worst of them, and the criteria met with an unknown error."""
+    fields: dict[str, object] = {}
+    if codes:
+        fields["verdicts"] = {name: VERDICTS[code] for name, code in codes.items()}
+    if required:
+        fields["verdict"] = VERDICTS[min(codes.get(name, NOT_CHECKED) for name in required)]
+    if unknown := [name for name, code in codes.items() if code == MET_ERROR_UNKNOWN]:
+        fields["error_unknown"] = unknown
+    return fields
 
 
 def quantities(

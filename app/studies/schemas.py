@@ -53,8 +53,13 @@ class StudyRow(Answer):
     errors: dict[str, float] = Field({}, description="relative, of outputs whose level states one")
     verdicts: dict[str, Word] = Field({}, description="by criterion")
     verdict: Word | None = Field(None, description="the worst of them")
+    error_unknown: list[str] = Field([], description="criteria that are met, with an unknown error")
     level: dict[str, str] = Field({}, description="of fidelity, by step")
-    confirmed: bool = Field(False, description="whether it was calculated again at finer levels")
+    confirmed: bool = Field(
+        False,
+        description="whether it was calculated again at finer levels; not if a criterion that must be met "
+        "is met with an unknown error",
+    )
     reason: str | None = Field(None, description="why it has no values")
 
 
@@ -112,6 +117,7 @@ class Best(Answer):
     outputs: dict[str, Quantity]
     verdicts: dict[str, Word] = {}
     verdict: Word | None = None
+    error_unknown: list[str] = Field([], description="criteria that are met, with an unknown error")
     confirmed: bool = False
 
 
@@ -135,7 +141,9 @@ class StudyResult(Answer):
     front: list[Best] | None = Field(None, description="none is better in all objectives")
     indices: dict[str, dict[str, Index]] | None = Field(None, description="by output, by place")
     trade: list[Trade] | None = None
-    settled: bool | None = Field(None, description="whether promise and confirmed value agree")
+    settled: bool | None = Field(
+        None, description="whether promise and confirmed value agree, and all criteria are met"
+    )
     global_: str | None = Field(None, alias="global", description="`not proven`: of every search")
     share: float | None = Field(None, description="of the rows that meet all criteria")
     shares: dict[str, float] | None = Field(None, description="of the rows that meet each criterion")

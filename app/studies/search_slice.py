@@ -3,7 +3,7 @@
 An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
 was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
 for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
-A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+A slice ends after a number of estimated seconds, not by the clock, so that equal studies have equal chunks.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from app.studies.criteria import JUDGED, SIDES, criterion_of, judged_of
 from app.studies.methods.answers import AllRefused, Answer, Columns, Held, Objective, Problem
 from app.studies.methods.confirmation import Round
 from app.studies.methods.front import Effort, pareto_front
-from app.studies.methods.optimise import optimise
+from app.studies.methods.optimise import Optimum, optimise
+from app.studies.methods.space import Interval
 from app.studies.methods.stages import Stage
 from app.studies.row_columns import CONFIRM, EXPLORE, OUTPUT
 from app.studies.task import Task, TaskState, prepared
@@ -31,6 +32,8 @@ from templates.core.errors import Fault, InvalidInputs
 SLICE_SECONDS = 0.5  # of new rows, estimated
 ALONE = Effort(generations=50, rounds=1)
 """Of the front that a level finds by itself: no more rows than a comparison is worth."""
+ACTIVE = 2e-3  # of a limit: an optimum nearer to it sits on it
+AT_BOUND = 1e-6  # of the width between two bounds
 CALL_SECONDS = 0.03  # that a call takes beside its rows
 
 
@@ -105,7 +108,7 @@ def _problem(ready: TaskState, search: Search) -> Problem:
     body = ready.asked.body
     objectives = [Objective(name) for name in body.minimise]
     objectives += [Objective(name, "maximise") for name in body.maximise]
-    held = tuple(Held(name, criterion_of(ready.net, name).sign) for name in search.required)
+    held = tuple(Held(name, criterion_of(ready.engine, name).sign) for name in search.required)
     return Problem(ready.asked.space, tuple(objectives), held)
 
 
@@ -119,13 +122,47 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
     optimum = optimise(problem, explore, confirm, seed=seed)
     first = Prediction(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
     notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
+    notes = (*_differences(optimum), *notes, *_active(problem, optimum.best))
     return Outcome(optimum.state, (optimum.best.at,), *_compared(problem, search, book, seed, first, notes))
+
+
+def _differences(optimum: Optimum) -> tuple[str, ...]:
+    """Return why a search did not settle, in a sentence; nothing of one that did."""
+    last = optimum.rounds[-1]
+    if optimum.state != "not_settled":
+        return ()
+    if last.reason:
+        return (f"the confirming level refuses the best place: {last.reason}",)
+    if last.agrees or not np.isfinite(last.confirmed).all():
+        return (f"it ended after {len(optimum.rounds)} confirmations",)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.abs(last.promise - last.confirmed) / np.abs(last.confirmed)
+    largest = np.max(apart[np.isfinite(apart)], initial=0.0)
+    return (f"promise and confirmed value differ by {largest:.2g} of the value",)
+
+
+def _active(problem: Problem, best: Round) -> tuple[str, ...]:
+    """Return the limits and the bounds on which an optimum sits, as sentences."""
+    count, held = len(problem.objectives), len(problem.held)
+    limits = best.confirmed[count + held :]
+    near = np.abs(best.worst) <= ACTIVE * np.abs(limits)
+    sentences = [
+        f"the optimum sits on the limit of {one.name}"
+        for one, at in zip(problem.held, near, strict=True)
+        if at
+    ]
+    for one, value in zip(problem.space.variables, best.at.tolist(), strict=True):
+        place = float(one.place(np.array(value))) if isinstance(one, Interval) else 0.5
+        if min(place, 1 - place) <= AT_BOUND:
+            end = "lower" if place < 0.5 else "upper"
+            sentences.append(f"the optimum sits on the {end} bound of {one.name}")
+    return tuple(sentences)
 
 
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Prediction, notes: tuple[str, ...]
 ) -> tuple[tuple[Prediction, ...], tuple[str, ...]]:
-    """Return the promise of each level, and the notes, with one more if rows are lacking for a level."""
+    """Return the promise of each level, and the notes; a level without enough rows adds a note."""
     others: list[Prediction] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):
@@ -137,7 +174,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Prediction]:
-    """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
+    """Return the result of one level alone, confirmed once; an empty list without a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -174,11 +211,11 @@ class _Journal:
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
-        """Keep a stage as far as it has come; the next chunk has it."""
+        """Store the present state of a stage for the next chunk."""
         self.stages[f"{self.level}: {name}"] = stage
         self.changed.add(f"{self.level}: {name}")
 
@@ -255,15 +292,15 @@ class _Book:
                 f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"
             )
             raise TooManyRows([Fault("points", "too_many_rows", detail)])
-        net, asked = self._ready.net, self._ready.asked
+        engine, asked = self._ready.engine, self._ready.asked
         levels = self._levels[level]
         criteria = self._search.criteria  # by tables: what was measured would differ from run to run
-        seconds = net.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
+        seconds = engine.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
         self._spent += seconds + CALL_SECONDS
         table = called(self._ready, rows, levels, criteria, judge=True)
         arrays = {**columns_of(self._task.varied, rows), **results_of(table, asked.wanted)}
         for name in self._search.required:
-            arrays |= judged_of(net, name, table)
+            arrays |= judged_of(engine, name, table)
         reasons, arrays["reason"] = reasons_of(table)
         arrays["level"] = np.full(len(rows), level, dtype=np.int16)
         call = _Call(level, arrays, reasons, seconds)
@@ -278,13 +315,16 @@ class _Book:
     def _columns(self, call: _Call) -> Columns:
         def side(name: str) -> Array:
             parts = [call.arrays[f"{JUDGED}{one.name}/{name}"] for one in self._problem.held]
-            return np.stack(parts, axis=-1) if parts else np.empty((call.count, 0))
+            return np.stack(parts, axis=-1).astype(float) if parts else np.empty((call.count, 0))
 
-        objectives = [call.arrays[f"{OUTPUT}{one.name}"] for one in self._problem.objectives]
+        objectives = [
+            np.asarray(call.arrays[f"{OUTPUT}{one.name}"], np.float64) for one in self._problem.objectives
+        ]
         which = call.arrays["reason"].tolist()
         reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
-        value, limit, low, high = (side(name) for name in SIDES)
-        return Columns(np.stack(objectives, axis=-1), value, limit, low, high, reasons, call.seconds)
+        value, limit, low, high, is_known = (side(name) for name in SIDES)
+        both = np.stack(objectives, axis=-1)
+        return Columns(both, value, limit, low, high, reasons, call.seconds, is_known=is_known == 1)
 
 
 def _array(call: _Call, name: str) -> AnyArray:

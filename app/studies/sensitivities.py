@@ -42,7 +42,7 @@ def sensitivities(task: Task, columns: Mapping[str, Array]) -> Shares:
     """
     ready = prepared(task)
     points = ready.asked.points
-    units = {name: ready.net.unit(Reference.parse(name)) for name in (*task.varied, *columns)}
+    units = {name: ready.engine.unit(Reference.parse(name)) for name in (*task.varied, *columns)}
     shares, notes = dict[str, dict[str, Index]](), list[str]()
     for output, values in columns.items():
         try:

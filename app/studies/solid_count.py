@@ -59,9 +59,9 @@ def counted(ready: TaskState, count: int, given: Array | None, levels: Levels, s
 
 def _refused(ready: TaskState, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
     """Yield a fault for each measure, which names the chain from what varies."""
-    graph, measures = ready.net.graph, ready.solids.measures
+    graph, measures = ready.engine.graph, ready.solids.measures
     hours = f"about {solids * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
-    for fault in solids_in_the_way(graph, measures, ready.net.design.moving):
+    for fault in solids_in_the_way(graph, measures, ready.engine.design.moving):
         yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids, {hours}; {why}")
 
 
@@ -80,7 +80,7 @@ def _of_model(ready: TaskState, model: Block, count: int, given: Array | None, l
 
 def _is_affordable(ready: TaskState, model: Block, count: int, levels: Levels) -> bool:
     references = [cell.reference for cell in model.cells.values()]
-    return ready.net.seconds(count, references, levels, by_tables=True) <= AFFORDABLE
+    return ready.engine.seconds(count, references, levels, by_tables=True) <= AFFORDABLE
 
 
 def _distinct(ready: TaskState, places: Sequence[int], count: int, given: Array | None) -> Array:

@@ -67,7 +67,7 @@ class TaskState:
         These measures of the design itself, as far as they are known [SI]: for rows that are only tried.
     """
 
-    net: DesignEngine
+    engine: DesignEngine
     asked: StudyQuestion
     solids: RowSolids
     nominal: Mapping[Reference, float]
@@ -96,21 +96,21 @@ def _prepared(task: Task) -> TaskState:
     measured_si = {Reference.parse(name): value for name, value in task.measured}
     body = read_body(task.body)
     aside = [Reference.parse(name) for name in body.set_aside]
-    net = _net(document, catalogues, varied, measured_si, aside)
-    asked = asked_of(body, task.varied, net)
-    measures = measures_of_rows(net, body, asked.wanted, measured_si)
+    engine = _engine(document, catalogues, varied, measured_si, aside)
+    asked = asked_of(body, task.varied, engine)
+    measures = measures_of_rows(engine, body, asked.wanted, measured_si)
     raise_if([*iterated(document, measures), *tables_among(measures)])
     nominal = {reference: measured_si[reference] for reference in measures if reference in measured_si}
-    blocks, moving = net.graph.blocks, net.design.moving
+    blocks, moving = engine.graph.blocks, engine.design.moving
     constant = {
         reference: v for reference, v in measured_si.items() if blocks[reference.block].solid not in moving
     }
     if measures or constant != measured_si:
-        net = _net(document, catalogues, [*varied, *measures], constant, aside)
-    return TaskState(net, asked, RowSolids(net, tuple(measures)), nominal)
+        engine = _engine(document, catalogues, [*varied, *measures], constant, aside)
+    return TaskState(engine, asked, RowSolids(engine, tuple(measures)), nominal)
 
 
-def _net(
+def _engine(
     document: Document,
     catalogues: Catalogues,
     varied: Sequence[Reference],

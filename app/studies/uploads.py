@@ -1,16 +1,14 @@
-"""The rows of a study as a spreadsheet's file: CSV, or the first sheet of an XLSX file. In a process.
+"""Read the rows of a study from a CSV file or the first sheet of an XLSX file, in a calculation process.
 
 A cell that is not a number, or that holds a formula, is refused with its row and column.
 """
 
 from __future__ import annotations
 
-import io
-import zipfile
-from collections.abc import Iterator, Mapping
-from itertools import islice
+from collections.abc import Mapping
 from typing import Literal
 
+from app.calculations.table_files import sheet_text
 from app.calculations.tables import read_table
 from app.designs.variant_sheets.grid import MOST_FAULTS
 from app.plain import Raw
@@ -24,10 +22,8 @@ Places = Mapping[str, str | None]
 """Every place of a design that rows may set, with its declared unit; None where it has none of its own."""
 
 MOST_CHARACTERS = 16_000_000
-MOST_UNPACKED, MOST_PARTS = 200_000_000, 500
-"""Of an XLSX file: bytes, and files within it."""
-MOST_COLUMNS = 40
-DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or send CSV"
+MOST_UNPACKED = 200_000_000
+"""Of an XLSX file [bytes]."""
 
 
 def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, Raw]:
@@ -38,7 +34,9 @@ def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, R
     InvalidInputs
         Naming every cell that is wrong, headings included, up to `MOST_FAULTS`.
     """
-    text = _of_xlsx(content.joined()) if kind == "xlsx" else _of_csv(content.joined())
+    body = content.joined()
+    is_sheet = kind == "xlsx"
+    text = sheet_text(body, MOST_UNPACKED, MOST_ROWS["table"]) if is_sheet else _of_csv(body)
     columns = read_table(
         text,
         most_rows=MOST_ROWS["table"],
@@ -82,41 +80,6 @@ def _of_csv(content: bytes) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise _wrong("not_utf8", "save the file as CSV in UTF-8") from None
-
-
-def _of_xlsx(content: bytes) -> str:
-    """Return the first visible sheet as text, a row a line, its cells separated by tabs."""
-    from openpyxl import load_workbook  # type: ignore[import-untyped]
-
-    _check_size(content)
-    try:
-        book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)
-        sheet = next((s for s in book.worksheets if s.sheet_state == "visible"), None)
-        if sheet is None:
-            raise _wrong("no_sheet", "the file has no visible sheet")
-        sheet.reset_dimensions()  # what the file says of its own size may be wrong
-        rows = sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS)
-        return "\n".join(_lines(islice(rows, MOST_ROWS["table"] + 4)))
-    except InvalidInputs:
-        raise
-    except Exception:  # openpyxl raises whatever a damaged file makes of it
-        raise _wrong("damaged", DAMAGED) from None
-
-
-def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
-    for row in rows:
-        yield "\t".join("" if value is None else " ".join(str(value).split()) for value in row)
-
-
-def _check_size(content: bytes) -> None:
-    """Refuse what would unpack to more than any table; `zipfile` unpacks no more than the archive says."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            parts = archive.infolist()
-    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError):
-        raise _wrong("damaged", DAMAGED) from None
-    if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MOST_UNPACKED:
-        raise _wrong("too_large", "the unpacked file is too large; keep only the sheet with the rows")
 
 
 def _wrong(code: str, detail: str) -> InvalidInputs:

@@ -16,10 +16,11 @@ from app.studies import repository
 from app.studies.archive import AnyArray, Archive
 from app.studies.plan import Plan
 from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, StoredRows
+from app.studies.row_views import verdict_fields
 from app.studies.schemas import Estimate, RefusedRows, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from templates.core.arrays import Array, Integers
+from templates.core.criteria.comparison import MET, MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.errors import InvalidInputs, unknown_names
-from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST
 from templates.core.units.units import unit
 
 MOST_REASONS = 20
@@ -29,7 +30,7 @@ Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
 
 
 def study(session: Session, row: Row) -> Study:
-    """Return a study as it stands."""
+    """Return the current state of a study."""
     plan = Plan.of(row.plan)
     progress = repository.done(session, row.id, plan.chunks)
     frequent = sorted(progress.refused.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_REASONS]
@@ -172,11 +173,9 @@ class RowList:
             }
             if stated := {n: float(e[place]) for n, e in errors.items() if np.isfinite(e[place])}:
                 row["errors"] = stated
-            if codes:
-                row["verdicts"] = {name: WORST_FIRST[code] for name, code in codes.items()}
-            if self.plan.required:
-                row["verdict"] = WORST_FIRST[min(codes.get(name, NOT_CHECKED) for name in self.plan.required)]
-            if self._is_confirmed(number, int(levels[place])):
+            row |= verdict_fields(codes, self.plan.required)
+            worst = min((codes.get(name, NOT_CHECKED) for name in self.plan.required), default=MET)
+            if worst != MET_ERROR_UNKNOWN and self._is_confirmed(number, int(levels[place])):
                 row["confirmed"] = True
             if reason >= 0:
                 where, _, detail = about["reasons"][reason]
@@ -191,9 +190,8 @@ class RowList:
     def _fits(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         if self.wanted.where == "refused":
             return self.stored.is_refused
-        code = WORST_FIRST.index(self.wanted.where or "met")
-        fits: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = self.stored.worst(self.plan.required) == code
-        return fits
+        codes = [code for code, verdict in enumerate(VERDICTS) if verdict == (self.wanted.where or "met")]
+        return np.isin(self.stored.worst(self.plan.required), codes)
 
     def _array(self, name: str) -> str:
         return f"{PLACE}{name}" if name in self.plan.places else f"{OUTPUT}{name}"

@@ -1,7 +1,7 @@
 """Run another program that dies with its parent process: `python -m app.team.tether …`.
 
-The program and all of its process group hang on a pipe (`app.workers.lifeline`) whose other end the starter
-keeps, so that they end with it even after `kill -9`.
+A pipe (`app.workers.lifeline`) ties the program and its process group to the process that started it. They
+end with that process, even after `kill -9`.
 """
 
 from __future__ import annotations

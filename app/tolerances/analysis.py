@@ -65,7 +65,7 @@ class Analysis:
     """
 
     graph: Graph
-    net: DesignEngine
+    engine: DesignEngine
     question: Question
     outputs: list[Reference]
     demands: dict[str, CriterionVariable]
@@ -94,10 +94,10 @@ class Analysis:
         wanted = {*outputs, *(r for demand in named.values() for r in demand.references)}
         chosen, warnings = varied(graph, needs(graph, wanted, ()).cells)
         raise_if(list(faults(chosen, warnings)))
-        net = DesignEngine.of(
+        engine = DesignEngine.of(
             document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True
         )
-        return cls(graph, net, question, outputs, named, chosen, warnings)
+        return cls(graph, engine, question, outputs, named, chosen, warnings)
 
     @cached_property
     def factors(self) -> list[Factor]:
@@ -152,7 +152,7 @@ class Analysis:
             if np.isfinite(errors).any():
                 self._errors[output] = max(self._errors.get(output, 0.0), float(np.nanmax(errors)))
         for name, column in table.judged.items():
-            self.stated[name] = self.stated.get(name, True) and column.is_stated
+            self.stated[name] = self.stated.get(name, True) and column.is_known
         margins = {name: column.margin for name, column in table.judged.items()}
         return Rows(_stacked(table, self.outputs), table.verdicts, margins)
 
@@ -160,7 +160,7 @@ class Analysis:
         """Return the outputs, and with `judge` the verdicts, of rows of factors."""
         given = {one.reference: rows[:, column] for column, one in enumerate(self.varied)}
         criteria = list(self.demands) if judge else []
-        table = self.net(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
+        table = self.engine(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
         if self.first_refusal is None and table.refusals:
             self.first_refusal = table.refusals[min(table.refusals)]
         return table
@@ -190,7 +190,7 @@ class Analysis:
         return most
 
     def _seconds(self, rows: int) -> float:
-        return self.net.seconds(rows, self.outputs, self._levels, criteria=list(self.demands))
+        return self.engine.seconds(rows, self.outputs, self._levels, criteria=list(self.demands))
 
     def _require_time(self) -> None:
         """Refuse what takes too long at these levels, naming one that takes long."""

@@ -1,4 +1,4 @@
-"""An analysis as the interface shows it: declared units instead of SI, and what is absent with its reason."""
+"""An analysis as the interface shows it: in declared units, with a reason for each missing value."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class _Answer:
         return answers.UnjudgedCriterion(reason="its value or its limit has no value")
 
     def _output(self, column: int, reference: Reference) -> answers.OutputScatter:
-        scale = unit(self.analysis.net.unit(reference))
+        scale = unit(self.analysis.engine.unit(reference))
         nominal = float(self.findings.nominal.columns[reference][0])
         yields = [
             one for name in self._criteria_of(reference) if (one := self._yield(name, scale, reference))

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from app.designs.network import Graph, Subject, subjects
 from app.reference import Reference
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.criterion import Criterion
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class CriterionVariable:
 
     @property
     def missing(self) -> list[str]:
-        """Return limits that nobody has given."""
+        """Return the missing limits."""
         block = self.subject.block
         if block is None:
             return []

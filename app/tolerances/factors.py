@@ -69,7 +69,7 @@ def scattered(factors: Sequence[Factor], shares: Array) -> Array:
 
 
 def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
-    """Return a scrambled Sobol' sequence of so many points (a power of two) in the unit cube."""
+    """Return a scrambled Sobol' sequence of a number of points (a power of two) in the unit cube."""
     from scipy.stats import qmc  # it takes as long as all other imports of a small command
 
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from app.tolerances.factors import Factor, scattered, sobol
 from templates.core.arrays import Array
-from templates.core.judging.comparison import MET, UNDECIDED
+from templates.core.criteria.comparison import UNDECIDED, is_met
 
 Codes = NDArray[np.int8]
 
@@ -33,7 +33,7 @@ class Rows:
     outputs
         Of the shape (rows, outputs) [SI]; NaN where a row is refused.
     codes
-        By criterion the verdict of each row, as places in `WORST_FIRST`.
+        By criterion the verdict of each row, as places in `VERDICTS`.
     margins
         By criterion by how much the value itself meets its limit [SI]; NaN where that is not known.
     """
@@ -149,5 +149,5 @@ def _yield(name: str, parts: Sequence[Rows]) -> Yield | None:
     with np.errstate(invalid="ignore"):
         each = (margins >= 0).mean(axis=1)
     error = max(float(each.std(ddof=1)) / np.sqrt(len(parts)), 1 / margins.size)
-    surely, maybe = float((codes == MET).mean()), float((codes == UNDECIDED).mean())
+    surely, maybe = float(is_met(codes).mean()), float((codes == UNDECIDED).mean())
     return Yield(float(each.mean()), float(error), (surely, surely + maybe))

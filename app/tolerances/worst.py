@@ -1,6 +1,6 @@
 """The least and the largest value of each output within the limits, interior extremes included.
 
-A lattice with all corners and 512 quasi-random rows find where to begin; L-BFGS-B climbs from the three best
+A lattice with all corners and 512 quasi-random rows find where to begin; L-BFGS-B starts from the three best
 of them. Slopes and corners alone miss extremes within the limits.
 """
 

@@ -52,7 +52,7 @@ class Runner(Protocol):
     """Runs functions one after another on behalf of one piece of work, within that one's limits or others."""
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """Return what the function returns, or raise what it raises; see `Worker.run`."""
+        """Return the result of the function or raise its exception; see `Worker.run`."""
         ...
 
 
@@ -67,7 +67,7 @@ class Batch(Protocol):
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:
-        """Return what the function returns, or raise what it raises.
+        """Return the result of the function or raise its exception.
 
         The function is found by its module and name, arguments and result are pickled. `on_progress` is
         called in this thread.
@@ -99,7 +99,7 @@ class BatchWorker(Worker, Protocol):
     """A worker of which a piece of work can have a process for all its functions."""
 
     def capacity(self, lane: Lane) -> int:
-        """Return how many more functions of a lane would begin at once; 0 if they would wait. No blocking."""
+        """Return how many functions of a lane could start now; 0 if they would wait. It never blocks."""
         ...
 
     def batch(self, lane: Lane = GEOMETRY) -> Batch:

@@ -6,7 +6,7 @@ WorkerError
  ├── MemoryExceeded     it wanted too much memory
  ├── JobCancelled       it was asked to stop
  ├── WorkerLost         the machine that ran it, or the way to it, has gone
- └── RemoteError        it raised or returned what cannot be sent between processes
+ └── RemoteError        it raised or returned an object that cannot be sent between processes
 
 All of them can be pickled.
 """

@@ -27,7 +27,7 @@ class Use:
 
 
 def use(pid: int | None = None) -> Use:
-    """Return what the living descendants of a process, by default this one, use."""
+    """Return the resource use of the living descendants of a process, by default this one."""
     rows = _descendants(_table(), pid or os.getpid())
     ticks = sum(sum(map(int, row[13:17])) for row in rows.values())
     pages = sum(int(row[23]) for row in rows.values())
@@ -35,7 +35,7 @@ def use(pid: int | None = None) -> Use:
 
 
 def kill(seconds: float = 1.0) -> None:
-    """Kill every descendant of this process, and wait until none lives, at most for so long [s].
+    """Kill every descendant of this process, and wait until none lives, for at most this time [s].
 
     What loses its parent meanwhile becomes a child of this process, so that it is seen in the next round.
     """

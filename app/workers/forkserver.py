@@ -3,8 +3,8 @@
 A fork of it is ready in milliseconds, where an import takes seconds. It is a plain process of its own: the
 children of `multiprocessing`'s would import the server's main module again.
 
-It and its children hang on the server's lifeline and are killed with it, also in the middle of an import.
-Where the system has no such thing, it ends when it notices that its channel has closed.
+The server's lifeline kills it and its children when the server dies, even in the middle of an import. On
+systems without that signal, it ends when it notices that its channel has closed.
 """
 
 import gc

@@ -1,4 +1,4 @@
-"""A worker without processes, for tests and debuggers: no limits, no way to stop what has begun."""
+"""A worker without processes or limits, for tests and debuggers; it cannot stop a running function."""
 
 import threading
 from collections.abc import Callable

@@ -46,11 +46,11 @@ def hang_on(reader: int, group: int | None = None) -> None:
         fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
         fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)
     if has_hung_up(reader):
-        raise ProcessLookupError("the server has gone")
+        raise ProcessLookupError("the server has stopped")
 
 
 def has_hung_up(descriptor: int) -> bool:
-    """Return whether the other end of a pipe or socket is closed, whatever is still to be read from it."""
+    """Return whether the other end of a pipe or socket is closed, even if data remain to be read."""
     poll = select.poll()
     poll.register(descriptor, 0)  # a hang-up is reported always
     return any(event & select.POLLHUP for _, event in poll.poll(0))

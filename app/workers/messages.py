@@ -1,7 +1,7 @@
 """Messages between the server and a job process.
 
-What a function takes and returns is packed by itself within a message. So whoever only passes messages on, as
-a worker on another machine does, imports nothing that a function imports.
+The arguments and the result of a function are packed separately within a message. So a process that only
+forwards messages, such as a worker on another machine, imports nothing that the function imports.
 """
 
 import pickle

@@ -1,6 +1,6 @@
 """Large bytes in pieces, each small enough not to block the other threads.
 
-To copy, join or pickle ten megabytes holds the interpreter for some ten milliseconds.
+Copying, joining or pickling ten megabytes holds the interpreter lock for about ten milliseconds.
 """
 
 from __future__ import annotations

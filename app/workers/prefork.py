@@ -1,7 +1,7 @@
-"""Fork servers that the server forks from itself before it has threads: they need not import what it has.
+"""Fork servers that the server forks from itself before it has threads, so that they need no imports.
 
-They share the pages of all that was imported. Each is taken by the first who asks for one with the same
-modules; whoever comes later gets a new process, which imports them. If one dies, such a process replaces it.
+They share the pages of all that was imported. The first request with the same modules takes one; later
+requests get a new process, which imports the modules. If a fork server dies, such a process replaces it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkS
 
 
 def close() -> None:
-    """End those that nobody has taken."""
+    """End the unused fork servers."""
     while _started:
         _started.popitem()[1].close()
 

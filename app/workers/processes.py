@@ -216,7 +216,7 @@ class ForkServer:
         return self._process.poll() is None and not self.is_stopped()
 
     def is_stopped(self) -> bool:
-        """Return whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
+        """Return whether a signal has stopped the forkserver, so that it never answers. Linux only."""
         try:
             state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
         except OSError:
@@ -224,7 +224,7 @@ class ForkServer:
         return state in "Tt"
 
     def close(self) -> None:
-        """End the forkserver and all its processes, whatever they are doing."""
+        """Kill the forkserver and all its processes."""
         self._closed = True
         self._lifeline.cut()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:

@@ -13,8 +13,8 @@ from app.catalogue.schemas.templates import Template as TemplateAnswer
 from app.presentation.prose import html_of
 from app.worksheets.examination import LONGEST_TITLE, title_of
 from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetName, SheetTest
+from templates.core.criteria.judgement import Judgement, sentence
 from templates.core.errors import Fault, InvalidInputs, TemplateError
-from templates.core.judging.judgement import Judgement, sentence
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.ledger import Notice
 from templates.core.language.spec import Requirement

@@ -4,7 +4,7 @@ WorksheetError
     IdTaken             a file, or another worksheet, has the id
     OutOfOrder          the state of the worksheet does not allow it
         OtherText       a review names another text than the one that is stored
-        Unresolved      regions of its import are not verified, and nobody has looked at them
+        Unresolved      regions of its import are not verified, and nobody has resolved them
         TestsFailed     the worksheet has faults, or its tests fail
     OwnReview           an author reviews their own worksheet
     StaleWorksheet      the worksheet has changed since the client read it

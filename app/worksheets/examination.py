@@ -1,7 +1,6 @@
 """Examine a text; runs in a calculation process, because the text is a user's.
 
-Reading is bounded by the language: so many bytes, statements and operations, no loops. What is left to bound
-are time and memory, which the process does.
+The language limits bytes, statements and operations, and has no loops. The process limits time and memory.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from dataclasses import dataclass
 from app.pool.sources import SheetSource, class_of
 from templates.core.catalogue.digests import digest as digest_of
 from templates.core.catalogue.golden import record
-from templates.core.checking.golden import differences
+from templates.core.checks.golden import differences
 from templates.core.errors import InvalidInputs, TemplateError
 from templates.core.language.template import Template
 from templates.core.sheets import SheetFault, SheetRefused, TestResult, read, run_tests

@@ -16,7 +16,7 @@ _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Return if a worksheet may have this id, as far as files are concerned.
+    """Check that a worksheet may have this id, as far as files are concerned.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def signed(typed: str | None) -> tuple[str | None, str | None]:
 
 
 def is_same_person(one: str, other: str) -> bool:
-    """Return whether two typed names are the same but for letter case, blanks and signs that nobody sees."""
+    """Return whether two names are equal except for case, blanks and invisible characters."""
     return _folded(one) == _folded(other)
 
 

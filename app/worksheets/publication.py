@@ -1,4 +1,4 @@
-"""Worksheets among the templates: read again from the database, compared with their releases."""
+"""Publish worksheets as templates: read them from the database and compare them with their releases."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Operations on worksheets: draft → tested → reviewed → released → withdrawn.
 
-An edit returns to draft; of a released version it begins the next one. Whatever reads a text runs in a
-calculation process. A change is written only if the version is still as it was read.
+An edit returns a worksheet to draft; an edit of a released version begins the next version. Texts are read in
+a calculation process only. A change is stored only if the version has not changed since it was read.
 """
 
 from __future__ import annotations
@@ -341,7 +341,7 @@ def _edited(draft: Row) -> dict[str, object]:
 
 
 def _require(row: Row, *allowed: str) -> None:
-    """Return if a version is in one of these states.
+    """Check that a version is in one of these states.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How far a split bore gives way to the pressure of an oil film: a matrix between modes of the pressure.
+"""Compliance of a split bore under the pressure of an oil film, as a matrix between pressure modes.
 
 A mode is a pressure, and a radial displacement, over the whole bore: 1, cos nθ or sin nθ up to n = 9, even
 along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square of 1. A unit
@@ -7,9 +7,9 @@ the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is p
 
 θ counts from +y, the block of a housing or the shank of a rod, towards -x.
 
-The halves of the solid are joined as one: bolts are to keep the joint closed. Rows c1 and s1 hold the motion
-of the bore as a whole, of what carries it too; in a film that is eccentricity. A pressure in c1 or s1 still
-bends the bore, by the other rows.
+The halves of the solid are joined, because bolts keep the joint closed. Rows c1 and s1 hold the motion of the
+whole bore with its support; an oil film sees it as eccentricity. A pressure in c1 or s1 still bends the bore,
+by the other rows.
 
 The solid has to mirror itself in z = 0; half of it is meshed. Lengths in mm, forces in N, stresses in MPa.
 
@@ -117,7 +117,7 @@ def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return what a face is, by the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free), by the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR

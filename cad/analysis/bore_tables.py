@@ -1,4 +1,4 @@
-"""The compliance of a split bore as the outputs of an analysis: what relations hand to `elastic_film` 1."""
+"""The compliance of a split bore as the outputs of an analysis: relations pass them to `elastic_film` 1."""
 
 from __future__ import annotations
 

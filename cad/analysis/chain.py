@@ -1,7 +1,7 @@
 """A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
 
-The first end is held. Guided, each main stays on the axis, as in a bearing, and may turn; else nothing else
-is held. Stiffnesses of throws that were each computed alone know in series of no bearings between them.
+The first end is held. In a guided chain each main stays on the axis, as in a bearing, and may turn; otherwise
+nothing else is held. A series of separately computed throw stiffnesses neglects the bearings between them.
 """
 
 from __future__ import annotations

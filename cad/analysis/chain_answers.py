@@ -1,9 +1,9 @@
 """A shaft as a chain of its throws, as the outputs of an analysis: each with its error.
 
-Each solid is meshed once and solved in elements of two orders. The error of an output has two parts: what the
-mesh leaves, from the two orders as for every other analysis (`cad.analysis.levels`), and what the chain
-leaves against finite elements of the whole shaft. The second part is `OF_THE_CHAIN`: above the largest
-differences of three shafts, free and guided (`python -m benchmarks.crank_chain`).
+Each solid is meshed once and solved in elements of two orders. The error of an output has two parts: the mesh
+error, from the two orders as for every other analysis (`cad.analysis.levels`), and the difference between the
+chain and finite elements of the whole shaft. The second part is `OF_THE_CHAIN`: above the largest differences
+of three shafts, free and guided (`python -m benchmarks.crank_chain`).
 """
 
 from __future__ import annotations

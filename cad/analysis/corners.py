@@ -1,7 +1,8 @@
 """Sharp inner edges of a solid, at which stress has no limit and elements have to be small.
 
-For `cad.analysis.mesh`. They are seen on triangles that are small enough to turn by less than `SHARP` where a
-fillet begins: at a sharp inner edge two triangles of two faces meet at a larger angle, and open outward.
+For `cad.analysis.mesh`. The surface is divided into triangles so small that neighbours turn by less than
+`SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger angle that opens
+outward.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
 
 
 def _neighbours(corners: Integers) -> tuple[Integers, Integers]:
-    """For each side that two triangles share: the one, and the other, each with the place of its side."""
+    """Return, for each side that two triangles share, both triangles with the index of their side."""
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     order = np.lexsort(sides.T)
     twice = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))

@@ -2,9 +2,10 @@
 
 Lengths in mm, forces in N, stresses in MPa, masses in t: so no factor stands in any equation.
 
-Rotation is that of energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded end turns by
-θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element space lies in
-that of all displacements, so θ comes out too small, K too large: K falls towards the true one.
+The rotation is the one that conserves energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded
+end turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element
+space lies in that of all displacements, so θ is too small and K too large; K decreases towards the true
+value.
 
 Symmetry. Torsion of a solid that mirrors itself in y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
 and u_z, the same u_y. On the plane the tangential displacements are zero and the normal one is free; half the
@@ -68,7 +69,7 @@ class System:
         self.inverse = self._inverse_of_form(few_forces)
 
     def _inverse_of_form(self, few_forces: bool) -> Any:
-        """Return what solves the assembled form for a force, on its unknowns outside elements."""
+        """Return the solver of the assembled form for a force, on its unknowns outside elements."""
         if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
             return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)

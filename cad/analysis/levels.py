@@ -1,15 +1,15 @@
 """Levels of fidelity: mesh and order for an accuracy, from a table beside this file.
 
-The error of an answer is estimated on its own mesh, from the same answer at one order less. A factor of that
-change is to cover what a higher order would correct, a floor what only a finer mesh would: a coarse mesh
-about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of random shafts in
-benchmarks/results/torsion_levels.json (`python -m benchmarks.torsion_levels`).
+The error of an answer is estimated on its own mesh, from the same answer at one order less. The change times
+a factor covers what a higher order would correct; a floor covers what only a finer mesh would correct. A
+coarse mesh about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of
+random shafts in benchmarks/results/torsion_levels.json (`python -m benchmarks.torsion_levels`).
 
 Solids with sharp inner edges have factors of their own. Where displacements grow as r^λ from an edge,
 energies of order p err by c p^(-4 λ) (Babuška and Suri 1987), so the error is 1/((p/(p - 1))^(4 λ) - 1) of
 the change. λ is 0.5445 at an inner edge of 90° and 0.5 at a crack, the worst: there the error is 0.8 of the
 change in third order and 1.29 in fourth. With sharp edges two orders may agree by chance, as on crankshafts
-with a slender end, so their floor is higher (tests/cad/analysis/test_torsion_levels.py).
+with a slender end, so the floor for sharp edges is higher (tests/cad/analysis/test_torsion_levels.py).
 """
 
 from __future__ import annotations

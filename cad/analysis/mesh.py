@@ -1,13 +1,13 @@
 """Curved tetrahedra in a solid: coarse where it is plain, and never coarser than its curved edges allow.
 
-Elements are as much curved as their order allows (isoparametric): with less the roundness of a shaft is what
-is missing (0.2 % of a cylinder's stiffness), with more the elements no longer contain a rotation. So meshes
-can be far coarser than pictures of them. Three things make that safe. Each curved edge has a least number of
-segments, else a bore's rim would be spanned by one chord through its middle. Along sharp inner edges, where
-stress has no limit and a higher order gains little, elements are small (`cad.analysis.corners`). And the
-curving of the surface is led into the inside by harmonic functions: Netgen curves surface elements only,
-which folds thin elements under a fillet (of 2 000 elements in a throw 46 so, 6 with it). What is left folded
-only stiffens, and is part of the error that is estimated.
+Elements are isoparametric. With a lower order of curvature, a cylinder is 0.2 % too stiff; with a higher
+order, the elements cannot represent a rotation. So a mesh can be much coarser than a mesh for display. Three
+measures make that safe. Each curved edge has a least number of segments, else a bore's rim would be spanned
+by one chord through its middle. Along sharp inner edges, where stress has no limit and a higher order gains
+little, elements are small (`cad.analysis.corners`). And the curving of the surface is led into the inside by
+harmonic functions: Netgen curves surface elements only, which folds thin elements under a fillet (of 2 000
+elements in a throw 46 so, 6 with it). The remaining folded elements only add stiffness, which the estimated
+error includes.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def bound_sizes(solid: Solid, fineness: Fineness) -> None:
 
 
 def _limits(edge: Any, most: float) -> tuple[float, float]:
-    """By what angle [rad] an edge turns, and how long [mm] a segment is that turns by the most allowed."""
+    """Return the angle [rad] by which an edge turns, and the longest segment [mm] that may span it."""
     length = edge.mass
     turn = _turning(edge) if length > 0 else 0.0
     return turn, length / ceil(turn / most - 1e-6) if turn > most else length

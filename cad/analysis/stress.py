@@ -1,11 +1,11 @@
-"""The greatest stress of a loaded shaft, with its convergence; none where it does not converge.
+"""The greatest stress of a loaded shaft with its convergence; there is no answer if it does not converge.
 
 The mesh is refined where the stress is high until three meshes in succession agree: a small change and then a
-smaller one, since one may be small by chance. What is compared is the recovered stress: the polynomials of
-neighbouring elements averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner stress has
-no limit, each refinement raises it by a quarter, and nothing converges: the answer is a refusal with that
-reason. Close to the ends, where a clamp or a load that no real joint makes disturbs the field, nothing is
-looked at (de Saint-Venant's principle); but where a fillet or a web begins nearer, it is looked at.
+smaller one, since one may be small by chance. The recovered stress is compared: polynomials of neighbouring
+elements, averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner stress has no limit,
+each refinement raises it by a quarter, and nothing converges: the answer is a refusal with that reason. The
+search leaves out the regions near the ends, where an idealised clamp or load disturbs the field (de
+Saint-Venant's principle). If a fillet or a web begins nearer to an end, the search begins there.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ def searched(solid: Solid) -> tuple[float, float]:
 
 
 def _extent(face: Any) -> tuple[float, float]:
-    """From which to which z [mm] the edges of a face reach; the kernel's boxes of curved faces are larger."""
+    """Return the range of z [mm] of a face's edges; the kernel's boxes of curved faces are larger."""
     levels = []
     for edge in face.edges:
         if edge.mass > 0:

@@ -1,4 +1,4 @@
-"""The surface of an analysed solid as data for a picture: where it is, how far it moves, how it is stressed.
+"""The surface of an analysed solid as data for a picture: points, displacements, stresses.
 
 From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
 into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is
@@ -125,7 +125,7 @@ def _pieces(lattice: Integers) -> Integers:
 
 
 def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
-    """Of every point of every element: its number among those that differ; and where each number is first."""
+    """Return the number of each element's points among the distinct ones, and each number's first index."""
     numbers: dict[tuple[tuple[int, int], ...], int] = {}
     number: list[int] = []
     first: list[int] = []

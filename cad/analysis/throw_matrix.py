@@ -2,13 +2,14 @@
 
 The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0) and z = `middle`, which is 0 but
 for split pins, of which it is the front one. Its freedoms are the means of displacement [mm] and rotation
-[rad] of either end's section, six each, and the displacement of the pin across the shaft, two. A mean is the
-one that a load works on: of a force spread evenly, of a moment spread linearly.
+[rad] of either end's section, six each, and the displacement of the pin across the shaft, two. Each mean is
+conjugate to a load: displacements to an evenly distributed force, rotations to a linearly distributed moment.
 
-One end is held and eight unit loads act, six on the other end and two on the pin. They displace themselves
-by the flexibility F [8, 8]. With T [8, 14], what any freedoms displace relative to the first end as a rigid
-body, the stiffness is K = Tᵀ F⁻¹ T: it resists no rigid motion. The mass matrix is that of the same fields,
-rigid motions and responses to loads, so that its rigid part is the mass and inertia of the solid.
+One end is held and eight unit loads act, six on the other end and two on the pin. Their displacements are the
+flexibility F [8, 8]. T [8, 14] maps the degrees of freedom to displacements relative to the rigid motion of
+the first end. The stiffness is K = Tᵀ F⁻¹ T, so it resists no rigid motion. The mass matrix is that of the
+same fields, rigid motions and responses to loads, so that its rigid part is the mass and inertia of the
+solid.
 
 Lengths in mm, forces in N, masses in t.
 """
@@ -86,7 +87,7 @@ def section_loads(system: System, name: str) -> list[Any]:
 
 
 def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
-    """Return what freedoms displace relative to the first end as a rigid body, (8, 14)."""
+    """Return displacements per degree of freedom, relative to the first end as a rigid body, (8, 14)."""
     lever = pitch / 2 + middle
     relative = np.zeros((END + PIN, FREEDOMS))
     relative[:, END:] = np.eye(END + PIN)

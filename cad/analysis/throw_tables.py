@@ -1,4 +1,4 @@
-"""Stress tensors under unit loads as the tables of an analysis: what relations hand to `fatigue_life` 1."""
+"""Stress tensors under unit loads as the tables of an analysis: relations pass them to `fatigue_life` 1."""
 
 from __future__ import annotations
 

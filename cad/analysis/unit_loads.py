@@ -1,4 +1,4 @@
-"""Stress tensors at points of a throw under unit loads: what a history of loads is superposed from.
+"""Stress tensors at points of a throw under unit loads, from which a load history is superposed.
 
 Five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. It is held at one end face.
 
@@ -65,7 +65,7 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """Return what of a force at mid-pin the support of the loaded end bears."""
+        """Return the share of a force at mid-pin that the support of the loaded end bears."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:

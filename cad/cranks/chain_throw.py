@@ -111,7 +111,7 @@ def _standing(part: Shape, half: Half) -> Shape:
 
 
 def _halves_about_the_middle(whole: WholeShaft) -> tuple[Half, Half]:
-    """Where the halves of a throw stand if its front pin points to x and z = 0 is half way between mains."""
+    """Return the halves of a throw whose front pin points to x, with z = 0 midway between mains."""
     front, rear = whole.halves(0)
     middle = whole.pitch / 2
     return Half(0.0, front.middle - middle), Half(rear.angle - front.angle, rear.middle - middle)

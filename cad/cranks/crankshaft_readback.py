@@ -30,7 +30,7 @@ def alike(values: Iterable[float], what: str) -> float:
     """
     found = list(values)
     if not found or max(found) - min(found) > 2 * _CLEAR:
-        raise LookupError(f"{what} alike; there are {found}")
+        raise LookupError(f"all {what} must have one size; the file has {found}")
     return sum(found) / len(found)
 
 
@@ -95,13 +95,13 @@ class ShaftReadback:
             pins = (self._pin_between(*faces[at : at + 2]) for at in range(1, count - 1, 2))
             found.append(ThrowReadback(tuple(pins), faces))
         if not found:
-            raise LookupError("a pin between two webs")
+            raise LookupError("there is no pin between two webs")
         return found
 
     def _pin_between(self, low: float, high: float) -> Surface:
         pins = self._beside_within(low, high)
         if not pins:
-            raise LookupError(f"a pin between the webs at {low:.9g} and {high:.9g} mm")
+            raise LookupError(f"there is no pin between the webs at {low:.9g} and {high:.9g} mm")
         return max(pins, key=lambda c: c.diameter)
 
     def _beside_within(self, low: float, high: float) -> list[Surface]:
@@ -153,7 +153,7 @@ class ShaftReadback:
         return alike(map(read, self.throws), what)
 
     def _pin_bore(self, throw: ThrowReadback) -> float:
-        """Return the diameter of the cylinder that goes on from each pin through its web or webs."""
+        """Return the diameter of the cylinder that continues from each pin through its webs."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
             crossing = (
@@ -165,7 +165,7 @@ class ShaftReadback:
         return max((c.diameter for c in through), default=0.0)
 
     def _journal_bore(self, throw: ThrowReadback) -> float:
-        """Diameter of the cylinder about the shaft that goes on through both of the outer faces."""
+        """Return the diameter of the cylinder about the shaft that passes through both outer faces."""
         sizes = []
         for face in (throw.faces[0], throw.faces[-1]):
             through = (
@@ -181,11 +181,11 @@ class ShaftReadback:
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
             if not sides:
-                raise LookupError("sides of the middle webs")
+                raise LookupError("the sides of the middle webs are missing")
             along.remove(sides[0])
         distances = [d for d in (abs(p.point.dot(p.direction)) for p in along) if d > _CLEAR]
         if not distances:
-            raise LookupError("sides of webs")
+            raise LookupError("the sides of the webs are missing")
         return 2 * min(distances)
 
     def _sides_of_middle_webs(self) -> Iterator[tuple[Vector, float]]:
@@ -207,7 +207,7 @@ class ShaftReadback:
         }
 
     def pin_split(self, near: float) -> float:
-        """From each front pin to its rear one [deg], in that turn which is nearest to that wanted [deg]."""
+        """Return the angle from front to rear pins [deg], in the turn nearest to the requested angle."""
         turns = [degrees(rear - front) for front, rear in (throw.angles for throw in self.throws)]
         return near + alike((remainder(turn - near, 360) for turn in turns), "split pins")
 
@@ -215,13 +215,13 @@ class ShaftReadback:
         tori = self.seen.tori
         each = 6 if self.split else 4
         if tori and len(tori) != each * len(self.throws):
-            raise LookupError(f"{each} fillets for each throw; there are {len(tori)}")
+            raise LookupError(f"each throw must have {each} fillets; all throws have {len(tori)}")
         return alike(tori, "fillets") if tori else 0.0
 
     def _drilling(self) -> float:
         askew = [c.diameter for c in self.seen.cylinders if not c.along(Z)]
         if askew and len(askew) < sum(len(throw.pins) for throw in self.throws):
-            raise LookupError(f"a drilling in each pin; there are {len(askew)}")
+            raise LookupError(f"each pin must have a drilling; all pins have {len(askew)}")
         return alike(askew, "oil drillings") if askew else 0.0
 
     def _inclination(self) -> float:
@@ -233,10 +233,10 @@ class ShaftReadback:
         )
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
-        """Return where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
+        """Return the pin angles [deg], in the turn that is nearest to the requested angles [deg]."""
         seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
-            raise LookupError(f"{len(near)} throws; there are {len(seen)}")
+            raise LookupError(f"there must be {len(near)} throws; there are {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
     def counterweights(self) -> list[float]:
@@ -267,7 +267,7 @@ class ShaftReadback:
             if all(_shown(angle + side * half, lines) for angle in heavy for side in (-1, 1))
         ]
         if not shared:
-            raise LookupError("flanks of counterweights")
+            raise LookupError("the flanks of the counterweights are missing")
         return min((2 * degrees(half) for half in shared), key=lambda angle: abs(angle - near))
 
     @staticmethod
@@ -295,7 +295,7 @@ class ShaftReadback:
     def _check_spacing(angles: Sequence[float]) -> None:
         step = 2 * pi / len(angles)
         if any(abs(remainder(angle, step)) > radians(1e-5) for angle in angles):
-            raise LookupError("bolt holes evenly on their circle")
+            raise LookupError("the bolt holes are not evenly spaced on their circle")
 
 
 def _spans(cylinder: Surface, low: float, high: float) -> bool:

@@ -125,7 +125,7 @@ class EndParameters(CrankRules):
         return (self.d_b <= 0) | (self.d_b >= 0.002 * self.D_j)
 
     def ends_drawn(self) -> tuple[End, End, Bolts | None]:
-        """Return the nose, flange and bolt holes as radii and lengths of what is drawn."""
+        """Return the nose, flange and bolt holes as radii and lengths of the drawn shape."""
         holes = Bolts(round(float(self.n_b)), mm(self.d_b) / 2, mm(self.D_b) / 2, mm(self.l_b))
         return (
             End(mm(self.D_n) / 2, mm(self.L_n)),

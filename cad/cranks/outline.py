@@ -32,7 +32,7 @@ class Outline:
 
     @property
     def tip(self) -> float:
-        """Return where the web ends beyond the pin."""
+        """Return the position of the web's end beyond the pin."""
         return self.throw + self.half_width
 
     @property
@@ -85,7 +85,7 @@ class Outline:
         return first, [side, arc], last
 
     def _square(self) -> tuple[Run, list[Run], Run]:
-        """Return a rectangular web, likewise."""
+        """Return a rectangular web in the same way."""
         h, a = self.half_width, self.half_angle
         first, last = ((self.tip, -h), (self.tip, h)), ((-h, h), (-h, -h))
         if self.counterweight > 0 and a > pi / 4:
@@ -102,7 +102,7 @@ class Outline:
 
     @property
     def _sector(self) -> float:
-        """Return what the counterweight adds to the body [mm²]."""
+        """Return the area that the counterweight adds to the body [mm²]."""
         h, a = self.half_width, self.half_angle
         if self.counterweight == 0:
             return 0.0

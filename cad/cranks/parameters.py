@@ -1,8 +1,8 @@
 """Parameters of a crank throw, which the models of a throw and of a shaft share, and what follows from them.
 
-A model adds how much of a main journal it draws on each side of the throw (`L_s`). Parameters that are 0
-stand for what is not there: bores, fillet, oil drilling, counterweight, inclination. Without a
-`counterweight_radius` its angle means nothing.
+A model adds how much of a main journal it draws on each side of the throw (`L_s`). A parameter of 0 omits the
+feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`, the
+counterweight angle has no effect.
 
 The *face inclination* is the angle by which the outer face of each web leans towards the middle of the throw,
 from beside the journal's fillet to the end beyond the pin. 0 is a flat face and the heaviest web; the larger
@@ -76,7 +76,7 @@ class CrankParameters(CadModel):
 
     @derived("mm", "fillet", symbol="r_f", ge=0, le=500)
     def r_f(self) -> Array:
-        """As large as is common, or as lengths and web leave room for."""
+        """Default: a usual fillet, or the largest one for which lengths and web leave room."""
         return np.minimum(
             np.minimum(0.05 * np.minimum(self.D_j, self.D_c), 0.1 * np.minimum(self.L_j, self.L_c)),
             0.25 * np.abs(self.W - np.maximum(self.D_j, self.D_c)),
@@ -98,7 +98,7 @@ class CrankParameters(CadModel):
 
     @formula("mm", "overlap", symbol="s")
     def s(self) -> Array:
-        """By how much journal and pin overlap, seen along the shaft; negative if they do not."""
+        """Overlap of journal and pin, seen along the shaft; negative without overlap."""
         return (self.D_j + self.D_c) / 2 - self.R
 
     @formula("mm", "journal wall", symbol="w_j")
@@ -118,7 +118,7 @@ class CrankParameters(CadModel):
 
     @formula("mm", "incline start", symbol="x_b")
     def x_b(self) -> Array:
-        """Where the outer face of a web begins to slope: beyond the journal and its fillet."""
+        """Position at which a web's outer face begins to slope: beyond the journal and its fillet."""
         return 0.51 * self.D_j + self.r_f
 
     @formula("mm", "web end thickness", symbol="L_e")
@@ -163,10 +163,10 @@ class CrankParameters(CadModel):
 
     @formula("mm", "drilling cover at the start of the incline", name="cover_at_start", symbol="c_1")
     def c_1(self) -> Array:
-        """From the drilling's axis to the inclined face, along its normal."""
+        """Distance from the drilling's axis to the inclined face, along its normal."""
         return np.cos(self.beta) * self.k_o * (self.x_b - self.x_2)
 
     @formula("mm", "drilling cover at the web's inner face", name="cover_at_inner_face", symbol="c_2")
     def c_2(self) -> Array:
-        """From the drilling's axis to the inclined face, along its normal."""
+        """Distance from the drilling's axis to the inclined face, along its normal."""
         return np.cos(self.beta) * self.L_w - np.sin(self.beta) * (self.x_1 - self.x_b)

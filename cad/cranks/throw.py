@@ -1,10 +1,10 @@
-"""The solid of a crank throw: what is drawn, in millimetres.
+"""Draw the solid of a crank throw, in millimetres.
 
 z is the axis of the main journals, x points from it to the crankpin, z = 0 is the middle of the pin. Each web
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
 
-Whatever turns is turned from one outline, fillets included, and the webs are plates: so the parts only touch,
-in flat faces, and their union is easy for the kernel. Only bores, drilling and inclined faces are cut.
+Journals and pins are turned from one outline with their fillets, and the webs are plates. So the parts meet
+only in flat faces, and the kernel can unite them reliably. Only bores, drilling and inclined faces are cut.
 """
 
 from __future__ import annotations

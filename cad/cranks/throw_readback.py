@@ -59,7 +59,7 @@ def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]
 
 
 def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
-    """Return the diameter of the cylinder about the shaft that goes on through the web.
+    """Return the diameter of the cylinder about the shaft that continues through the web.
 
     Return 0 if there is none.
     """
@@ -92,7 +92,7 @@ def fillet(seen: PartSurfaces) -> float:
     if not radii:
         return 0.0
     if len(radii) != 4 or max(radii) - min(radii) > _CLEAR:
-        raise LookupError(f"four fillets alike; there are {radii}")
+        raise LookupError(f"the four fillets must have one radius; the file has {radii}")
     return radii[0]
 
 

@@ -1,7 +1,7 @@
 """Volume of a crank throw [mm³], from its dimensions alone: a second method beside the kernel.
 
-The parts touch in faces, so their volumes add; what is cut lies inside one of them, or crosses them in whole:
-the rules of the models see to that. Fillets follow Pappus. The drilling is summed over its chords: at a
+The parts touch in faces, so their volumes add. Each cut lies inside one part or crosses a part completely;
+the rules of the models ensure that. Fillets follow Pappus. The drilling is summed over its chords: at a
 distance y from the plane of the crank each has the same length, whatever its height in the drill, as both of
 its mouths lie in cylinders along z. The bores that it crosses shorten it likewise.
 """

@@ -1,13 +1,13 @@
-"""A crankshaft of any number of throws: what is drawn, in millimetres, and its volume in closed form.
+"""Draw a crankshaft of any number of throws, in millimetres, and compute its volume in closed form.
 
 z runs along the shaft; z = 0 is the middle of the first main journal, and the middle of each next one lies a
 pitch further on. x is the line of reference from which the angles of the pins count, towards y. The nose is
 at -z, the flange at +z.
 
-Each throw is drawn as `crank_throw` is, then turned and shifted. What turns is one outline, and the parts
-only touch in flat faces, so their volumes add; bores, drillings and bolt holes are cut from the whole at
-once. None of these meets another, except a drilling the bores of its own throw: the rules of the model see
-to that.
+Each throw is drawn as `crank_throw` is, then turned and shifted. Journals and pins are turned from one
+outline, and the parts meet only in flat faces, so their volumes add. Bores, drillings and bolt holes are cut
+from the whole shaft. They do not intersect each other, except for a drilling and the bores of its own throw;
+the rules of the model ensure that.
 
 Where pins are split, a throw is two halves, each turned with its own pin, and a middle web between them. Pin
 bores then end at the middle web, and each pin has its drilling: the front one from the main before it.
@@ -84,9 +84,9 @@ class WholeShaft:
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Return where the front and the rear half of a throw stand, counted from 0.
+        """Return angle and position of a throw's front and rear half; throws count from 0.
 
-        Alike with an undivided pin.
+        Both halves are equal with an undivided pin.
         """
         angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
         if self.split is None:

@@ -1,6 +1,6 @@
 """Broken-out sections (ISO 128-3): around a hole that no section shows, a view is cut open to its axis.
 
-One of several equal holes is opened, that farthest to the right in the view. The cut is a box, whose sides
+Of several equal holes, the one farthest to the right in the view is opened. The cut is a box, whose sides
 are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
 """
 
@@ -57,7 +57,7 @@ class Break:
 
 
 def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> list[Break]:
-    """Return where a view in a plane opens shapes; not for holes of diameters that are `shown` elsewhere."""
+    """Return the break-outs of a view in a plane, without holes whose diameters are `shown` elsewhere."""
     holes: dict[tuple[float, ...], list[tuple[Point, Point, Surface, float]]] = {}
     for hole in (c for shape in shapes for c in look(shape).cylinders if _is_across(c, plane)):
         if any(abs(hole.diameter - diameter) < _ON for diameter in shown):
@@ -160,7 +160,7 @@ def _is_within(
 
 
 def _box(shapes: Sequence[Shape], plane: Plane) -> tuple[Point, Point]:
-    """Return what shapes take of the view."""
+    """Return the bounding box of shapes in the view."""
     flat = Compound.makeCompound([shape.moved(Location(plane).inverse) for shape in shapes])
     box = BoundBox._fromTopoDS(flat.wrapped)
     return (box.xmin, box.ymin), (box.xmax, box.ymax)

@@ -1,4 +1,4 @@
-"""The part of a model's declaration that a drawing shows: kind, limits, datums, tolerances of form."""
+"""The part of a model's declaration that a drawing shows: kind, limits, datums, form tolerances."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class DrawingDeclaration:
     carriers: Mapping[str, ToleranceFaces] = field(default_factory=dict)
 
     def repeated(self, parameters: Mapping[str, str], bodies: Sequence[Body]) -> dict[str, list[Point]]:
-        """Return where the lengths begin and end that repeat along the shaft, by parameter [mm]."""
+        """Return the ends of lengths that repeat along the shaft, by parameter [mm]."""
         sizes = {name: length_of(parameters[name]) for name in self.carriers}
         carriers = Carriers({body.name: body.shape for body in bodies}, self.carriers, sizes)
         along = (
@@ -71,7 +71,7 @@ class DrawingDeclaration:
 
     @staticmethod
     def of(header: Header | None, *, is_assembly: bool = False) -> DrawingDeclaration:
-        """Return what the model of a STEP file declares."""
+        """Return the declarations of the model of a STEP file."""
         if header is None:
             return DrawingDeclaration()
         limits = limits_in(header)

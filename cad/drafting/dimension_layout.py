@@ -156,7 +156,7 @@ class DimensionLayout:
     def _box_in_lane(
         self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
     ) -> Rectangle:
-        """Return what a dimension line and its words take on the paper."""
+        """Return the area of a dimension line and its text on the paper."""
         half = label.width(TEXT) / 2 + 0.5
         is_narrow = ends[1] - ends[0] < _ARROWS
         tail = _TAIL if is_narrow else 0.0

@@ -21,7 +21,7 @@ class Format:
 
     @property
     def area(self) -> Rectangle:
-        """Return where the views and their dimensions are."""
+        """Return the area of the views and their dimensions."""
         return LEFT, EDGE + HEIGHT, self.width - EDGE - COLUMN, self.height - EDGE
 
     @property

@@ -1,4 +1,4 @@
-"""What stands on a dimension: signs, number, its tolerance as a zone and as deviations (ISO 129-1)."""
+"""The text of a dimension: symbols, number, tolerance as a zone and as deviations (ISO 129-1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""On which side of a view a dimension stands: in lanes beside it, or at its own place within it."""
+"""Choose the side of a view for a dimension: in lanes beside the view, or at a position within it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Centre lines of a view, and what marks its section: label, cutting line, arrows (ISO 128-2, ISO 128-3)."""
+"""Centre lines of a view, and its section marks: label, cutting line, arrows (ISO 128-2, ISO 128-3)."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 
 
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
-    """Return the pitch circles through several circles about the shaft, with centre lines there."""
+    """Yield the pitch circles through several circles about the shaft, with centre lines there."""
     middles = _middles(view, plan)
     away = Counter(round(hypot(*middle), 3) for middle in middles)
     pitch = [size for size, count in away.items() if count > 2 and size > 0]

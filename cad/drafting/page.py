@@ -1,4 +1,4 @@
-"""Draws views, centre lines, marks of the section, dimensions and symbols as entities of DXF."""
+"""Draw views, centre lines, section marks, dimensions and symbols as DXF entities."""
 
 from __future__ import annotations
 

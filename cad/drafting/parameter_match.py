@@ -1,4 +1,4 @@
-"""Match sizes in a drawing with parameters: by their values, and by the sort that their words speak of."""
+"""Match sizes in a drawing with parameters: by their values, and by the kind that their words name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sizes of what stands out of a cylinder, lies beside the shaft or is bevelled: lugs, joints, chamfers."""
+"""Sizes of lugs that protrude from a cylinder, of joints beside the shaft, and of chamfers."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class RemovedSection:
 
     @property
     def along(self) -> list[Point]:
-        """Return where along the shaft the upright dimensions begin and end."""
+        """Return the positions along the shaft of the vertical dimensions' ends."""
         sign = self.view.frame.up.dot(Z)
         upright = [d.measure.points for d in self.dimensions if d.measure.form == "up"]
         ends = (sorted(round(y * sign, 6) for _, y in points) for points in upright)

@@ -1,4 +1,4 @@
-"""Which places of a sheet are still free: texts keep off one another, off views and off lines."""
+"""The free areas of a sheet: texts must not overlap each other, views or lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shapes that a plane cuts: the faces in it, what lies behind it, and their edges as curves on the paper."""
+"""Cut shapes by a plane: the faces in the plane, the solids behind it, and their edges as curves on paper."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section stands at its true coordinates, everything is drawn 1:1, and the sheet around it is as large as
-the scale requires; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
+The section has its true coordinates, everything is drawn 1:1, and the sheet around it is as large as the
+scale requires. So a DIMENSION measures the true size of the part. Each carries the name of its parameter.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def _laid_out(
                 return content, _laid(content, bodies, declared, plan, is_last=is_last)
             except NoRoom:
                 continue
-    raise AssertionError("the last sheet takes everything")
+    raise AssertionError("the largest sheet has room for every drawing")
 
 
 def _laid(
@@ -194,6 +194,6 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
 
 
 def _on_paper(view: View, plan: Plan, right: float) -> Rectangle:
-    """Return what a view takes on the paper."""
+    """Return the area of a view on the paper."""
     low, high = (plan.paper(corner, right) for corner in view.box)
     return (*low, *high)

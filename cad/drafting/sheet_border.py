@@ -58,12 +58,12 @@ class General:
 
     @property
     def text(self) -> str:
-        """Return what the title block says, before the frame of the profile."""
+        """Return the text of the title block that precedes the profile frame."""
         return f"{SIZES}, {SURFACES}" if self.has_profile else GENERAL
 
     @property
     def note(self) -> str:
-        """Return what it means, for the notes."""
+        """Return its meaning, for the notes."""
         if not self.has_profile:
             return f"sizes, angles and geometry without a tolerance: {GENERAL}"
         return (

@@ -40,12 +40,12 @@ class Field:
 
     @property
     def text_at(self) -> tuple[float, float]:
-        """Return where its text begins, from the lower left corner of the block."""
+        """Return the start of its text, from the lower left corner of the block."""
         return self.left + _INSET, self.low + 1.7
 
     @property
     def caption_at(self) -> tuple[float, float]:
-        """Return where its caption begins."""
+        """Return the start of its caption."""
         return self.left + _INSET, self.low + self.height - 2.7
 
 

@@ -1,9 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-Of the two planes through the shaft that is cut which is no joint, and then the one that holds the axes of
-more cylinders: an oil hole, a pin. In the section z points right; beside it, in first-angle projection,
-stands the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO 128-3): they are drawn
-whole, a shaft with its hidden lines.
+The section takes one of two planes through the shaft: one that is not a joint, and then the one that holds
+the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
+first-angle projection, stands the view from the left. Balls, shafts and round bars are not cut lengthwise
+(ISO 128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class View:
 
     @property
     def box(self) -> tuple[Point, Point]:
-        """Return the lower left and upper right corner of what is drawn."""
+        """Return the lower left and upper right corner of the drawn shape."""
         points = [point for curve in (*self.visible, *self.hidden) for point in curve.points]
         across, up = [x for x, _ in points], [y for _, y in points]
         return (min(across), min(up)), (max(across), max(up))
@@ -204,7 +204,7 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 
 def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
-    """Return what lies behind the plane, with what is not cut, and the faces that the plane cuts."""
+    """Return the view of a section: cut faces, shapes behind the plane, and uncut parts."""
     sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
     behind = [shape for one in placed for shape in _seen(one, frame.towards)]
@@ -220,7 +220,7 @@ def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
 
 
 def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
-    """Return what a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
+    """Return the remainder of a cut part: its half behind the plane, or all of an uncut part."""
     if not one.is_whole:
         return half_behind(one.shape, normal)
     return [one.shape] if _sides(one.shape, normal)[0] < -CLEAR else []

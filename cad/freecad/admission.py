@@ -2,8 +2,8 @@
 
 A `.FCStd` is a ZIP of `Document.xml` and the shapes that it names. A Python feature is an object whose type
 ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file is refused, as is
-one that reads other files. What passes is packed again: only parts that the document names are left, so that
-a macro beside them goes, and FreeCAD reads a package that this program wrote.
+one that reads other files. An accepted file is packed again with only the parts that the document names. So
+macros are dropped, and FreeCAD reads only packages that this program wrote.
 
 Runs in a process of its own, whose memory and time are limited.
 """

@@ -113,7 +113,7 @@ def deny_calls(libc: ctypes.CDLL) -> None:
     program = (Filter * len(lines))(*(Filter(*line) for line in lines))
     all_threads = 1
     if libc.syscall(seccomp, 1, all_threads, ctypes.byref(Filters(len(lines), program))) != 0:
-        raise OSError(ctypes.get_errno(), "the kernel does not filter calls")
+        raise OSError(ctypes.get_errno(), "the Linux kernel does not filter system calls")
 
 
 class FileAccess(ctypes.Structure):
@@ -156,7 +156,7 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
         libc.syscall(add, ruled, 1, ctypes.byref(Beneath(access, folder)), 0)
         os.close(folder)
     if libc.syscall(restrict, ruled, 0) != 0:
-        raise OSError(ctypes.get_errno(), "the kernel does not rule files")
+        raise OSError(ctypes.get_errno(), "the Linux kernel does not restrict access to files")
     os.close(ruled)
 
 
@@ -289,7 +289,7 @@ def is_drawn(thing: Any) -> bool:
 
 
 def finished(document: Any) -> list[Any]:
-    """Return the objects that nothing else is made of; hidden ones only if all are."""
+    """Return the objects that no other object uses; hidden ones only if all are hidden."""
     drawn = [thing for thing in document.Objects if is_drawn(thing)]
     names = {thing.Name for thing in drawn}
     ends = [t for t in drawn if not any(user.Name in names and user is not t for user in t.InListRecursive)]
@@ -360,7 +360,7 @@ def main(lifeline: int, folder: str, modules: str, memory: int) -> None:
     hang_on(lifeline)
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(38, 1, 0, 0, 0) != 0:  # no new privileges
-        raise OSError("the kernel grants no promise of privileges")
+        raise OSError("the Linux kernel refuses `no_new_privs`")
     keep_to_files(libc, folder)
     sys.path[:0] = [place for place in modules.split(os.pathsep) if place]
     import FreeCAD  # the first: the others crash without it

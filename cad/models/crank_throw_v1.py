@@ -1,8 +1,8 @@
 """Crank throw: two webs, the crankpin between them, and half a main journal on each side.
 
 The part of a crankshaft from mid-journal to mid-journal, as stiffness formulas and finite elements take it.
-Without oil drilling it is its own mirror image in z = 0, and always in y = 0. What its words mean is said in
-the class below, which users read; parameters, rules and the solid are those of `cad.cranks`.
+Without oil drilling it is its own mirror image in z = 0, and always in y = 0. The class below, which users
+read, explains the parameters; parameters, rules and the solid are those of `cad.cranks`.
 """
 
 from collections.abc import Mapping
@@ -89,7 +89,7 @@ class CrankThrow(CrankRules):
         return self.L_j / 2
 
     def drawn(self) -> Throw:
-        """Return the parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of the drawn shape."""
         return Throw(
             outline=Outline(
                 throw=mm(self.R),
@@ -124,7 +124,7 @@ class CrankThrow(CrankRules):
         return Box((-max(web.half_width, web.counterweight), -wide, -end), (web.tip, wide, end))
 
     def shaft(self) -> Shaft:
-        """Return where it is held and loaded: by its end faces at -z and at +z."""
+        """Return the planes at which it is held and loaded: its end faces at -z and +z."""
         end = self.drawn().journal_end
         return Shaft(-end, end)
 

@@ -1,6 +1,6 @@
 """Crankshaft of any number of throws, undivided or with split pins: journals, counterweights, nose, flange.
 
-The throw is that of `crank_throw`; what its words mean is said in the class below, which users read.
+The throw is that of `crank_throw`. The class below, which users read, explains the parameters.
 """
 
 from collections.abc import Mapping
@@ -171,7 +171,7 @@ class Crankshaft(SplitParameters, EndParameters):
         return there_is_none(self.R_w) | clear_of_corners(self.web_shape, self.phi_w)
 
     def drawn(self) -> WholeShaft:
-        """Return the parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of the drawn shape."""
         angles = np.atleast_1d(self.psi).tolist()
         radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
         throws = (
@@ -217,7 +217,7 @@ class Crankshaft(SplitParameters, EndParameters):
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Return where it is held and loaded: by the end of its nose and by its flange."""
+        """Return the planes at which it is held and loaded: the end of its nose and its flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 

@@ -1,6 +1,6 @@
 """Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
 
-What its words mean is said in the class below, which users read.
+The class below, which users read, explains the parameters.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Washer:
     lug_height: float
 
     def groove_angles(self) -> list[float]:
-        """Return where grooves run; none runs to the crown of a full ring."""
+        """Return the angles of the grooves; a full ring has none at its crown."""
         if self.is_half:
             return [180 * (n + 0.5) / self.grooves for n in range(self.grooves)]
         return [90 + 360 * (n + 0.5) / self.grooves for n in range(self.grooves)]

@@ -166,7 +166,7 @@ class HalfShell:
         return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
-        """Return what was drawn at y = 0, where the joint is on that side."""
+        """Return a shape that was drawn at y = 0, turned to the joint on that side."""
         if self.lift == 0:
             return body
         return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
@@ -181,7 +181,7 @@ class HalfShell:
         return self._at_joint(lip, 1)
 
     def _ring(self, groove: Groove) -> Shape:
-        """Return what the groove takes, from within the bore on."""
+        """Return the solid that the groove removes, starting inside the bore."""
         w, low = groove.half_width, 0.9 * self.bore
         section = outline((low, -w), (groove.bottom, -w), (groove.bottom, w), (low, w))
         turn = 180.0 + 2 * _BEYOND if groove.is_whole else degrees(groove.turn)
@@ -204,7 +204,7 @@ class HalfShell:
         return self._with_legs(body, self.lining_joint())
 
     def _cone(self, side: int) -> Shape:
-        """Return what the chamfer of the bore takes at one end, with room inside and beyond."""
+        """Return the solid that the bore's chamfer removes at one end, with an allowance."""
         c, b, r = self.inner_chamfer, self.half_width, self.bore
         over, inside = 0.5 * c, 0.1 * r
         section = outline(
@@ -239,7 +239,7 @@ class HalfShell:
         return Vector(radius * cos(angle), radius * sin(angle), z)
 
     def lining_places(self) -> tuple[Location, ...]:
-        """Return where the lining is: once, or on both sides of the groove."""
+        """Return the axial ranges of the lining: one, or one on each side of the groove."""
         other = Location(Vector(0, 0, 0), Vector(0, 1, 0), 180)
         return (Location(), other) if self.is_split else (Location(),)
 
@@ -280,7 +280,7 @@ class HalfShell:
         return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width)
 
     def _chamfer(self) -> float:
-        """Return what the chamfer of the bore takes of the lining at one end [mm³]."""
+        """Return the volume of lining that the bore's chamfer removes at one end [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
@@ -289,7 +289,7 @@ class HalfShell:
         return turned_volume(section, degrees(self.turn))
 
     def _relief_in_chamfer(self, relief: Relief) -> float:
-        """Return what one chamfer and one relief both take [mm³]."""
+        """Return the volume that one chamfer and one relief share [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0

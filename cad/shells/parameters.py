@@ -1,7 +1,7 @@
 """Parameters of the shells of a plain bearing as the housing holds them, and what follows from them.
 
-The digest of a released model covers this file: what changes here needs a file of its own. Parameters that
-are 0 stand for what is not there: lining, tang, relief, hole, groove, flange, chamfers, crush height.
+The digest of a released model covers this file: put a change into a new file. A parameter of 0 omits the
+feature: lining, tang, relief, hole, groove, flange, chamfers, crush height.
 """
 
 from __future__ import annotations

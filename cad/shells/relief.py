@@ -44,7 +44,7 @@ class Relief:
         return [(self.bore + self.depth, 0.0), (sqrt(x * x + y * y), atan2(y, x)), (self.bore, self.angle)]
 
     def area(self) -> float:
-        """Return what it takes of the wall across the shaft [mm²]."""
+        """Return the cross-section that it removes from the wall [mm²]."""
         circle, bore = (sheet_under_arc(r, self.height) / 2 for r in (self.radius, self.bore))
         return self.axis * self.height + circle - bore
 

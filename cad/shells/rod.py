@@ -28,12 +28,12 @@ class Rod:
 
     @property
     def shoulder(self) -> float:
-        """Return where the shank begins, from the axis of the big end."""
+        """Return the distance of the shank's start from the axis of the big end."""
         return self.big_end.block_height
 
     @property
     def pocket(self) -> tuple[float, float]:
-        """Return where a pocket begins and ends: as far from the ends of the shank as from its sides."""
+        """Return the ends of a pocket, as far from the ends of the shank as from its sides."""
         edge = (self.shank_width - self.pocket_width) / 2
         return self.shoulder + edge, self.distance - self.outside - edge
 

@@ -1,6 +1,6 @@
 """Rules for which a half shell is refused, always by the names of the parameters and with a way out.
 
-The digest of a released model covers this file: what changes here needs a file of its own. The rules are a
+The digest of a released model covers this file: put a change into a new file. The rules are a
 little stricter than geometry requires, so that edges keep clear of each other and the kernel draws whatever
 they accept; and what they accept, the closed form of the volume covers.
 """

@@ -194,12 +194,12 @@ class Flywheel(Cylinder):
 
     @shared
     def row(self) -> Arrangement:
-        """Where the cranks stand."""
+        """Positions and angles of the cranks."""
         return arrangement(self.strokes, self.order, self.beta, self.z_i, self.z_0)
 
     @shared
     def planes(self) -> TwoPlanes:
-        """What balances cranks of unit mass and radius."""
+        """Balancing masses for cranks of unit mass and radius."""
         return two_planes(self.row, self.z_0, self.z_f, self.z_d)
 
     @shared

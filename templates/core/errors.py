@@ -124,14 +124,17 @@ class FaultyText(TemplateError):
 
 
 def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
-    """Return a fault for a name that nobody declared, with the nearest that somebody did."""
+    """Return a fault for a name that is not declared, with the nearest declared name."""
     near = nearest(name, candidates := list(candidates))
+    if (whole := name.replace("radial_clearance", "diametral_clearance")) != name and whole in candidates:
+        remedy = f"give {whole}, which is twice the radial clearance"
+        return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
     remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(candidates)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
 
 
 def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) -> list[Fault]:
-    """Return a fault for each name that nobody declared, the first of them with the nearest declared ones."""
+    """Return a fault for each name that is not declared, the first of them with the nearest declared ones."""
     if not (unknown := list(names)):
         return []
     declared, each = list(candidates), iter(unknown)

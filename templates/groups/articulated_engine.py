@@ -92,7 +92,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def rod_forces(self) -> Vectors:
-        """What each cylinder puts on its crankpin in the cylinder's axes [N], complex."""
+        """Force of each cylinder's rod on its crankpin, in the cylinder's axes [N], complex."""
         return link_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
 
     @shared

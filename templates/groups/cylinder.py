@@ -85,7 +85,7 @@ class Cylinder(Template):
 
     @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
     def p_e(self) -> Array:
-        """That of suction, unless given."""
+        """Default: the suction pressure."""
         return self.p_s
 
     @derived("kg*m**2", "rod inertia", symbol="I_3", shown=True, ge=0, absent=NO_INERTIA, source=DYREMI,
@@ -221,7 +221,7 @@ class Cylinder(Template):
 
     @formula("mm", "rod length", symbol="l")
     def l(self) -> Array:  # noqa: E743
-        """From pin to pin."""
+        """Length of the rod from pin to pin."""
         return self.n * self.r
 
     @formula("mm", "rod centre from wristpin", symbol="a_{g}")
@@ -231,12 +231,12 @@ class Cylinder(Template):
 
     @formula("kg", "rod mass at crankpin", symbol="m_{3A}", source=DYREMI)
     def m_3A(self) -> Array:
-        """What counts at the big end."""
+        """Share of the rod's mass at the big end."""
         return self.m_3 * self.a_g / self.l
 
     @formula("kg", "rod mass at wristpin", symbol="m_{3B}", source=DYREMI)
     def m_3B(self) -> Array:
-        """What counts at the small end."""
+        """Share of the rod's mass at the small end."""
         return self.m_3 * self.b_g / self.l
 
     @formula("kg", "rotating mass", symbol="M", source=DYREMI)
@@ -256,7 +256,7 @@ class Cylinder(Template):
 
     @formula("kg*m**2", "inertia excess", symbol=r"\Delta I", source=DYREMI, absent=NO_INERTIA)
     def dI(self) -> Array:
-        """What two masses have too much of."""
+        """Excess of the two masses' inertia over that of the rod."""
         return self.m_3 * self.a_g * self.b_g - self.I_3
 
     @formula("kg*m**2", "inertia correction", symbol=r"\Delta I_{c}", source=DYREMI,
@@ -267,7 +267,7 @@ class Cylinder(Template):
 
     @shared
     def gas(self) -> GasCycle:
-        """What the gas does over the cycle."""
+        """Gas cycle of the cylinder."""
         charge = Charge(self.p_s, self.p_e, self.p_3, self.epsilon, self.rho, self.k_c, self.k_e)
         valves = Valves(self.io, self.ic, self.eo, self.ec)
         return gas_cycle(

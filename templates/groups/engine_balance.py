@@ -69,6 +69,7 @@ from templates.physics.engine.harmonics import (
 )
 
 WEBS, ORDERS = "webs", "orders"
+NO_ORDER = "give firing_order or firing_angles"
 SIGN = "turn the sign of bank_angles, or say split with pins_of_a_throw"
 
 
@@ -118,10 +119,11 @@ class EngineBalance(EngineCylinders):
         """The firing order has every cylinder once."""
         return is_order(self.order, self.psi_g, self.phi_g)
 
-    @require("pin_angles", "firing_order", "firing_angles", missing=True, remedy="give firing_order too")
+    @require("pin_angles", "firing_order", "firing_angles", missing=True,
+             remedy="give firing_order too, or take gas_cycle none")  # fmt: skip
     def times_are_said(self) -> Truth:
-        """In four strokes pin angles alone do not say in which turn a cylinder fires."""
-        return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g)
+        """In four strokes pin angles alone do not say in which turn a cylinder fires; gas forces need it."""
+        return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g, self.gas_cycle)
 
     @require("bank_angles", "cylinder_offset", "stroke", "crank_radius", "rod_length", "bore", "rod_mass",
              "rod_centre", "rod_inertia", "piston_mass", "crank_unbalance", "pressure_factor", missing=True,
@@ -194,17 +196,18 @@ class EngineBalance(EngineCylinders):
     def layout(self) -> Layout:
         """Pins and firing."""
         return arranged(
-            self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top
-        )
+            self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top,
+            self.gas_cycle,
+        )  # fmt: skip
 
     @shared
     def places(self) -> Array:
-        """Where the cylinders stand [m], one value for each."""
+        """Positions of the cylinders [m], one for each."""
         return each(self.z_i)
 
     @shared
     def web_places(self) -> Array:
-        """Where the webs stand [m]; none where none are given."""
+        """Positions of the webs [m]; none if none are given."""
         return or_none(self.z_w)
 
     @shared
@@ -260,22 +263,24 @@ class EngineBalance(EngineCylinders):
 
     @text("layout", name="layout")
     def words(self) -> str:
-        """In words."""
+        """Description of the layout in words."""
         return layout_in_words(self.layout)
 
     @profile("deg", "crankpin angles", along=EACH, symbol=r"\psi", latex=r"\beta-\varphi+\alpha_{T}")
     def psi(self) -> Array:
-        """From the reference line."""
+        """Angle of each cylinder's pin from the reference line."""
         return pin_angles(self.layout)
 
-    @profile("deg", "ignition angles", along=EACH, symbol=r"\varphi", latex=r"\beta-\psi+\alpha_{T}")
+    @profile("deg", "ignition angles", along=EACH, symbol=r"\varphi", latex=r"\beta-\psi+\alpha_{T}",
+             absent=NO_ORDER)  # fmt: skip
     def phi(self) -> Array:
-        """Where each cylinder fires."""
+        """Firing angle of each cylinder."""
         return firing_angles(self.layout)
 
-    @profile("deg", "firing intervals", along="firing_intervals", symbol=r"\Delta\varphi")
+    @profile("deg", "firing intervals", along="firing_intervals", symbol=r"\Delta\varphi",
+             absent=NO_ORDER)  # fmt: skip
     def dphi(self) -> Array:
-        """In the firing order."""
+        """Intervals between firings, in the firing order."""
         return firing_intervals(self.layout)
 
     @profile("deg", "pin split", along="pin_split", symbol=r"\Delta\psi")
@@ -285,64 +290,64 @@ class EngineBalance(EngineCylinders):
 
     @formula("N", "rotating force", symbol="F_{r}")
     def F_r(self) -> Array:
-        """Of all that turns with the crank."""
+        """Force of all masses that turn with the crank."""
         return force_size(self.rotating)
 
     @formula("deg", "rotating force angle", symbol=r"\gamma_{F}")
     def gamma_F(self) -> Array:
-        """Where it points to at crank angle 0."""
+        """Direction of the rotating force at crank angle 0."""
         return direction(self.rotating)
 
     @formula("N*m", "rotating couple", symbol="C_{r}")
     def C_r(self) -> Array:
-        """Of all that turns with the crank."""
+        """Couple of all masses that turn with the crank."""
         return couple_size(self.rotating_couples)
 
     @formula("deg", "rotating couple angle", symbol=r"\gamma_{C}")
     def gamma_C(self) -> Array:
-        """Where the sum of place times force points to at crank angle 0."""
+        """Direction, at crank angle 0, of the sum of position times force."""
         return direction(self.rotating_couples)
 
     @profile("N", "order force forward", along=ORDERS, symbol=r"F_\mathrm{fwd}",
              latex=r"\left|\tfrac12\sum w\,e^{i(\beta+h(\psi-\beta))}\right|")  # fmt: skip
     def F_f(self) -> Array:
-        """What turns with the crank."""
+        """Part of the force that turns with the crank."""
         return forward_force(self.forces)
 
     @profile("N", "order force backward", along=ORDERS, symbol=r"F_\mathrm{bwd}",
              latex=r"\left|\tfrac12\sum w\,e^{i(\beta-h(\psi-\beta))}\right|")  # fmt: skip
     def F_b(self) -> Array:
-        """What turns against the crank."""
+        """Part of the force that turns against the crank."""
         return backward_force(self.forces)
 
     @profile("deg", "order force crank angle", along=ORDERS, symbol=r"\theta_{F}")
     def theta_F(self) -> Array:
-        """Where in the turn it is largest."""
+        """Crank angle at which the force is largest."""
         return largest_at(self.forces)
 
     @profile("deg", "order force direction", along=ORDERS, symbol=r"\delta_{F}")
     def delta_F(self) -> Array:
-        """Where it points to there."""
+        """Direction of the force at that crank angle."""
         return largest_towards(self.forces)
 
     @profile("N*m", "order couple forward", along=ORDERS, symbol=r"C_\mathrm{fwd}",
              latex=r"\left|\tfrac12\sum z\,w\,e^{i(\beta+h(\psi-\beta))}\right|")  # fmt: skip
     def C_f(self) -> Array:
-        """What turns with the crank."""
+        """Part of the couple that turns with the crank."""
         return forward_couple(self.couples)
 
     @profile("N*m", "order couple backward", along=ORDERS, symbol=r"C_\mathrm{bwd}",
              latex=r"\left|\tfrac12\sum z\,w\,e^{i(\beta-h(\psi-\beta))}\right|")  # fmt: skip
     def C_b(self) -> Array:
-        """What turns against the crank."""
+        """Part of the couple that turns against the crank."""
         return backward_couple(self.couples)
 
     @profile("deg", "order couple crank angle", along=ORDERS, symbol=r"\theta_{C}")
     def theta_C(self) -> Array:
-        """Where in the turn it is largest."""
+        """Crank angle at which the couple is largest."""
         return largest_at(self.couples)
 
     @profile("deg", "order couple direction", along=ORDERS, symbol=r"\delta_{C}")
     def delta_C(self) -> Array:
-        """Where the sum of place times force points to there."""
+        """Direction of the sum of position times force at that crank angle."""
         return largest_towards(self.couples)

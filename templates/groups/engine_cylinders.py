@@ -79,7 +79,7 @@ class EngineCylinders(Template):
 
     @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
     def p_e(self) -> Array:
-        """That of suction, unless given."""
+        """Default: the suction pressure."""
         return self.p_s
 
     @require("strokes", remedy="give 2 or 4")
@@ -198,12 +198,12 @@ class EngineCylinders(Template):
 
     @shared
     def m_rec(self) -> Array:
-        """What moves with each piston [kg]."""
+        """Mass that moves with each piston [kg]."""
         return self.rods.at_piston + self.m_4
 
     @shared
     def gas(self) -> GasCycle:
-        """What the gas does in each cylinder."""
+        """Gas cycle of each cylinder."""
         charge = Charge(self.p_s, self.p_e, self.p_3, self.epsilon, self.rho, self.k_c, self.k_e)
         valves = Valves(self.io, self.ic, self.eo, self.ec)
         return engine_gas(

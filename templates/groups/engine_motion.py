@@ -69,7 +69,7 @@ class EngineMotion(EngineBalance):
 
     @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
     def theta(self) -> Array:
-        """Of one cycle."""
+        """Crank angles of one cycle."""
         return crank_angles(self.strokes, self.step)
 
     @shared
@@ -146,7 +146,7 @@ class EngineMotion(EngineBalance):
         "bar", "gas pressure", along=CYCLE, axes=2, symbol="p_{i}", latex=r"p\left(\theta-\varphi_{i}\right)"
     )
     def p(self) -> Array:
-        """In each cylinder."""
+        """Gas pressure in each cylinder."""
         return pressure_curves(self.pressures, self.grid)
 
     @shared
@@ -161,19 +161,19 @@ class EngineMotion(EngineBalance):
 
     @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")
     def T(self) -> Array:
-        """Of all rods on the crank."""
+        """Torque of all rods on the crank."""
         return torque_curve(self.torques, self.grid)
 
     @profile("bar", "indicated mean effective pressure", along=EACH, symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
     def p_mi(self) -> Array:
-        """Of each cylinder; exact, whatever the step."""
+        """Value of each cylinder; it does not depend on the step."""
         return indicated(self.gas, self.f_p, self.layout)
 
     @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}",
              latex=r"\frac{1}{\pi\,z}\sum p_{mi}\,A\,s")  # fmt: skip
     def T_mean(self) -> Array:
-        """That of the work of the gas; exact, whatever the step."""
+        """Mean torque from the work of the gas; it does not depend on the step."""
         return torque_of_work(self.p_mi, self.D, self.crank.stroke, self.strokes)
 
     @formula("kW", "indicated mean power", name="mean_power", symbol="P")
@@ -184,7 +184,7 @@ class EngineMotion(EngineBalance):
     @profile("J", "running energy", along=CYCLE, symbol="E_{r}",
              latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
     def E_r(self) -> Array:
-        """From the first angle on."""
+        """Energy from the first angle on."""
         return energy_curve(self.energies, self.grid)
 
     @formula("J", "energy fluctuation", symbol=r"\Delta E")
@@ -204,35 +204,35 @@ class EngineMotion(EngineBalance):
 
     @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
     def F_x(self) -> Array:
-        """Of all that moves, on the frame."""
+        """Force of all moving parts on the frame."""
         return along_x(self.shaking, self.grid)
 
     @profile("N", "shaking force y", along=CYCLE, symbol="F_{y}")
     def F_y(self) -> Array:
-        """Of all that moves, on the frame."""
+        """Force of all moving parts on the frame."""
         return along_y(self.shaking, self.grid)
 
     @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
     def F_max(self) -> Array:
-        """On the way round, whatever the step."""
+        """Largest force over the cycle; it does not depend on the step."""
         return greatest_force(self.shaking)
 
     @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")
     def M_x(self) -> Array:
-        """Of all that moves, about the reference position."""
+        """Moment of all moving parts about the reference position."""
         return moment_about_x(self.couple, self.grid)
 
     @profile("N*m", "shaking moment y", along=CYCLE, symbol="M_{y}")
     def M_y(self) -> Array:
-        """Of all that moves, about the reference position."""
+        """Moment of all moving parts about the reference position."""
         return moment_about_y(self.couple, self.grid)
 
     @profile("N*m", "roll moment", along=CYCLE, symbol="M_{z}")
     def M_z(self) -> Array:
-        """What walls and heads put on the frame."""
+        """Moment of cylinder walls and heads on the frame."""
         return roll_moment(self.wall, self.gas_forces, self.motion, self.grid)
 
     @profile("rad/s", "rod angular velocity", along=CYCLE, axes=2, symbol=r"\omega_{3}")
     def omega_3(self) -> Array:
-        """Of each rod."""
+        """Angular velocity of each rod."""
         return rod_speed(self.omega, self.motion, self.grid)

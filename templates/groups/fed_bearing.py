@@ -136,7 +136,7 @@ class FedBearing(Template):
 
     @formula("deg", "cycle", symbol="T")
     def cycle(self) -> Array:
-        """From the first angle until the load repeats."""
+        """Crank angle from the first value until the load repeats."""
         return cycle_length(self.theta)
 
     @formula("1", "relative clearance", symbol=r"\psi")
@@ -187,7 +187,7 @@ class FedBearing(Template):
 
     @shared
     def motion(self) -> Duty:
-        """What the bearing has to do, with a load that is not scaled."""
+        """Duty of the bearing, with an unscaled load."""
         sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
         return Duty(
             self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,

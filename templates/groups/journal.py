@@ -31,7 +31,7 @@ class Journal(Template):
 
     @formula("1", "relative clearance", symbol=r"\psi", source=ISO)
     def psi(self) -> Array:
-        """Of the diameter of the bore."""
+        """Clearance relative to the diameter of the bore."""
         return self.c / self.D
 
     @formula(
@@ -46,10 +46,10 @@ class Journal(Template):
         remedy="without it there is no film: speed + sleeve speed must differ from twice the load speed",
     )  # fmt: skip
     def omega_h(self) -> Array:
-        """Of the wedge: journal and sleeve against the load."""
+        """Speed of the wedge: journal and sleeve relative to the load."""
         return hydrodynamic_speed(self.omega_J, self.omega_B, self.omega_F)
 
     @formula("rad/s", "sliding speed", symbol=r"\omega_{s}")
     def omega_s(self) -> Array:
-        """Of journal against sleeve, in the sense of the hydrodynamic speed."""
+        """Speed of the journal relative to the sleeve, in the sense of the hydrodynamic speed."""
         return sliding_speed(self.omega_J, self.omega_B, self.omega_F)

@@ -60,12 +60,12 @@ class Oil(Template):
 
     @derived("mm**2/s", "kinematic viscosity 1", gt=0.3)
     def nu_1(self) -> Array:
-        """That of the grade at 40 °C."""
+        """Default: the viscosity of the grade at 40 °C."""
         return viscosity_at_40(self.grade)
 
     @derived("mm**2/s", "kinematic viscosity 2", gt=0.3)
     def nu_2(self) -> Array:
-        """That of the grade at 100 °C."""
+        """Default: the viscosity of the grade at 100 °C."""
         return viscosity_at_100(self.grade)
 
     @derived(
@@ -142,7 +142,7 @@ class Oil(Template):
         remedy="the oil is stiff here: Walther's law overflows, or Vogel's has its pole at minus its offset",
     )  # fmt: skip
     def eta(self) -> Array:
-        """By the law at the film's temperature."""
+        """Viscosity by the chosen law at the film's temperature."""
         return by_law(
             self.law,
             walther(self.A, self.B, self.T_film) * self.rho,
@@ -151,7 +151,7 @@ class Oil(Template):
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:
-        """The dynamic one over the density."""
+        """The dynamic viscosity over the density."""
         return self.eta / self.rho
 
 
@@ -185,12 +185,12 @@ class WarmOil(Oil):
 
     @shared
     def viscosity_is_known(self) -> Truth:
-        """Whether it is given or follows from a temperature."""
+        """Whether the viscosity is given or follows from a temperature."""
         return viscosity_known(self.as_given("eta"), self.T_in, self.T_out, self.T_s, self.T_amb, self.kA)
 
     @shared
     def mean_is_used(self) -> Truth:
-        """Whether inlet and outlet temperature are used, where given."""
+        """Whether given inlet and outlet temperatures are used."""
         return mean_is_used(self.T_in, self.T_out, self.T_s, self.T_amb, self.kA)
 
     @formula("degC", "service temperature", absent="needs oil_inlet_temperature and oil_outlet_temperature")
@@ -203,20 +203,20 @@ class WarmOil(Oil):
         remedy="the heat balance finds none below 500 °C: cool more, or lower load or speed",
     )  # fmt: skip
     def T_film(self) -> Array:
-        """That of the heat balance, or the mean."""
+        """Temperature by the heat balance, or the mean temperature."""
         return film_temperature(self.T, self.balance)
 
     @formula("degC", "outlet temperature", symbol=r"T_{e}", absent=NO_SUPPLY, source=ISO)
     def T_e(self) -> Array:
-        """Of the oil that leaves, by the heat balance."""
+        """Temperature of the leaving oil, by the heat balance."""
         return outlet_temperature(self.balance)
 
     @formula("delta_degC", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY, source=ISO)
     def rise(self) -> Array:
-        """From supply to outlet."""
+        """Difference between outlet and supply."""
         return self.T_e - self.T_s
 
     @formula("1", "heat balance residual", absent=NO_BALANCE)
     def residual(self) -> Array:
-        """What the balance does not account for."""
+        """Share of the heat that the balance does not account for."""
         return self.balance.residual

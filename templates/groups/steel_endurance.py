@@ -47,37 +47,37 @@ class SteelEndurance(Template):
 
     @formula("MPa", "specimen limit", symbol="S_e'", source=SHIGLEY)
     def S_0(self) -> Array:
-        """Of a polished specimen."""
+        """Endurance limit of a polished specimen."""
         return specimen_limit(self.sigma_u)
 
     @formula("1", "surface factor", symbol="k_a", source=SHIGLEY)
     def k_a(self) -> Array:
-        """Of the surface."""
+        """Marin's factor for the surface."""
         return surface_factor(self.surface, self.sigma_u)
 
     @formula("1", "size factor", symbol="k_b", source=SHIGLEY)
     def k_b(self) -> Array:
-        """Of the size."""
+        """Marin's factor for the size."""
         return size_factor(self.d)
 
     @formula("1", "loading factor", symbol="k_c", source=SHIGLEY)
     def k_c(self) -> Array:
-        """Of the loading."""
+        """Marin's factor for the loading."""
         return loading_factor(self.loading)
 
     @formula("1", "reliability factor", symbol="k_e", source=SHIGLEY)
     def k_e(self) -> Array:
-        """Of the reliability."""
+        """Marin's factor for the reliability."""
         return reliability_factor(self.R)
 
     @derived("MPa", "endurance limit", symbol="S_e", shown=True, gt=0, le=5000, source="Marin 1962")
     def S_e(self) -> Array:
-        """That of a specimen times the factors."""
+        """Default: the limit of a specimen times Marin's factors."""
         return self.k_a * self.k_b * self.k_c * self.k_e * self.k_m * self.S_0
 
     @formula("1", "strength share", symbol="f", source=SHIGLEY)
     def f(self) -> Array:
-        """Of the ultimate strength, at 1000 cycles."""
+        """Strength at 1000 cycles as a share of the ultimate strength."""
         return share_at_1000_cycles(self.sigma_u)
 
     @derived("MPa", "strength at 1000 cycles", symbol="S_3", shown=True, gt=0, le=5000, source=SHIGLEY)
@@ -87,7 +87,7 @@ class SteelEndurance(Template):
 
     @derived("MPa", "fatigue strength coefficient", symbol=r"\sigma_F'", gt=0, le=10_000)
     def sigma_F(self) -> Array:
-        """Of steel up to 500 HB, 345 MPa above the ultimate strength."""
+        """Default: 345 MPa above the ultimate strength, for steel up to 500 HB."""
         return strength_coefficient(self.sigma_u)
 
     @require("endurance_limit", "strength_at_1000_cycles", remedy="check their units")
@@ -97,13 +97,13 @@ class SteelEndurance(Template):
 
     @formula("1", "slope", symbol="b", source=SHIGLEY)
     def b(self) -> Array:
-        """Of the line in log-log."""
+        """Slope of the S-N line in log-log axes."""
         return slope_of_line(self.S_3, self.S_e, self.N_e)
 
     @derived("1", "notch sensitivity", symbol="q", shown=True, ge=0, le=1, source=NEUBER,
              absent="give notch_radius; beyond 1750 MPa the sensitivity")  # fmt: skip
     def q(self) -> Array:
-        """By Neuber."""
+        """Default: notch sensitivity by Neuber."""
         return notch_sensitivity_Neuber(neuber_length(self.sigma_u), self.r)
 
     @formula("1", "notch support", symbol=r"\frac{K_f}{K_t}", source=NEUBER)

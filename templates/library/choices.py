@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from templates.core.judging.limits import Library, Row, RowValue, register
+from templates.core.criteria.limits import Library, Row, RowValue, register
 from templates.library.tables import limits_of, table
 
 CHOICES = ("bearing_material",)

@@ -106,7 +106,7 @@ def _each_once(path: Path, keys: Iterable[str]) -> None:
 
 def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -> Row:
     if record["confirmed"] != "yes":
-        raise UnusableTable(path, f"{record['id']} is not confirmed; leave it out until it is")
+        raise UnusableTable(path, f"{record['id']} is not confirmed; remove the row until it is")
     values = dict(_values(path, record, sources))
     if not (values and record["words"]):
         raise UnusableTable(path, f"{record['id']} has no value, or no words")

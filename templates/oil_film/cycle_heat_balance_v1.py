@@ -218,7 +218,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def duty(self) -> Duty:
-        """What the bearing has to do, with oil of 1 Pa s."""
+        """Duty of the bearing, with oil of 1 Pa s."""
         return replace(self.motion, scale=self.s)
 
     @shared
@@ -245,7 +245,7 @@ class CycleHeatBalance(Oil, FedBearing):
         source=CROSS, remedy=BETWEEN,
     )  # fmt: skip
     def hths_ratio(self) -> Array:
-        """What shear of 1e6 1/s leaves of what it can take."""
+        """Share of the shear-dependent viscosity that remains at 1e6 1/s."""
         return left_by_HTHS(self.eta_H, self.eta_150, self.r_inf, self.eta_given)
 
     @shared
@@ -269,7 +269,7 @@ class CycleHeatBalance(Oil, FedBearing):
         r"{10^{6}\,\mathrm{s^{-1}}\,\eta_{150}}\right)^{n}}",
     )  # fmt: skip
     def eta_e(self) -> Array:
-        """Of the whole film, at its temperature and shear rate; without an HTHS viscosity it is η."""
+        """Viscosity of the film at its temperature and shear rate; without an HTHS viscosity it is η."""
         return viscosity_of(self.heat)
 
     @formula("degC", "film temperature", symbol="T_{m}", source=ISO,
@@ -280,12 +280,12 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
     def T_ex(self) -> Array:
-        """Where the oil leaves."""
+        """Temperature of the leaving oil."""
         return 2 * self.T_film - self.T_s
 
     @formula("delta_degC", "temperature rise", symbol=r"\Delta T", source=ISO)
     def rise(self) -> Array:
-        """From supply to outlet."""
+        """Difference between outlet and supply."""
         return self.T_ex - self.T_s
 
     @formula("1/s", "mean shear rate", symbol=r"\dot\gamma",
@@ -309,7 +309,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")
     def Q(self) -> Array:
-        """What the motion of the journal displaces; at level supplied all that leaves by the ends.
+        """Flow that the journal's motion displaces; at level supplied all oil that leaves by the ends.
 
         With a bar it is that of the dimensionless film, as mean over the cycle.
         """
@@ -319,7 +319,7 @@ class CycleHeatBalance(Oil, FedBearing):
              latex=r"\frac{p_{s}\,D}{6\,\eta_{e}\left(W-B_{g}\right)}\,\frac{1}{T}\int_{T}\int_{\Delta\varphi_{g}}"
              r"h^{3}\,d\varphi\,d\theta")  # fmt: skip
     def Q_p(self) -> Array:
-        """What the supply pressure drives from the groove over its lands, with the gap along the groove."""
+        """Flow from the groove over its lands due to supply pressure, with the gap along the groove."""
         return feed_flow_of(self.heat, self.eta_e)
 
     @shared

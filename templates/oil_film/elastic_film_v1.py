@@ -235,7 +235,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def elasticity(self) -> Elasticity:
-        """What gives way."""
+        """Compliances of the bearing."""
         return Elasticity(
             liner=self.C_l, inner=self.D / 2 + self.t_l, outer=self.D_h / 2, modulus=self.E_h,
             poisson=self.nu_h, exponent=self.Z, eta=self.eta, pressure=self.p_0, clearance=self.c / 2,
@@ -243,7 +243,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def bore(self) -> Bore:
-        """What level elastic takes besides."""
+        """Additional inputs of level elastic."""
         return Bore(self.C_b, self.W / self.W_b, self.theta_F)
 
     @shared
@@ -279,7 +279,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("deg", "attitude angle", symbol=r"\beta")
     def beta(self) -> Array:
-        """From the load to the displacement."""
+        """Angle from the load to the displacement."""
         return self.film.attitude
 
     @formula("um", "minimum film thickness", symbol="h_{0}")
@@ -298,17 +298,17 @@ class ElasticFilm(Oil, Journal):
 
     @formula("deg", "maximum pressure angle", symbol=r"\theta_{p}")
     def theta_p(self) -> Array:
-        """From the load in the sense of the hydrodynamic speed."""
+        """Angle from the load, in the sense of the hydrodynamic speed."""
         return self.film.peak
 
     @formula("um", "largest deformation", symbol="u_{max}", absent=RIGID_HAS_NONE, source=LAME)
     def u_max(self) -> Array:
-        """Of the bore, beyond its displacement as a whole."""
+        """Deformation of the bore beyond its displacement as a whole."""
         return self.film.deformation * self.c / 2
 
     @formula("um", "neglected deformation", symbol="u_{n}", source=LAME)
     def u_n(self) -> Array:
-        """What would give way besides, by an estimate."""
+        """Estimated deformation that the level neglects."""
         return neglected_in_bore(
             self.level, self.p_max, self.F, self.D / 2, self.W, self.C_l, self.D / 2 + self.t_l,
             self.D_h / 2, self.E_h, self.nu_h, self.C_b, self.W_b, self.theta_F + self.theta_p,
@@ -325,7 +325,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("N*m", "load couple", symbol="M_{F}")
     def M_F(self) -> Array:
-        """What pressure adds to the shear's."""
+        """Couple of the pressure, in addition to that of shear."""
         return self.film.load_couple * self.eta * self.omega_h * self.W * self.D**2 / (2 * self.psi)
 
     @formula("N*m", "friction torque", symbol="M_{f}")

@@ -114,9 +114,9 @@ class MixedFriction(Oil):
     }
     criteria = {
         "full_film": {
-            "require": "contact_load <= 0.0001 * radial_load",
-            "words": "the contact bears at most 0.01 % of the load",
-            "source": "Greenwood, Tripp 1970, for the share of the contact",
+            "require": "film_parameter >= 3",
+            "words": "the gap is at least three times the composite roughness",
+            "source": "Hamrock, Schmid, Jacobson 2004, section 1.3: mixed friction from 1 to 3",
         },
         "above_transition": {
             "require": "speed >= transition_speed",
@@ -212,12 +212,12 @@ class MixedFriction(Oil):
 
     @shared
     def film(self) -> MixedFilm:
-        """What bears the load at the speed, NaN where nothing does."""
+        """Balance of film and contact at the speed, NaN without one."""
         return self.balance.admitted(self.eps)
 
     @shared
     def films(self) -> MixedFilm:
-        """What bears the load at the speeds of the curve."""
+        """Balances of film and contact at the speeds of the curve."""
         return mixed_films(self.journal, spread(self.omega, MULTIPLES))
 
     @shared

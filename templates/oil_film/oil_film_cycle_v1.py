@@ -284,7 +284,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=OUTSIDE, source=ISO)
     def S_max(self) -> Array:
-        """That of the largest load, with the speed of the crank."""
+        """Load number of the largest load, with the speed of the crank."""
         return self.F_max * self.s
 
     @formula("1", "relative supply pressure", symbol=r"\bar p_{s}", absent="no supply pressure is given")
@@ -294,13 +294,13 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def duty(self) -> Duty:
-        """What the bearing has to do, where the load number is within its limits."""
+        """Duty of the bearing, if the load number is within its limits."""
         return replace(self.motion, scale=self.S_max / self.F_max)
 
     @formula("1", "feed under load", symbol=r"\tau_{F}", absent=NO_FEED,
              latex=r"\text{share of the cycle in which all inlets lie within 60° of the load}")  # fmt: skip
     def under_load(self) -> Array:
-        """Of the whole cycle; a groove or slot longer than 120° is never under the load."""
+        """Share of the whole cycle; a groove or slot longer than 120° is never under the load."""
         return feed_under_load(self.motion, self.feeding)
 
     @shared
@@ -338,12 +338,12 @@ class OilFilmCycle(FedBearing):
 
     @text("boundary condition")
     def boundary(self) -> str:
-        """What the level takes for the pressure at the film's borders."""
+        """Boundary condition of the level for the pressure."""
         return self.boundary_of_level
 
     @shared
     def boundary_of_level(self) -> str:
-        """What the level takes for the pressure at the film's borders."""
+        """Boundary condition of the level for the pressure."""
         return BOUNDARY[self.level]
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}", absent=STARVED)
@@ -364,7 +364,7 @@ class OilFilmCycle(FedBearing):
 
     @profile("1", "eccentricity x", along=CYCLE, symbol=r"\epsilon_{x}", source=ORBIT, absent=STARVED)
     def eps_x(self) -> Array:
-        """Of the journal's centre, over the radial clearance, along the axis x of the frame."""
+        """Position of the journal's centre over the radial clearance, along the axis x of the frame."""
         return self.orbit.eps_x
 
     @profile("1", "eccentricity y", along=CYCLE, symbol=r"\epsilon_{y}", source=ORBIT, absent=STARVED)
@@ -386,7 +386,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("um", "bore deflection", symbol="u", absent=STARVED, source="Michell 1899")
     def u(self) -> Array:
-        """What the bore gives way at the largest pressure, at least: an estimate for steel without end."""
+        """Least deflection of the bore under the largest pressure, estimated for an infinite steel body."""
         return deflection_in_steel(self.p_max, self.F_max, self.D / 2, self.W)
 
     @formula("deg", "maximum pressure angle", symbol=r"\theta_{p}", absent=STARVED)
@@ -404,13 +404,13 @@ class OilFilmCycle(FedBearing):
     @formula("l/min", "side flow", symbol="Q", absent=STARVED,
              latex=r"\frac{W\,D\,c\,\Omega}{2}\,\left(\bar{q}+\bar{q}_{p}\right)")  # fmt: skip
     def Q(self) -> Array:
-        """From both ends, with what the supply drives; mean over the cycle, bars: dimensionless."""
+        """Flow from both ends with the supplied oil, mean over the cycle; bars mark dimensionless values."""
         return (self.film.side_flow + self.film.feed_flow) * self.W * self.D * self.c * self.Omega / 2
 
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
              latex=r"\text{from three rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
     def numerical_error(self) -> Array:
-        """Of the smallest film, relative; without the error of the model."""
+        """Relative error of the smallest film, without the error of the model."""
         return self.orbit.numerical_error
 
     @text("verdict", absent=SUPPLIED_ONLY)
@@ -425,7 +425,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("1", "cycles run", symbol="n_{c}", absent=MARCHED_ONLY)
     def cycles(self) -> Array:
-        """On all meshes."""
+        """Number of cycles on all meshes."""
         return self.any_orbit.cycles
 
     @formula("1", "mass balance", symbol=r"\delta_{m}", absent=SUPPLIED_ONLY)
@@ -436,5 +436,5 @@ class OilFilmCycle(FedBearing):
     @formula("l/min", "supply flow", symbol="Q_{s}", absent=SUPPLIED_ONLY,
              latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}_{s}")  # fmt: skip
     def Q_s(self) -> Array:
-        """What groove and holes feed, mean over the cycle."""
+        """Flow through groove and holes, mean over the cycle."""
         return self.any_orbit.feed * self.W * self.D * self.c * self.Omega / 2

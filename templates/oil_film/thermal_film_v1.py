@@ -178,7 +178,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "relative clearance", symbol=r"\psi", source=ISO)
     def psi(self) -> Array:
-        """Of the diameter of the bore."""
+        """Clearance relative to the diameter of the bore."""
         return self.c / self.D
 
     @formula(
@@ -190,7 +190,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "Sommerfeld number", symbol="S_{0}", source=ISO)
     def S_0(self) -> Array:
-        """With the viscosity of the supply."""
+        """Sommerfeld number with the viscosity of the supply."""
         return self.F * self.psi**2 / (self.D * self.W * self.eta * self.omega)
 
     @formula("MPa", "pressure scale", symbol="p_{0}")
@@ -200,7 +200,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("l/min", "flow scale", symbol="q_{0}")
     def q_0(self) -> Array:
-        """What the journal would carry around if the whole clearance moved with it."""
+        """Flow that the journal would carry around if the whole clearance moved with it."""
         return self.omega * self.psi * self.D**2 * self.W / 4
 
     @formula("W/K", "heat scale", symbol="C_{0}")
@@ -249,7 +249,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("deg", "attitude angle", symbol=r"\beta")
     def beta(self) -> Array:
-        """From the load to the narrowest gap, in the sense of rotation."""
+        """Angle from the load to the narrowest gap, in the sense of rotation."""
         return self.film.attitude
 
     @formula("MPa", "maximum pressure", symbol="p_{max}")
@@ -268,14 +268,14 @@ class ThermalFilm(Oil, Template):
 
     @profile("deg", "bush angle", along=AROUND, symbol=r"\theta", latex=r"k\,5°")
     def theta(self) -> Array:
-        """From the load, in the sense of rotation."""
+        """Angle from the load, in the sense of rotation."""
         return bush_angles(self.eps)
 
     @profile(
         "degC", "bush temperature", along=AROUND, symbol=r"T_{b}\left(\theta\right)", absent=ONE_HAS_NONE
     )
     def T_bush(self) -> Array:
-        """Of the bush's surface; in the groove that of the oil there."""
+        """Temperature of the bush's surface; in the groove that of the oil there."""
         return in_kelvin(self.film.bush)
 
     @formula("degC", "greatest bush temperature", symbol="T_{b,max}")
@@ -289,7 +289,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("degC", "groove temperature", symbol="T_{g}", absent=ONE_HAS_NONE)
     def T_g(self) -> Array:
-        """Of fresh oil and what has come around, mixed."""
+        """Temperature of the mixture of fresh oil and recirculating oil."""
         return in_kelvin(self.film.T_groove)
 
     @formula("degC", "outlet temperature", symbol="T_{e}")
@@ -299,7 +299,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("N*m", "friction torque", symbol="M_{f}")
     def M_f(self) -> Array:
-        """On the journal, without the groove."""
+        """Torque on the journal, without the groove."""
         return self.film.torque * self.eta * self.omega * self.W * self.D**2 / (4 * self.psi)
 
     @formula("1", "friction coefficient", symbol="f")
@@ -321,7 +321,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("W", "heat by oil", symbol=r"\Phi_{o}")
     def Phi_o(self) -> Array:
-        """What leaves with the oil, above the supply's temperature."""
+        """Heat that the leaving oil carries off, above the supply's temperature."""
         return in_kelvin(self.film.by_oil) * self.C_0
 
     @formula("W", "heat by bush", symbol=r"\Phi_{b}")

@@ -17,7 +17,6 @@ from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_col
 NO_SUPPLY = "needs supply_temperature"
 UNBORNE = "no film ratio from 1.000001 to 100 bears this load: change taper, speed, viscosity or pads"
 MEC = "MEC 315"
-SECTOR = "sector"
 
 
 class ThrustBearing(Oil):
@@ -51,9 +50,6 @@ class ThrustBearing(Oil):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, p. 645, for the viscosity.
     """
 
-    levels = (SECTOR,)
-    default_level = SECTOR
-    most_points = {SECTOR: 10_000}
     precision = 1e-8
 
     example = {
@@ -135,6 +131,11 @@ class ThrustBearing(Oil):
     def viscosity_follows(self) -> Truth:
         """The viscosity follows from the heat balance, or is given."""
         return ~(np.isnan(self.T_s) & np.isnan(self.as_given("eta")))
+
+    @require("load", "speed", remedy="take fewer points at once")
+    def manageable(self) -> Truth:
+        """There are at most 10 000 points."""
+        return bool(np.prod(self.shape_of_points(), dtype=float) <= 10_000)
 
     @formula("deg", "pad angle", symbol=r"\varphi")
     def phi(self) -> Array:

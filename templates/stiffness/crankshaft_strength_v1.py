@@ -55,12 +55,12 @@ class CrankshaftStrength(Template):
 
     @derived("mm", "journal diameter", symbol="D_G", ge=10, le=2000)
     def D_G(self) -> Array:
-        """That of the crankpin."""
+        """Default: the diameter of the crankpin."""
         return self.D
 
     @derived("mm", "journal fillet", symbol="R_G", ge=2, le=500, remedy=SMALLEST)
     def R_G(self) -> Array:
-        """That of the crankpin."""
+        """Default: the fillet of the crankpin."""
         return self.R_H
 
     D_o: Array = given("mm", "oil bore", symbol="D_o", optional=True, ge=4, le=500, remedy=SMALLEST)

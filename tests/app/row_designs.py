@@ -90,26 +90,26 @@ CURVES = {
 }
 
 
-def net_of(raw, *varied, **options):
-    """The net of a raw document in which places of these names vary."""
+def engine_of(raw, *varied, **options):
+    """The engine of a raw document in which places of these names vary."""
     return DesignEngine.of(Document.model_validate(raw), CATALOGUES, list(map(ref, varied)), **options)
 
 
-def spread(net, count, low=0.9, high=1.1, seed=0):
+def spread(engine, count, low=0.9, high=1.1, seed=0):
     """Rows between shares of the nominal values; those of a curve keep its form."""
     random, rows = np.random.default_rng(seed), {}
-    for place in sorted(net.varied, key=str):
-        nominal = np.asarray(net.nominal(place))
+    for place in sorted(engine.varied, key=str):
+        nominal = np.asarray(engine.nominal(place))
         share = random.uniform(low, high, (count,) + (1,) * nominal.ndim)
         rows[place] = nominal * share
     return rows
 
 
-def alone(raw, rows, row, net):
+def alone(raw, rows, row, engine):
     """The document with the values of one row."""
     plain = Document.model_validate(raw).model_dump()
     for place, column in rows.items():
-        base = unit(net.unit(place)).base
+        base = unit(engine.unit(place)).base
         value = {"value": np.asarray(column[row]).tolist(), "unit": f"{base:~C}" or "1"}
         holder: Mapping = plain["parameters"]
         name = place.block
@@ -128,11 +128,11 @@ def calculated(raw):
     return calculate(graph, lambda shape: None, lambda *question: None)
 
 
-def assert_equal_to_designs(raw, net, rows, wanted, table, within=1e-12):
+def assert_equal_to_designs(raw, engine, rows, wanted, table, within=1e-12):
     """Every row has the values, errors and levels of a design of its own; refused rows are refused there."""
     refused = 0
     for row in range(table.count):
-        one = calculated(alone(raw, rows, row, net))
+        one = calculated(alone(raw, rows, row, engine))
         if one.faults:
             refused += 1
             assert table.refusals[row].place == one.faults[0].name
@@ -158,5 +158,5 @@ def _assert_equal_errors(one, row, table):
 def codes(raw, *varied, **options):
     """The faults with which rows are refused, name → code, and the message."""
     with pytest.raises(InvalidInputs) as refused:
-        net_of(raw, *varied, **options)
+        engine_of(raw, *varied, **options)
     return {fault.name: fault.code for fault in refused.value.faults}, str(refused.value)

@@ -18,6 +18,7 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.verdicts import judged
 from app.designs.graph import Catalogues, build_graph
 from app.designs.service import resolved
+from app.designs.variants.table import applied
 from app.reference import Reference
 from app.web.gallery.gallery import GALLERY
 from cad.catalogue import models
@@ -66,6 +67,27 @@ def test_every_step_has_its_verdicts(name):
     assert found.keys() >= VERDICTS
     assert output(result, "torsion", "power_balance_error") < 1e-8
     assert found["life.safety"] == ("met" if output(result, "life", "safety_factor") >= 1.3 else "not_met")
+
+
+@pytest.mark.slow
+def test_every_bearing_of_the_four_cylinders_is_met_or_not_met():
+    """Nine bearings at level supplied, each with the numerical error of its film."""
+    document = GALLERY["engine"].document
+    steps = {name: document["steps"][name] for name in ("engine", "film")}
+    parameters = {name: document["parameters"][name] for name in ("bore", "pin_diameter", "pitch", "bearing")}
+    raw = {"name": "films", "parameters": parameters, "steps": steps}
+    catalogues = Catalogues(built_in(), models())
+    assert len(document["variants"]) == 9
+    for overrides in document["variants"].values():
+        changed = applied(Document.model_validate(raw), overrides)
+        graph, faults = build_graph(resolved(changed, catalogues), catalogues)
+        assert not faults
+        result = calculate(graph, lambda shape: None, lambda *question: None)
+        assert not result.faults
+        film = next(one for one in judged(result) if one.name == "film.film")
+        assert film.verdict in ("met", "not_met")
+        assert (film.level, film.truth) == ("supplied", "rigid film")
+        assert 5e-3 < film.relative_error < 0.2
 
 
 @pytest.mark.parametrize("name", ENGINES)

@@ -13,7 +13,7 @@ from app.settings import Settings
 from cad.model import CadModel
 from cad.regenerate import regenerate_class
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 
 PLATE = {"id": "plate", "version": 1, "parameters": {"size": "20 mm"}}
 

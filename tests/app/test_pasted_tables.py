@@ -76,7 +76,7 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
         ("a;b\nkN;foo\n1;2\n", "row 2, column b: 'foo' is not a known unit"),
         ("a [N]\nkN\n1\n", "row 2, column a: the header says N, this row kN; keep one of them"),
         ("a [deg]\n1.000,5\n", "row 2: it has 2 cells"),
-        ("a [deg]\n", "there is no row of numbers"),
+        ("a [deg]\n", "the table has no row of numbers"),
         (" \n;;\n", "the table is empty"),
         ('a;b\n"1;2\n', "row 2"),
         ("1;" * 33 + "1\n", "at most 32 columns"),

@@ -82,7 +82,7 @@ def test_a_fixed_part_of_two_solids_has_a_name_for_each_and_its_own_mass():
 
 
 def test_a_datum_that_is_not_there_is_named_with_those_that_are():
-    with pytest.raises(GeometryError, match="cap has 1 axes of cylinders, and no axis_2"):
+    with pytest.raises(GeometryError, match="cap has 1 cylinder axes, so there is no axis_2"):
         built(datum="cap.axis_2")
 
 
@@ -159,7 +159,7 @@ def test_what_the_kernel_does_not_intersect_is_not_taken_for_free_space(monkeypa
 
     monkeypatch.setattr("cad.overlaps.BRepAlgoAPI_Common", Empty)
     box = Solid.makeBox(10, 10, 10)
-    with pytest.raises(GeometryError, match="a and b overlap, and how much"):
+    with pytest.raises(GeometryError, match="a and b overlap, but the shared volume"):
         list(clearances([body("a", box, Vector()), body("b", box, Vector(5, 5, 5))], str))
     (touching,) = clearances([body("a", box, Vector()), body("b", box, Vector(10, 0, 0))], str)
     assert touching.overlap == 0

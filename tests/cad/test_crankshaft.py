@@ -19,7 +19,7 @@ from cad.models.crank_throw_v1 import CrankThrow
 from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import Build, as_text, build_key, regenerate
 from cad.shaft import STEEL_DENSITY
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template

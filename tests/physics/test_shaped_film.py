@@ -23,7 +23,8 @@ TABLE = Path(__file__).parents[1] / "references/lund_thomsen_1978_elliptical.csv
 def placed(loaded):
     """Displacement extrapolated from two meshes, and the finer film."""
     balanced = balance(loaded)
-    return balanced.at_fine.e + (balanced.at_fine.e - balanced.at_coarse.e) / 3, balanced.fine
+    fine, coarse = balanced.fine.lie.e, balanced.coarse.lie.e
+    return fine + (fine - coarse) / 3, balanced.fine.film
 
 
 class TestGap:
@@ -120,7 +121,7 @@ class TestLimits:
 
     def test_property_oil_is_conserved(self):
         """What pockets feed leaves at the ends."""
-        film = balance(Loaded(1.0, 0.5, Bore(2, 0.5), np.array([0.1, 0.1]), SPLIT, True)).fine
+        film = balance(Loaded(1.0, 0.5, Bore(2, 0.5), np.array([0.1, 0.1]), SPLIT, True)).fine.film
         loss = film.network.loss(film.solution.P, film.solution.void).reshape(film.nodes.shape)
         inner = loss[~film.network.fixed.reshape(loss.shape)]
         assert np.abs(inner).max() < 1e-9 * np.abs(loss).max()
@@ -146,8 +147,8 @@ class TestSecondMethods:
     @pytest.mark.parametrize("conserving", [False, True])
     def test_analytic_stiffness_is_the_slope_of_the_force(self, conserving):
         loaded = Loaded(1.0, 0.5, Bore(2, 0.5, 0.2), np.array([0.1, -0.05]), SPLIT, conserving)
-        film = balance(loaded).fine
-        lie, pockets, h = balance(loaded).at_fine, loaded.pockets(0.0), 1e-6
+        film = balance(loaded).fine.film
+        lie, pockets, h = balance(loaded).fine.lie, loaded.pockets(0.0), 1e-6
         for k in range(2):
             step = h * np.eye(2)[k]
             ahead, behind = (
@@ -162,9 +163,9 @@ class TestSecondMethods:
         """Where nodes are moved to the edges of wide grooves it does so less regularly."""
         places = []
         for n in (1, 2, 4):
-            monkeypatch.setattr(shaped_balance, "MESHES", ((32 * n, 6 * n), (32 * n, 6 * n)))
+            monkeypatch.setattr(shaped_balance, "MESHES", [(32 * n, 6 * n)] * 3)
             loaded = Loaded(1.5, 0.5, Bore(2, 0.5), np.array([0.05, 0.0]), Feed(), False)
-            places.append(narrowest(loaded.bore, balance(loaded).at_fine)[0])
+            places.append(narrowest(loaded.bore, balance(loaded).fine.lie)[0])
         assert 3 < (places[1] - places[0]) / (places[2] - places[1]) < 6
 
 
@@ -231,7 +232,7 @@ class TestGrooveInTheLoadLine:
     def found(self, angle, pressure):
         return balance(
             Loaded(1.5, 0.5, Bore(), ALIGNED, Feed(pressure, ((np.radians(angle), np.radians(20)),)), True)
-        ).at_fine
+        ).fine.lie
 
     @pytest.mark.parametrize("pressure", [0.02, 1.0])
     def test_property_refused_where_it_vents_the_film(self, pressure):

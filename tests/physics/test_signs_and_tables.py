@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import templates
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template
 from templates.physics.journals.oil import density, walther

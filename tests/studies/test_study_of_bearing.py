@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.studies.methods.optimise import optimise
-from benchmarks.sizing import Sizing, level, net, problem
+from benchmarks.sizing import Sizing, engine, level, problem
 from tests.references.trade import trade
 
 FINE, LIMIT = "map", 2.6e-6
@@ -16,7 +16,7 @@ def bearing():
 
 
 def by_level(bearing, name):
-    return level(net(bearing), name, LIMIT)
+    return level(engine(bearing), name, LIMIT)
 
 
 def test_a_level_off_by_a_few_per_cent_is_corrected_to_the_optimum_of_the_confirming_level(bearing):

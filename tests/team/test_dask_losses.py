@@ -153,7 +153,7 @@ def test_a_job_that_loses_one_machine_after_another_fails_and_says_so(
     jobs, database, engine, monkeypatch, tmp_path
 ):
     def lost(*_, **__):
-        raise WorkerLost("the machine that ran it has gone")
+        raise WorkerLost("the machine that ran it has disconnected")
 
     monkeypatch.setattr(engine._cluster, "run", lost)
     id = put(jobs, database, tmp_path / "job")

@@ -59,7 +59,7 @@ def test_a_function_for_a_machine_that_has_gone_runs_on_another(engine, monkeypa
 def test_a_function_that_never_comes_to_the_scheduler_is_lost(engine, monkeypatch):
     monkeypatch.setattr(strays, "_ON_ITS_WAY", 1.0)
     monkeypatch.setattr(engine._cluster, "_submit", lambda client, lane, key, *_: Future(key, client))
-    with pytest.raises(WorkerLost, match="the scheduler does not have it"):
+    with pytest.raises(WorkerLost, match="the scheduler does not know the task"):
         engine.run(victims.process_id, limits=LONG)
 
 

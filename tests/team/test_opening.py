@@ -112,6 +112,6 @@ def test_keys_of_a_database_that_does_not_answer(tmp_path):
     environment = {"CRANKWRIGHT_DATABASE_URL": "postgresql+psycopg://crank:SECRET@127.0.0.1:1/crank"}
     result = CliRunner().invoke(main, ["keys", "list", "--data", str(tmp_path)], env=environment)
     assert result.exit_code == 1
-    assert "CRANKWRIGHT_DATABASE_URL does not lead to a database (" in result.output
+    assert "CRANKWRIGHT_DATABASE_URL does not point to a database (" in result.output
     assert "Traceback" not in result.output
     assert "SECRET" not in result.output

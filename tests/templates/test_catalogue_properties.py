@@ -16,7 +16,7 @@ import templates
 from cad.catalogue import models
 from templates.core.catalogue import golden
 from templates.core.catalogue.digests import digest, release_file
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
 from templates.core.language.evaluate import evaluate, is_reported

@@ -12,8 +12,7 @@ from criteria_of_engines import CASES as OF_ENGINES
 from criteria_of_pads import CASES as OF_PADS
 from criteria_of_shafts import CASES as OF_SHAFTS
 
-from templates.core.judging.judging import judge
-from templates.core.language import levels
+from templates.core.criteria.evaluation import judge
 from templates.core.language.criteria import EvaluatedValues, estimates_of
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
@@ -214,20 +213,17 @@ CYCLE_CASES = [
 
 
 @pytest.mark.parametrize(("name", "changes", "verdict", "value", "limit"), CYCLE_CASES)
-def test_the_cycle_without_a_supply_is_undecided_since_no_bound_of_its_error_is_stated(
-    monkeypatch, name, changes, verdict, value, limit
+def test_the_cycle_without_a_supply_is_judged_by_its_value_since_no_bound_of_its_error_is_stated(
+    name, changes, verdict, value, limit
 ):
     changes = {
         **dict.fromkeys(["groove_width", "groove_start", "groove_extent", "supply_pressure"]),
         "oil_supply": "flooded_ends",
         **changes,
     }
-    undecided, warnings = judged(*CYCLE, changes, {}, name)
-    assert undecided.verdict == "undecided"
-    assert (undecided.warning in warnings) == (verdict == "not_met" and undecided.warning is not None)
-    monkeypatch.setitem(levels._cache, built_in().get(*CYCLE), None)  # as if its errors were no matter
-    judgement, _ = judged(*CYCLE, changes, {}, name)
-    assert (judgement.verdict, judgement.is_certain) == (verdict, False)
+    judgement, warnings = judged(*CYCLE, changes, {}, name)
+    assert (judgement.verdict, judgement.error_known) == (verdict, False)
+    assert (judgement.warning in warnings) == (verdict == "not_met" and judgement.warning is not None)
     assert judgement.value == pytest.approx(value, rel=2e-5)
     assert judgement.limit == pytest.approx(limit, rel=2e-5)
 
@@ -285,7 +281,7 @@ NO_THRESHOLD = "there is no threshold: the film is stable at every speed, or car
 def test_a_bearing_that_is_stable_at_every_speed_says_so():
     judgement, _ = judged(*FILM, {}, {}, "whirl")
     assert (judgement.verdict, judgement.reason) == ("met", NO_THRESHOLD)
-    assert (judgement.value, judgement.limit, judgement.is_stated) == (5000, None, True)
+    assert (judgement.value, judgement.limit, judgement.error_known) == (5000, None, True)
     weightless, _ = judged(*FILM, {**LIGHT, "rotor_mass": "0 kg"}, {}, "whirl")
     assert (weightless.verdict, weightless.reason) == ("met", NO_THRESHOLD)
     result = evaluate(built_in().get(*FILM), inputs(*FILM, {}), level="fit")

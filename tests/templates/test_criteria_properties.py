@@ -10,7 +10,7 @@ import pytest
 from newest import older_slow
 
 import templates
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template

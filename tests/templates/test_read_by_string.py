@@ -11,7 +11,7 @@ import pytest
 import templates
 from cad.catalogue import models
 from cad.model import CadModel
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template, derived, formula, given, require, shared

@@ -1,7 +1,7 @@
 """`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
 
-What is cheap is calculated here, in the event loop or a thread; what is expensive, or comes in a large body,
-goes to a calculation process as it is.
+A cheap calculation runs here, in the event loop or a thread. An expensive calculation, or a large body, goes
+to a calculation process.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class LargeRoute(PlainRoute):
 
 
 async def _admit(request: Request) -> None:
-    """Ask, before a large body comes, whether there is room for its calculation.
+    """Check, before a large body arrives, whether the queue has room for its calculation.
 
     Raises
     ------
@@ -81,7 +81,7 @@ async def _admit(request: Request) -> None:
 
 
 async def _answered(request: Request, question: Question) -> Response:
-    """Return the answer of a calculation process; 202 with a job once nobody waits for it any longer."""
+    """Return the answer of a calculation process, or 202 with a job if the client stops waiting."""
     questions, client = services_of(request).evaluations, await get_client(request)
     return await answered(questions, question, request, client, _patience(request), question.media_type)
 

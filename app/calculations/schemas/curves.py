@@ -11,3 +11,7 @@ class Curves(Answer):
     """The columns of a table, each a quantity that an input can take."""
 
     curves: dict[str, Values] = Field(description="by the name of the column")
+    assumed: list[str] = Field(
+        [],
+        description="what was assumed: the decimal mark, the letters of the file, cycles that were averaged",
+    )

@@ -1,4 +1,4 @@
-"""`/catalogue/faults`: what is wrong with the files of a team's templates and models."""
+"""`/catalogue/faults`: the faults of the files of a team's templates and models."""
 
 from __future__ import annotations
 

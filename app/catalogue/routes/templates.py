@@ -1,4 +1,4 @@
-"""`/templates`: which calculations there are, and all that is known of each version."""
+"""`/templates`: list the templates and describe each version."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Annotated, TypeVar
 from weakref import WeakKeyDictionary
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Query
 
 from app.api.dependencies import TheCatalogues
 from app.catalogue.catalogues import Catalogues
@@ -19,11 +19,12 @@ from app.catalogue.schemas.templates import (
     TemplateVersions,
 )
 from app.catalogue.schemas.templates import Template as TemplateAnswer
+from app.catalogue.search import matching
 from app.catalogue.sheets import Key
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
@@ -34,11 +35,27 @@ router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=S
 Number = Annotated[int, Path(ge=1, le=10**6, examples=[1])]
 Id = Annotated[str, Path(max_length=64, examples=["oil_film"])]
 
+Search = Annotated[
+    str,
+    Query(
+        max_length=200,
+        description="words of the title, a standard, an author, a symbol, a name of a textbook",
+        examples=["ISO 7902"],
+    ),
+]
+
 
 @router.get("")
-def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
-    """Every version of every template."""
-    return listed(catalogues.templates, limit, cursor, marks(catalogues))
+def list_templates(
+    catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None, search: Search = ""
+) -> TemplateList:
+    """Every version of every template, or those that a search finds."""
+    if not search.strip():
+        return listed(catalogues.templates, limit, cursor, marks(catalogues))
+    marked = marks(catalogues)
+    kept, notes = matching(catalogues.templates, search)
+    page = page_of(TemplateList, kept, limit, cursor, lambda cls: summary(cls, catalogues.templates, marked))
+    return page.model_copy(update={"notes": notes})
 
 
 @router.get("/{id}", responses=refusals(404))
@@ -74,7 +91,7 @@ _titles: WeakKeyDictionary[type[Template], dict[str, str]] = WeakKeyDictionary()
 
 
 def _description(cls: type[Template]) -> Mapping[str, object]:
-    """Return the description of a version, which nobody changes: it follows from the class alone."""
+    """Return the description of a version, which depends only on its class."""
     if (description := _described.get(cls)) is None:
         description = _described[cls] = describe(cls)
     return description

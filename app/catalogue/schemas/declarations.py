@@ -27,7 +27,7 @@ class DeclaredValue(BaseModel):
 
     @property
     def has_default(self) -> bool:
-        """Return whether a value stands for an empty field."""
+        """Return whether a value means an empty field."""
         return "default" in self.model_fields_set
 
     @cached_property

@@ -36,6 +36,10 @@ class TemplateSummary(Answer):
 class TemplateList(Page[TemplateSummary]):
     """Versions of templates or models."""
 
+    notes: list[str] = Field(
+        [], description="on names in a search: other definitions, and the factor between"
+    )
+
 
 class TemplateVersions(TemplateList):
     """The versions of one template or model."""

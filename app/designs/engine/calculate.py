@@ -1,7 +1,7 @@
 """Calculate a design: all values known now, those that wait for a solid or a job, and the faults.
 
-Nothing stops at the first fault, so that a user sees all of them at once. Where rows give values, what
-follows from these is calculated for all rows at once, and a row that is refused has no value there.
+The calculation does not stop at the first fault, so that a user sees all faults at once. Values that depend
+on varied parameters are calculated for all rows at once. A refused row has no value there.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ def _copy(before: Calculation) -> Calculation:
 
 
 def _unmeasured(*_: object) -> None:
-    """Return no measure: rows build no solids."""
+    """Measure nothing, because rows build no solids."""
 
 
 def calculate_nodes(
@@ -207,7 +207,7 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """Return the value of a cell if its sources have values; its block reports a faulty literal."""
+    """Calculate a cell if its sources have values; its block reports a faulty literal."""
     sources = result.graph.sources[cell]
     if cell.reference in result.given:
         column = Column(result.given[cell.reference], is_row=True)
@@ -231,7 +231,7 @@ def _cell(result: Calculation, cell: Cell) -> None:
 
 
 def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
-    """Return whether a cell uses what is pending; for rows, a measure that nobody knows."""
+    """Return whether a cell uses a pending value; for rows, an unknown measure."""
     if not result.pending.isdisjoint(sources):
         return True
     return result.needs is not None and not result.needs.waiting.isdisjoint(cell.uses.values())
@@ -249,7 +249,7 @@ def literal(cell: Cell) -> TypedQuantity:
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Return the value of relations, in a block in the unit that is declared there."""
+    """Calculate the value of relations, in a block in its declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -441,9 +441,9 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that somebody else has made for this calculation.
+    """Return the evaluation of a step that was prepared for this calculation.
 
-    None if nobody has.
+    None if there is none.
     """
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:

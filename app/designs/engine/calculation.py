@@ -1,4 +1,4 @@
-"""The values of a design in some rows, each as far as it is known, and what is wrong with it."""
+"""The values of a design in some rows, each as far as it is known, and the faults of it."""
 
 from __future__ import annotations
 

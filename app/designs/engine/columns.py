@@ -1,4 +1,4 @@
-"""Values of many rows of a design, and how far off they may be.
+"""Values of many rows of a design, with their error bounds.
 
 The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
 axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not
@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
+from templates.core.criteria.bands import Estimate
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate
 from templates.core.units.units import Value
 
 Indices = NDArray[np.intp]
@@ -110,7 +110,7 @@ UNEQUAL = (
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column of so many rows from columns of parts of the rows; NaN in the others.
+    """Return one column of this number of rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------
@@ -166,11 +166,6 @@ class RowEstimate:
         return self.is_row or self.is_row_error
 
     @property
-    def is_stated(self) -> bool:
-        """Return whether anybody measured the error of the model, known or not."""
-        return self.one.is_stated or (not self.has_rows and bool(np.isnan(self.one.error).any()))
-
-    @property
     def rank(self) -> int:
         """Number of axes that the value has in a row beside those of a curve."""
         return max(self.value.rank - self.one.axes, 0)
@@ -183,12 +178,12 @@ class RowEstimate:
         scale = None if one.scale is None else Column(one.scale, self.is_row_scale).padded(rank)
         axes = one.axes if value.rank else 0
         error = self.error.padded(rank)
-        return Estimate(value.padded(rank + one.axes), error, one.is_stated, axes, scale)
+        return Estimate(value.padded(rank + one.axes), error, axes, scale)
 
     def bounds(self) -> tuple[Column, Column]:
         """Return both ends of the band; the value itself where its error is not known."""
         one = self.one
-        error = one.error if isinstance(one.error, float) else np.nan_to_num(one.error, nan=0.0)
+        error = np.nan_to_num(one.error, nan=0.0)
         scale = None if one.scale is None else np.nan_to_num(one.scale, nan=0.0)
         finite = replace(self, one=replace(one, error=error, scale=scale))
         low, high = finite.padded(0).bounds()
@@ -201,14 +196,3 @@ class RowEstimate:
     def unknown(self, count: int) -> Mask:
         """Return the rows whose error is not known at some point."""
         return self.error.unknown_rows(count)
-
-    def unstated(self) -> RowEstimate:
-        """Return the same, its error not stated."""
-        return replace(self, one=replace(self.one, is_stated=False))
-
-    def without_error(self, unknown: Mask) -> RowEstimate:
-        """Return the same, its error not known in some rows, and not stated."""
-        if not self.has_rows and unknown.all():
-            return replace(self, one=replace(self.one, error=float("nan"), is_stated=False))
-        error = np.where(unknown, np.nan, self.error.padded(0) if self.is_row_error else self.one.error)
-        return replace(self, one=replace(self.one, error=error, is_stated=False), is_row_error=True)

@@ -1,8 +1,8 @@
 """Decide criteria of a design: steps climb where a criterion is undecided, or its error unknown.
 
-Each round calculates one step at its next level: that which takes away most of the error for its cost. It
-ends when all criteria are decided, when no level states a smaller error of the same truth, or when the
-budget is spent. Nothing is saved, and solids stay as they are.
+Each round calculates one step at its next level: the step that removes most of the error for its cost. It
+ends when all criteria are decided, when no level states a smaller error of the same truth, or when the budget
+is spent. Nothing is saved, and solids stay as they are.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from app.designs.network import Block
 from app.pool.cost import estimated_seconds
 from app.pool.steps import announce
 from app.reference import Reference
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.summary import worst_first
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.summary import worst_first
 from templates.core.language.levels import accuracy, next_levels
 
 Stop = Literal["decided", "no_finer_level", "budget", "pending"]
@@ -63,7 +63,8 @@ class ClimbResult:
     @property
     def error_unknown(self) -> list[str]:
         """Return the criteria asked for that follow from values whose error is still unknown."""
-        return [j.name for j in self.criteria if _has_unknown_error(j) and j.name in self.asked]
+        asked = [j for j in self.criteria if j.name in self.asked]
+        return [j.name for j in asked if j.is_open and j.verdict != "undecided"]
 
 
 @dataclass(frozen=True)
@@ -94,14 +95,14 @@ class Climb:
     _tried: set[tuple[str, str]] = field(default_factory=set)
 
     def decide(self) -> ClimbResult:
-        """Climb until there is nothing more to do."""
+        """Refine levels until no step can improve a verdict."""
         start = time.monotonic()
         verdicts = Verdicts(self.calculation)
         judgements = {judgement.name: judgement for judgement in verdicts.all()}
         asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and self._is_asked(j))
         stopped: Stop | None = None
         while stopped is None:
-            open_now = [name for name in asked if is_open(judgements[name])]
+            open_now = [name for name in asked if judgements[name].is_open]
             stopped = self._next(open_now, self.budget - (time.monotonic() - start))
             if stopped is None:
                 judgements |= self._judged(open_now)
@@ -112,7 +113,7 @@ class Climb:
         """Return whether a criterion is undecided, or of an unknown error that a level would state."""
         if judgement.verdict == "undecided":
             return True
-        return is_open(judgement) and next(self._moves([judgement.name]), None) is not None
+        return judgement.is_open and next(self._moves([judgement.name]), None) is not None
 
     def _is_wanted(self, name: str) -> bool:
         return self.wanted is None or name in self.wanted
@@ -133,7 +134,7 @@ class Climb:
         return self._climb(max(affordable, key=lambda move: move.gain), open_now)
 
     def _moves(self, open_now: Sequence[str]) -> Iterator[_Move]:
-        """Return the next levels of each uncertain output behind the open criteria, cheapest first."""
+        """Yield the next levels of each uncertain output of the open criteria, cheapest first."""
         verdicts = Verdicts(self.calculation)
         for reference in sorted({r for name in open_now for r in verdicts.uncertain(name)}, key=str):
             block = self.calculation.graph.blocks[reference.block]
@@ -203,24 +204,13 @@ class Climb:
             return None
         self.calculation = finer
         judged = self._judged(open_now).values()
-        decided = sorted(judgement.name for judgement in judged if not is_open(judgement))
+        decided = sorted(judgement.name for judgement in judged if not judgement.is_open)
         self.trials.append(replace(trial, decided=tuple(decided)))
         return None
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
         """Return the criteria of these names, judged again."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
-
-
-def is_open(judgement: Judgement) -> bool:
-    """Return whether a finer level could decide a criterion, or tell the error of what it judges."""
-    return judgement.verdict == "undecided" or _has_unknown_error(judgement)
-
-
-def _has_unknown_error(judgement: Judgement) -> bool:
-    """Return whether a criterion is judged by values whose error is unknown."""
-    is_judged = judgement.verdict in ("met", "not_met") and judgement.value is not None
-    return is_judged and (judgement.band is None or not judgement.is_stated)
 
 
 def _largest(error: object) -> float:

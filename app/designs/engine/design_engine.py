@@ -1,9 +1,9 @@
 """A design as a function of N rows: built and checked once, calculated in array calls.
 
-A row is one set of values for some places of the design. All values are in SI; arrays have the row first and
-the place along a curve last. Each step has one level for all rows of a call, so that a switch of levels makes
-no jump in a column. Only what the wanted values follow from is calculated. Between calls nothing is kept but
-what is one for all rows.
+A row is one set of values for some parameters and inputs of the design. All values are in SI; arrays have the
+row first and the place along a curve last. Each step has one level for all rows of a call, so that a switch
+of levels makes no jump in a column. The engine calculates only what the requested values depend on. Between
+calls it keeps only values that are equal for all rows.
 """
 
 from __future__ import annotations
@@ -196,7 +196,7 @@ class DesignEngine:
         criteria: Collection[str] = (),
         by_tables: bool = False,
     ) -> float:
-        """Estimate how long a call for so many rows takes [s].
+        """Estimate how long a call for this number of rows takes [s].
 
         By the processor time of the last call of this kind, if it had some rows; before it by the tables of
         errors, which is an order of magnitude, and knows no heat balance. `by_tables` takes these always:

@@ -17,7 +17,7 @@ from app.designs.engine.steps import Part, StepRows
 from app.designs.network import Block
 from app.reference import Reference
 from templates.core.arrays import Array, Mask
-from templates.core.language.climbing import best_first
+from templates.core.language.level_choice import best_first
 from templates.core.language.levels import Accuracy, accuracy
 
 S = TypeVar("S", bound=np.generic)
@@ -96,7 +96,7 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """Return the cheapest level that serves, else the finest within the budget (`climbing`)."""
+        """Return the cheapest level that serves, else the finest within the budget (`level_choice`)."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
             if measured is None:
@@ -161,7 +161,7 @@ class LevelSearch:
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
     def _expected(self, measured: Accuracy, level: str) -> Mask:
-        """Return where an expensive level is expected to serve, by the errors that it states for the rows."""
+        """Return a mask of the rows for which an expensive level should suffice, by its stated errors."""
         met = np.ones(sum(step.count for step in self._started), dtype=bool)
         for name in self.outputs:
             errors = _joined(_expected(measured, step, level, name) for step in self._started)

@@ -1,4 +1,4 @@
-"""Find what a design must calculate for some of its values, and which of that differs from row to row.
+"""Find what a design must calculate for the requested values, and which parts differ from row to row.
 
 Pure functions over the network: no value is calculated here.
 """

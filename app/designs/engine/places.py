@@ -1,4 +1,4 @@
-"""The places of a design that rows vary: which may vary, and the shape of their values."""
+"""The parameters and inputs that rows vary: which may vary, and the shape of their values."""
 
 from __future__ import annotations
 
@@ -67,9 +67,13 @@ def place_faults(
     for reference in set_aside:
         cell = graph.cell(reference)
         if reference not in varied:
-            yield Fault(str(reference), "not_varied", f"{reference} does not vary here")
+            yield Fault(str(reference), "not_varied", f"{reference} cannot vary here")
         elif cell is None or not cell.relations:
-            yield Fault(str(reference), "no_relation", f"no relation sets {reference}: it varies as it is")
+            yield Fault(
+                str(reference),
+                "no_relation",
+                f"no relation sets {reference}, so it can vary without this option",
+            )
     for reference in varied:
         name, cell = str(reference), graph.cell(reference)
         block = graph.blocks.get(reference.block)
@@ -78,7 +82,7 @@ def place_faults(
         if cell is None and _declared(graph, reference) is None:
             yield unknown_name(name, _places(graph), "place")
         elif isinstance(_declared(graph, reference), Choice):
-            yield Fault(name, "not_a_number", f"{name} is a word; only quantities vary")
+            yield Fault(name, "not_a_number", f"{name} is a word; only quantities can vary")
         elif cell and cell.relations and reference not in set_aside:
             yield Fault(name, "follows_from", _followed(cell))
 
@@ -164,12 +168,12 @@ def checked_rows(
         If columns are missing, too many, of different lengths or of the wrong shape.
     """
     faults = [
-        Fault(str(r), "missing", "this place varies, so rows need its values")
+        Fault(str(r), "missing", "this parameter varies, so every row needs a value for it")
         for r in varied
         if r not in rows
     ]
     faults += [
-        Fault(str(r), "unknown_name", "this place was not declared as varied")
+        Fault(str(r), "unknown_name", "this parameter was not declared as varied")
         for r in rows
         if r not in varied
     ]

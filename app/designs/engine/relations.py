@@ -1,9 +1,9 @@
 """Relations for many rows at once, each row by itself: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
 
 Where no value differs from row to row, a relation is calculated as its text says. A relation hands on the
-tolerance of a value, or of that plus a constant. Whatever else follows from toleranced values lies in an
-interval too, but no part is made to that interval: an analysis of tolerances reports it, and drawing and STEP
-file do not prescribe it.
+tolerance of a value, or of that plus a constant. Other results of toleranced values lie in an interval too,
+but no part is made to that interval: a tolerance analysis reports it, and drawings and STEP files leave it
+out.
 """
 
 from __future__ import annotations
@@ -199,5 +199,5 @@ def limit_operations(operations: int) -> None:
     if operations > MOST_OPERATIONS:
         message = f"the relations up to here make {operations} operations on single values"
         raise FaultyText(
-            "too_many_values", f"{message}; use shorter arrays, at most {MOST_OPERATIONS} are made"
+            "too_many_values", f"{message}; use shorter arrays, as the limit is {MOST_OPERATIONS}"
         )

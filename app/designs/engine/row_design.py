@@ -1,4 +1,4 @@
-"""A checked design of which some places vary: what to calculate, and in which chunks of rows."""
+"""A checked design with varied parameters: what to calculate, and in which chunks of rows."""
 
 from __future__ import annotations
 

@@ -1,15 +1,15 @@
 """Propagate errors of steps to later values: each uncertain output is shifted to both ends.
 
-The error of a step leaves out that of its inputs. So whatever follows from an uncertain output is calculated
-again with that output at the lower and at the upper end of its band, in all rows at once. What cannot be
-calculated again at once (solids, expensive steps) is named, and the error of what follows is then not stated.
-Which outputs a value follows from is the same in all rows; how uncertain they are is not.
+The error of a step leaves out that of its inputs. So the engine recalculates everything that depends on an
+uncertain output, with that output at the lower and at the upper end of its band, in all rows at once. It
+names what it cannot recalculate quickly (solids, expensive steps), and states no error for the values that
+depend on it. Which outputs a value follows from is the same in all rows; how uncertain they are is not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from operator import or_
 
@@ -24,7 +24,7 @@ from app.plain import Raw
 from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.reference import Reference
 from templates.core.arrays import Mask
-from templates.core.judging.judging import Absent
+from templates.core.criteria.evaluation import Absent
 from templates.core.units.quantity import TypedQuantity
 
 MOST_SHIFTED = 12
@@ -69,14 +69,14 @@ class Upstream:
     uncertain
         Of a stated error in some row, which can be carried on.
     unknown
-        Of an error that was measured, but not in all rows.
-    unstated
-        Of an error that nobody measured, or that is not carried on.
+        Of an error that is not known in some row.
+    stopped
+        Of an error that is not carried on.
     """
 
     uncertain: frozenset[Reference] = frozenset()
     unknown: frozenset[Reference] = frozenset()
-    unstated: frozenset[Reference] = frozenset()
+    stopped: frozenset[Reference] = frozenset()
 
 
 NONE, NOTHING = Origins(), Upstream()
@@ -104,9 +104,9 @@ class Shifts:
         return self.by_error(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
-        """Return the rows in which the error of any output is not known."""
+        """Return the rows in which the error of any output is not known, or not carried on."""
         count = self.calculation.count
-        unknown = np.zeros(count, dtype=bool)
+        unknown = np.full(count, bool(upstream.stopped))
         for origin in upstream.unknown:
             estimate = self.estimate(origin)
             unknown |= estimate.unknown(count) if isinstance(estimate, RowEstimate) else False
@@ -114,11 +114,12 @@ class Shifts:
 
     def shifts(
         self, references: Mapping[str, Reference], upstream: Upstream
-    ) -> tuple[list[Shifted], frozenset[Reference]]:
-        """Return values of names with each uncertain origin at either end, and the origins left out."""
+    ) -> tuple[list[Shifted], Upstream]:
+        """Return values of names with each uncertain origin at either end; origins left out are stopped."""
         carried = [origin for origin in sorted(upstream.uncertain, key=str) if self._is_carried(origin)]
         shifts = [self._shift(origin, references) for origin in carried]
-        return shifts, upstream.uncertain.difference(carried)
+        left_out = upstream.uncertain.difference(carried)
+        return shifts, replace(upstream, stopped=upstream.stopped | left_out)
 
     def _shift(self, origin: Reference, references: Mapping[str, Reference]) -> Shifted:
         """Return values of names at both ends; the origin keeps its value, its band is counted elsewhere."""
@@ -138,23 +139,20 @@ class Shifts:
         if origins == NONE:
             return NOTHING
         kinds = {origin: self._kinds(origin) for origin in origins.carried | origins.stopped}
-        sets = {
-            kind: frozenset(origin for origin in origins.carried if kind in kinds[origin])
-            for kind in ("uncertain", "unknown", "unstated")
-        }
-        stopped = frozenset(origin for origin in origins.stopped if kinds[origin])
-        return Upstream(sets["uncertain"], sets["unknown"], sets["unstated"] | stopped)
+        uncertain, unknown = (
+            frozenset(origin for origin in origins.carried if kind in kinds[origin])
+            for kind in ("uncertain", "unknown")
+        )
+        return Upstream(uncertain, unknown, frozenset(one for one in origins.stopped if kinds[one]))
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """Return the places of an output in an `Upstream`; in rows it may have more than one."""
+        """Return the indices of an output in an `Upstream`; with rows it may have several."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()
         error, count = estimate.error, self.calculation.count
         unknown = estimate.unknown(count)
         kinds = {"unknown"} if unknown.any() else set[str]()
-        if not estimate.one.is_stated:
-            return frozenset(kinds | {"unstated"} if estimate.has_rows else kinds or {"unstated"})
         off = np.any(error.spread(count).reshape(count, -1) > 0, axis=1)
         return frozenset(kinds | ({"uncertain"} if (off & ~unknown).any() else set()))
 

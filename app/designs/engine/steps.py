@@ -1,8 +1,8 @@
 """One step, or one model, over many rows: array calls of its template, and which rows it refuses.
 
-In arrays a template masks the points that it would refuse alone; such rows are refused here with the words
-of the mask. Where it refuses a whole array, the rows are halved until those are found that it refuses. A row
-that is refused has no value in any output of the step, as in a design of its own.
+In an array call, a template masks the points that it would refuse alone. This module refuses those rows, with
+the message of the mask. If a template refuses a whole array, the rows are halved until the faulty ones are
+found. A refused row has no value in any output of the step, as in a design of one row.
 
 A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
 change of a design recomputes only what depends on it.
@@ -25,9 +25,9 @@ from app.plain import Raw
 from app.pool.cost import shape
 from app.pool.steps import evaluated_step, fingerprint
 from templates.core.arrays import Mask
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.evaluation import Absent
 from templates.core.errors import FaultyText, InvalidInputs
-from templates.core.judging.bands import Estimate
-from templates.core.judging.judging import Absent
 from templates.core.language.answer import Answer
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import Evaluation, answers_at_level
@@ -100,7 +100,7 @@ class StepRows:
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
 
     def refused(self) -> Mask:
-        """Return which rows are refused."""
+        """Return a mask of the refused rows."""
         refused = np.zeros(self.count, dtype=bool)
         refused[list(self.refusals)] = True
         return refused
@@ -321,11 +321,10 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
     axes = max(one.axes for _, one in present)
     value = _column(step, present, lambda one: one.value, axes)
     error = _column(step, present, lambda one: one.error, 0)
-    is_stated = all(one.is_stated or bool(np.isnan(one.error).any()) for _, one in present)
     if all(one.scale is None for _, one in present):
-        return RowEstimate(Estimate(value.value, error.value, is_stated, axes), value.is_row, error.is_row)
+        return RowEstimate(Estimate(value.value, error.value, axes), value.is_row, error.is_row)
     scale = _column(step, present, lambda one: np.nan if one.scale is None else one.scale, 0)
-    whole = Estimate(value.value, error.value, is_stated, axes, scale.value)
+    whole = Estimate(value.value, error.value, axes, scale.value)
     return RowEstimate(whole, value.is_row, error.is_row, scale.is_row)
 
 

@@ -35,7 +35,7 @@ class Table:
     levels
         By step, the one level of all rows.
     verdicts
-        By criterion, the verdict of each row: a place in `judging.comparison.WORST_FIRST`.
+        By criterion, the verdict of each row: an index into `criteria.comparison.VERDICTS`.
     judged
         By criterion, what was compared in each row, where that was asked for.
     """

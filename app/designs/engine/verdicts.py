@@ -18,16 +18,16 @@ from app.designs.engine.steps import Evaluations, estimate_rows
 from app.designs.network import LIMITS, Block, Demand, Subject, subjects
 from app.pool.cost import spanned
 from app.reference import Reference
-from templates.core.arrays import Array
-from templates.core.errors import FaultyText, listed
-from templates.core.judging.bands import Estimate, Shift
-from templates.core.judging.comparison import NOT_CHECKED, NOT_MET, compare, side_of
-from templates.core.judging.criterion import Criterion, Limit
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.judging import Absent, Along, Instead, judge
-from templates.core.judging.limits import GivenLimit
-from templates.core.judging.summary import worst_first
-from templates.core.judging.worst import worst_of_rows
+from templates.core.arrays import Array, Truth
+from templates.core.criteria.bands import Estimate, Shift
+from templates.core.criteria.comparison import NOT_CHECKED, NOT_MET, compare, side_of
+from templates.core.criteria.criterion import Criterion, Limit
+from templates.core.criteria.evaluation import Absent, Along, Instead, in_words, judge, unknown_error
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.limits import GivenLimit
+from templates.core.criteria.summary import worst_first
+from templates.core.criteria.worst import worst_of_rows
+from templates.core.errors import FaultyText
 from templates.core.language.criteria import (
     EvaluatedValues,
     along_of,
@@ -41,7 +41,7 @@ from templates.core.language.levels import accuracy
 from templates.core.units.relation import Relation
 
 RowCodes = NDArray[np.int8]
-"""The verdict of each row as a place in `templates.core.judging.comparison.WORST_FIRST`."""
+"""The verdict of each row as a place in `templates.core.criteria.comparison.VERDICTS`."""
 
 COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
@@ -58,13 +58,13 @@ class JudgedColumn:
     Attributes
     ----------
     low, high
-        The band of the value; infinite where it is open, NaN where the error is not known.
+        The band of the value as far as its error is known; infinite where it is open.
     utilisation
         Limit over value, or value over limit; NaN unless both are positive, and of temperatures.
     margin
         Positive is safe.
-    is_stated
-        Whether the errors of all models behind it are stated.
+    is_known
+        Whether every error behind it is known, in all rows.
     """
 
     value: Array
@@ -73,14 +73,14 @@ class JudgedColumn:
     high: Array
     utilisation: Array
     margin: Array
-    is_stated: bool
+    is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column of so many rows, of which these are a chunk; the rest is that of `whole`."""
+        """Return a column of this number of rows, of which these are a chunk; the rest is that of `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)
-        return JudgedColumn(**columns, is_stated=self.is_stated and (whole is None or whole.is_stated))
+        return JudgedColumn(**columns, is_known=self.is_known and (whole is None or whole.is_known))
 
 
 def _columns(whole: JudgedColumn | None, count: int) -> dict[str, Array]:
@@ -97,14 +97,16 @@ class _Sides:
     ----------
     shifts
         All values, with something upstream at either end of its band.
-    unknown, unstated
-        What is upstream whose error is not known, or not stated.
+    unknown
+        What is upstream whose error is not known, or not carried on.
+    is_known
+        Where the errors of all that is upstream are known, beside the values.
     """
 
     estimates: Mapping[str, Estimate]
     shifts: list[Shift]
     unknown: frozenset[Reference]
-    unstated: frozenset[Reference]
+    is_known: Truth
 
 
 @dataclass(frozen=True)
@@ -141,12 +143,12 @@ class Verdicts:
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """Return the outputs of steps whose errors make the band of a criterion, or are unknown."""
+        """Return the outputs of steps whose errors, known or not, make the band of a criterion."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
-        upstream = (self._shifts.behind(reference) for reference in references)
-        return reduce(or_, (one.uncertain | one.unknown | one.unstated for one in upstream), frozenset())
+        origins = (self._shifts.behind(reference) for reference in references)
+        return reduce(or_, (one.uncertain | one.unknown | one.stopped for one in origins), frozenset())
 
     def rows(self, subject: Subject) -> tuple[RowCodes, JudgedColumn]:
         """Return the verdict of a criterion in each row, and the numbers behind it."""
@@ -266,7 +268,14 @@ class Verdicts:
             absent = dict.fromkeys(criterion.names, Absent((), str(error)))
             return judge(criterion, _plain(estimates), absent, noted=more)
         result = judge(
-            criterion, sides.estimates, {}, along, shifts=sides.shifts, noted=more, instead=instead
+            criterion,
+            sides.estimates,
+            {},
+            along,
+            shifts=sides.shifts,
+            noted=more,
+            instead=instead,
+            is_known=sides.is_known,
         )
         return _explained(result, sides)
 
@@ -282,33 +291,26 @@ class Verdicts:
         references = {name: one for name, one in subject.references.items() if name in estimates}
         upstream = self._shifts.upstream(references.values())
         limit_operations(self.calculation.operations + _operations(criterion, estimates, upstream))
-        moved, left_out = self._shifts.shifts(references, upstream)
-        unstated = upstream.unstated | left_out
-        tainted = self._tainted(estimates, references, upstream, is_unstated=bool(unstated))
+        moved, upstream = self._shifts.shifts(references, upstream)
         rank = max((one.rank for one in estimates.values()), default=0)
-        fitted = {name: one.padded(rank) for name, one in tainted.items()}
+        fitted = {name: one.padded(rank) for name, one in estimates.items()}
         constant = {name: one.value for name, one in fitted.items() if name not in references}
         shifts: list[Shift] = [
             ({**constant, **_padded(low, estimates, rank)}, {**constant, **_padded(high, estimates, rank)})
             for low, high in moved
         ]
-        return _Sides(fitted, shifts, upstream.unknown, unstated)
+        unknown = upstream.unknown | upstream.stopped
+        return _Sides(fitted, shifts, unknown, self._is_known(estimates, upstream, rank))
 
-    def _tainted(
-        self,
-        estimates: Mapping[str, RowEstimate],
-        references: Mapping[str, Reference],
-        upstream: Upstream,
-        *,
-        is_unstated: bool,
-    ) -> Mapping[str, RowEstimate]:
-        """Return values whose errors upstream are not known, or not stated, marked as such."""
-        if upstream.unknown:
-            unknown = self._shifts.unknown(upstream)
-            return {n: e.without_error(unknown) if n in references else e for n, e in estimates.items()}
-        if is_unstated:
-            return {n: e.unstated() if n in references else e for n, e in estimates.items()}
-        return estimates
+    def _is_known(self, estimates: Mapping[str, RowEstimate], upstream: Upstream, rank: int) -> Truth:
+        """Return where the errors of all that is upstream are known, beside the values."""
+        if not (upstream.unknown or upstream.stopped):
+            return True
+        certain = ~self._shifts.unknown(upstream)
+        if not any(one.has_rows for one in estimates.values()):
+            return bool(certain.all())
+        axes = max(one.one.axes for one in estimates.values())
+        return certain.reshape(-1, *(1,) * (rank + axes))
 
     def _estimate(self, reference: Reference) -> RowEstimate | Absent:
         """Return the value of a name with the error of its own step, or why there is none."""
@@ -414,12 +416,11 @@ class Verdicts:
     def _compared(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> tuple[Array, JudgedColumn]:
         """Return the verdicts of rows, and the numbers behind them."""
         sides = self._sides(subject, estimates)
-        compared = compare(subject.criterion, sides.estimates, sides.shifts)
+        compared = compare(subject.criterion, sides.estimates, sides.shifts, is_known=sides.is_known)
         if not any(one.has_rows for one in estimates.values()) and np.ndim(compared.codes):
             compared = replace(compared, codes=np.asarray(compared.codes)[None])
         codes, numbers = worst_of_rows(subject.criterion, compared, self.calculation.count)
-        is_stated = not sides.unstated and all(one.is_stated for one in estimates.values())
-        return codes, _column(subject.criterion, numbers, is_stated)
+        return codes, _column(subject.criterion, numbers)
 
     def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
         """Return verdicts, those of another comparison where a value is missing."""
@@ -441,8 +442,8 @@ class Verdicts:
         count = self.calculation.count
         nothing = np.full(count, np.nan)
         value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
-        is_stated = all(estimate.is_stated for estimate in estimates.values())
-        column = JudgedColumn(value, limit, nothing, nothing, nothing, nothing, is_stated)
+        is_known = not any(estimate.unknown(count).any() for estimate in estimates.values())
+        column = JudgedColumn(value, limit, nothing, nothing, nothing, nothing, is_known)
         return np.full(count, NOT_CHECKED, dtype=np.int8), column
 
     def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
@@ -464,31 +465,23 @@ def _padded(
     return {name: column.padded(rank + estimates[name].one.axes) for name, column in values.items()}
 
 
-def _column(criterion: Criterion, sides: list[Array], is_stated: bool) -> JudgedColumn:
+def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
     """Return the numbers of each row, as a report of a single design has them."""
-    value, limit, low, high, *_ = sides
+    value, limit, low, high, *_, certain = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
         share = limit / value if is_least else value / limit
     is_share = (value > 0) & (limit > 0) & np.isfinite(share) & (not criterion.is_temperature)
     margin = value - limit if is_least else limit - value
-    return JudgedColumn(value, limit, low, high, np.where(is_share, share, np.nan), margin, is_stated)
+    share = np.where(is_share, share, np.nan)
+    return JudgedColumn(value, limit, low, high, share, margin, bool(certain.all()))
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:
     """Return a judgement that names where upstream its error is lost."""
-    if sides.unknown and result.verdict == "undecided":
-        return replace(
-            result, reason=f"it follows from {_listed(sides.unknown)}, whose error is not known here"
-        )
-    if sides.unstated and result.verdict in ("met", "not_met"):
-        reason = f"the error of {_listed(sides.unstated)}, from which it follows, is not stated"
-        return replace(result, reason=reason)
+    if sides.unknown and not result.error_known and result.margin is not None:
+        return replace(result, reason=unknown_error(map(in_words, map(str, sides.unknown)), result.verdict))
     return result
-
-
-def _listed(references: frozenset[Reference]) -> str:
-    return listed(sorted(map(str, references)))
 
 
 def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upstream: Upstream) -> int:

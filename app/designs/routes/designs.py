@@ -332,5 +332,5 @@ def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
-        raise InvalidInputs([Fault("note", "string", f"a note is a text of at most {LONGEST_NOTE} letters")])
+        raise InvalidInputs([Fault("note", "string", f"a note has at most {LONGEST_NOTE} letters")])
     return patch, note

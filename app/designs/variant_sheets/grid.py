@@ -61,7 +61,7 @@ def _refuse_large(rows: Sequence[Sequence[str]]) -> None:
     faults = []
     if len(rows) > LAST_ROW:
         place, message = address(len(rows) - 1, 0), f"a table of variants ends by row {LAST_ROW}"
-        faults.append(Fault(place, "too_many_rows", f"{message}; remove what stands below"))
+        faults.append(Fault(place, "too_many_rows", f"{message}; remove the rows below"))
     for number, row in enumerate(rows):
         if len(row) > MOST_COLUMNS:
             place, message = address(number, len(row) - 1), f"a table has at most {MOST_COLUMNS} columns"

@@ -118,7 +118,7 @@ def _skipped(grid: Grid) -> set[int]:
 def _columns(
     grid: Grid, units: Units, skipped: Collection[int], faults: list[Fault], *, has_units: bool
 ) -> Iterator[Column]:
-    """Yield the columns of inputs; what is wrong with their headings and units is added to the faults."""
+    """Yield the columns of inputs; add faults of their headings and units to the list."""
     if grid.cell(0, 0).lower() != FIRST:
         message = f"the first column holds the names of the variants; its heading is {FIRST!r}"
         faults.append(Fault("A1", "missing_name", message))
@@ -188,7 +188,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
 def _values(
     grid: Grid, row: int, columns: list[Column], units: Units, wrong: Collection[str], faults: list[Fault]
 ) -> dict[str, tuple[int, Raw]]:
-    """Return column and value of every place that a row sets; what is wrong is added to the faults."""
+    """Return column and value of every parameter that a row sets; add faults to the list."""
     values: dict[str, tuple[int, Raw]] = {}
     for column in columns:
         text, where = grid.cell(row, column.number), address(row, column.number)

@@ -1,4 +1,4 @@
-"""Every place that a variant may override, with the unit in which it is declared."""
+"""Every parameter and input that a variant may override, with its declared unit."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def _check_size(content: bytes) -> None:
         raise _wrong("damaged", DAMAGED) from None
     if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MOST_UNPACKED:
         message = f"the file unpacks to more than {MOST_UNPACKED // 10**6} MB or {MOST_PARTS} parts"
-        raise _wrong("too_large", f"{message}; keep the one sheet only")
+        raise _wrong("too_large", f"{message}; keep only one sheet")
 
 
 def _sheet(book: Workbook) -> Worksheet:

@@ -64,7 +64,7 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
 
 
 def evaluations(asked: Sequence[StepInputs]) -> list[Prepared | None]:
-    """Return the evaluation of each, `DEFERRED` if nobody waits for it.
+    """Return the evaluation of each variant, `DEFERRED` if no caller waits for it.
 
     None where it has to be calculated alone.
     """

@@ -1,4 +1,4 @@
-"""The columns of a table of variants: every place that at least one of them overrides."""
+"""The columns of a table of variants: every parameter or input that at least one of them overrides."""
 
 from __future__ import annotations
 

@@ -28,8 +28,8 @@ from app.solids.analysis_rows import analysed
 from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import NotFound
+from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault, InvalidInputs, unknown_names
-from templates.core.judging.summary import worst_first
 
 WAITS = "it waits for a solid that is not built, or for a step that waits for one"
 ITERATED = "a design that iterates does so only as it is saved: make the variant a design of its own"
@@ -52,7 +52,7 @@ class WantedVariant:
 def detailed(
     wanted: WantedVariant, database: Database, catalogues: Catalogues
 ) -> Reply[WantedVariant, VariantDetail]:
-    """Return the variant, unless its caller does not wait so long.
+    """Return the variant, if its caller waits long enough.
 
     Raises
     ------

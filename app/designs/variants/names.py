@@ -1,4 +1,4 @@
-"""Names of variants and of the places that they override, and the order of these names."""
+"""Names of variants and of the parameters that they override, and the order of these names."""
 
 from __future__ import annotations
 

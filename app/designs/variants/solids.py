@@ -1,6 +1,6 @@
 """The part of a regeneration that is about variants: one solid for each distinct set of parameters.
 
-What goes wrong with a solid is a matter of the variants that have it; the revision stays usable.
+If a solid fails, only the variants that use it fail; the revision stays usable.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Settle = Callable[[Prepared, JobContext], Calculation]
 
 
 def plain_problem(error: Exception) -> JsonObject:
-    """Return an error as a problem, where nobody knows more of it."""
+    """Return an unexpected error as a problem."""
     return {"type": "about:blank", "title": "The variant failed", "status": 422, "detail": str(error)}
 
 

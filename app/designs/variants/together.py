@@ -2,8 +2,8 @@
 
 Cells are calculated variant by variant, as in designs of their own. At a step, those variants that give it
 the same inputs, of the same shapes and with the same choices, share one array call; each then has its row of
-the result, and goes on with it. What an array call refuses, or masks, is calculated alone: the refusal then
-speaks of that variant.
+the result, and goes on with it. A variant that an array call refuses or masks is calculated alone, so that
+the message refers to that variant.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _limit(runs: Sequence[_Run]) -> None:
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """Return a variant before anything of it is calculated, or what is wrong with its network."""
+    """Return a variant before anything of it is calculated, or the faults of its network."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from app.designs.variants.names import BASE
-from templates.core.judging.comparison import Verdict
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.summary import SHOWN, worst_first
+from templates.core.criteria.comparison import Verdict
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.summary import SHOWN, worst_first
 
 VARIANT = "variant"
 """In `where` of a criterion: the name of the worst variant; `base` is the design itself."""
@@ -23,7 +23,7 @@ def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
 
     As it is where there are no variants.
 
-    Points are variants, the design itself one of them. Whatever is not certain of one is not certain of all.
+    Points are variants, the design itself one of them. A limit that is not verified for one is so for all.
     """
     if not variants:
         return list(base)
@@ -43,7 +43,6 @@ def _worst(judgements: Sequence[Judgement]) -> Judgement:
         worst,
         points=len(judgements),
         counts=_ordered(counts),
-        is_stated=all(judgement.is_stated for judgement in judgements),
         unverified=next((j.unverified for j in (worst, *judgements) if j.unverified), None),
     )
 

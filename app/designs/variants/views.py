@@ -22,8 +22,8 @@ from app.designs.variants.names import BASE, natural
 from app.plain import Json, JsonObject
 from app.solids import measures, rows
 from app.storage.tables import BuildRow, RevisionModelRow, RevisionRow
+from templates.core.criteria.comparison import WORST_FIRST
 from templates.core.errors import InvalidInputs, unknown_names
-from templates.core.judging.comparison import WORST_FIRST
 
 
 def variants(

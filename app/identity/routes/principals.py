@@ -1,4 +1,4 @@
-"""`/me`, `/principals` and their keys: who may use the service, and what each of them has used."""
+"""`/me`, `/principals` and their keys: who may use the service, and the usage of each principal."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def show_principal(id: Id, identity: TheIdentity) -> Principal:
 
 @router.post("/principals/{id}", dependencies=ADMIN, responses=refusals(404, 409))
 def change_principal(id: Id, body: PrincipalPatch, identity: TheIdentity) -> Principal:
-    """Another name, other roles or limits; disabled, its keys and sessions let nobody in."""
+    """Change the name, roles or limits of a principal, or disable it with its keys and sessions."""
     limits = None if body.limits is None else body.limits.model_dump(exclude_unset=True)
     changes = Changes(body.name, body.roles, limits, body.disabled)
     return views.principal(identity.change(id, changes))
@@ -90,5 +90,5 @@ def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
 
 @router.delete("/principals/{id}/keys/{prefix}", responses=refusals(403, 404))
 def revoke_key(id: Id, prefix: Id, identity: TheIdentity) -> Key:
-    """End the life of a key and of those made by it, but for the one that this request carries."""
+    """Revoke a key and the keys that it made, except the key of this request."""
     return views.key(identity.revoke(prefix, id)[0])

@@ -122,4 +122,4 @@ def read(content: bytes) -> Manifest:
         wrong = (
             f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
         )
-        raise UnreadableModel("manifest", f"the manifest of Creo is wrong: {'; '.join(wrong)}") from None
+        raise UnreadableModel("manifest", f"the manifest for Creo is not valid: {'; '.join(wrong)}") from None

@@ -64,7 +64,7 @@ class CreoSession:
     id: str = field(default="")
 
     def connect(self) -> None:
-        """Connect; raises ProgramMissing if nobody answers, or Creo does not run."""
+        """Connect; raises ProgramMissing if CREOSON does not answer or Creo does not run."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
         self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
@@ -89,7 +89,9 @@ class CreoSession:
         request = {"sessionId": self.id, "command": command, "function": function, "data": data}
         answered = self._post(request, code, names).get("data") or {}
         if not isinstance(answered, dict):
-            raise GeometryError("creo_answer", f"CREOSON answers {command}: {function} by no object", names)
+            raise GeometryError(
+                "creo_answer", f"CREOSON's answer to {command}: {function} is not an object", names
+            )
         return answered
 
     def _post(self, request: Fields, code: str, names: tuple[str, ...]) -> Fields:
@@ -107,7 +109,7 @@ class CreoSession:
         except httpx.HTTPError as error:
             raise unreachable(f"CREOSON does not answer {what} ({type(error).__name__})") from None
         except ValueError:
-            raise GeometryError("creo_answer", f"CREOSON answers {what} by no JSON", names) from None
+            raise GeometryError("creo_answer", f"CREOSON's answer to {what} is not JSON", names) from None
         status = answer.get("status") if isinstance(answer, dict) else None
         if not isinstance(status, dict) or "error" not in status:
             raise GeometryError("creo_answer", f"CREOSON answers {what} without a status", names)
@@ -169,7 +171,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """Open a session once nobody else has one; close it in the end without saving changes."""
+        """Open a session when no other one is open; close it at the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():

@@ -255,7 +255,7 @@ async def verify_step(
     jobs: TheJobs,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Verification | Response:
-    """From which build a STEP file is, and which revisions use it.
+    """Find the build of a STEP file, and the revisions that use it.
 
     The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
     Which build it is stands in its header, within the first 64 KiB. The stamp of a download, which names

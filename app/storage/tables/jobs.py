@@ -1,4 +1,4 @@
-"""Jobs, the events that they and designs publish, and the numbers that only grow."""
+"""Jobs, the events that they and designs publish, and the counters that only increase."""
 
 from sqlalchemy import BigInteger, Double, ForeignKeyConstraint, Index
 from sqlalchemy.orm import Mapped, mapped_column

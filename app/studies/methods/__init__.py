@@ -1,7 +1,7 @@
 """The numerics of studies: which rows to calculate, and what follows from their results.
 
-Pure functions over a callable: no database, no clock. Equal seeds give equal rows, so a study that was
-interrupted repeats its calls and the callable answers those from storage that it has answered before.
+Pure functions over a callable: no database, no clock. Equal seeds give equal rows. So an interrupted study
+repeats its calls, and the callable answers the earlier ones from storage.
 
 space           the box of the varied values, as a unit cube and in SI
 points          rows of grids, Sobol' sequences and Latin hypercubes, any chunk without the others

@@ -1,4 +1,4 @@
-"""Answers of a design to an optimisation: objectives and criteria for rows of varied values."""
+"""The functions that an optimiser calls: objectives and criteria of a design for rows of varied values."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.space import Space
-from templates.core.arrays import Array
+from templates.core.arrays import Array, Mask
+from templates.core.criteria.comparison import verdicts
+from templates.core.criteria.criterion import Sign
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.judging.comparison import Verdict
-from templates.core.judging.criterion import Sign
 
 
 @dataclass(frozen=True)
@@ -62,12 +62,14 @@ class Columns:
     values, limits
         The two sides of each criterion, shape (N, m).
     low, high
-        The margin of each criterion at the bad and at the good end of its band, shape (N, m); zero or more is
-        safe, NaN is not known.
+        The margin of each criterion at the bad and at the good end of its band, as far as that is known,
+        shape (N, m); zero or more is safe.
     reasons
         Why a row is refused, by its number.
     seconds
         What the rows cost; an answer from storage repeats what they cost when they were calculated.
+    is_known
+        Where the error of a criterion that is met is known, shape (N, m); everywhere, if None.
     """
 
     objectives: Array
@@ -77,6 +79,7 @@ class Columns:
     high: Array
     reasons: Mapping[int, str] = field(default_factory=dict)
     seconds: float = 0.0
+    is_known: Mask | None = None
 
     def row(self, number: int) -> Columns:
         """Return one row, as columns of a single row."""
@@ -84,7 +87,8 @@ class Columns:
         arrays = (self.objectives, self.values, self.limits, self.low, self.high)
         objectives, values, limits, low, high = (array[part] for array in arrays)
         reasons = {0: self.reasons[number]} if number in self.reasons else {}
-        return Columns(objectives, values, limits, low, high, reasons)
+        certain = None if self.is_known is None else self.is_known[part]
+        return Columns(objectives, values, limits, low, high, reasons, is_known=certain)
 
     def worst(self, problem: Problem) -> Array:
         """Return the margin of each criterion at the bad end of its band, shape (N, m).
@@ -94,16 +98,12 @@ class Columns:
         margins = problem.signs * (self.values - self.limits)
         return np.where(np.isfinite(self.low), self.low, margins)
 
-    def verdicts(self, problem: Problem) -> tuple[Verdict, ...]:
-        """Return the verdict on each criterion in the first row."""
+    def codes(self, problem: Problem) -> tuple[int, ...]:
+        """Return the verdict on each criterion in the first row, as places in `VERDICTS`."""
         margins = problem.signs * (self.values - self.limits)
-        return tuple(map(_verdict, margins[0], self.low[0], self.high[0]))
-
-
-def _verdict(margin: float, low: float, high: float) -> Verdict:
-    if np.isnan(margin):
-        return "not_checked"
-    return "met" if low >= 0 else "not_met" if high < 0 else "undecided"
+        certain = np.ones_like(margins, dtype=bool) if self.is_known is None else self.is_known
+        codes = verdicts(">=", margins, 0.0, (self.low, self.high), (0.0, 0.0), certain)
+        return tuple(np.asarray(codes)[0].tolist())
 
 
 def exact(problem: Problem, objectives: Array, values: Array, limits: Array) -> Columns:

@@ -12,14 +12,14 @@ from app.studies.methods.answers import Answer, Columns, CountingAnswer, Problem
 from app.studies.methods.correction import CorrectedAnswer, SearchView, stacked
 from app.studies.methods.search import Scan, scales, scan
 from templates.core.arrays import Array
-from templates.core.judging.comparison import Verdict
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, NOT_MET, VERDICTS, Verdict
 
 WITHIN = 1e-3
 """Relative difference between promise and truth that counts as agreement."""
 TINY = 1e-9
 """Of the middle size of a column: differences below it are none."""
 
-State = Literal["settled", "undecided", "infeasible", "not_settled"]
+State = Literal["settled", "unconfirmed", "undecided", "infeasible", "not_settled"]
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Round:
         The varied values [SI], shape (d,).
     promise, confirmed
         Objectives, then the values and the limits of the criteria [SI], shape (k + 2 m,).
-    verdicts
-        On each criterion, of the confirming level.
+    codes
+        The verdict on each criterion, of the confirming level, as places in `VERDICTS`.
     worst
         The margin of each criterion at the bad end of its band [SI], shape (m,); itself if that is unknown.
     agrees
@@ -47,7 +47,7 @@ class Round:
     at: Array
     promise: Array
     confirmed: Array
-    verdicts: tuple[Verdict, ...]
+    codes: tuple[int, ...]
     worst: Array
     agrees: bool
     is_feasible: bool
@@ -61,7 +61,17 @@ class Round:
     @property
     def is_met(self) -> bool:
         """Return whether the place has results, and every criterion is met."""
-        return bool(np.isfinite(self.confirmed).all()) and all(one == "met" for one in self.verdicts)
+        return bool(np.isfinite(self.confirmed).all()) and all(one >= MET_ERROR_UNKNOWN for one in self.codes)
+
+    @property
+    def is_known(self) -> bool:
+        """Return whether no criterion is met with an error that is not known."""
+        return MET_ERROR_UNKNOWN not in self.codes
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Return the verdict on each criterion, of the confirming level."""
+        return tuple(VERDICTS[code] for code in self.codes)
 
 
 class Run:
@@ -109,7 +119,7 @@ class Run:
             at[row],
             promise,
             confirmed,
-            one.verdicts(self.problem),
+            one.codes(self.problem),
             one.worst(self.problem)[0],
             agrees=bool(near.all()),
             is_feasible=bool(seen.violation[row] == 0),
@@ -143,5 +153,9 @@ class Run:
 
 def unmet(rounds: Sequence[Round]) -> State:
     """Return the state of a search whose agreed places are not met."""
-    verdicts = {verdict for one in rounds for verdict in one.verdicts}
-    return "infeasible" if "not_met" in verdicts else "undecided"
+    return "infeasible" if any(NOT_MET in one.codes for one in rounds) else "undecided"
+
+
+def state_of_met(rounds: Sequence[Round]) -> State:
+    """Return the state of a search whose agreed places are met."""
+    return "settled" if all(one.is_known for one in rounds) else "unconfirmed"

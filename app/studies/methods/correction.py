@@ -1,8 +1,8 @@
 """A coarse level of a design, corrected by its ratios to a fine level at some places.
 
 The logarithm of the ratio is interpolated between the confirmed rows by ordinary kriging with a smooth
-covariance. Inverse distances would leave the slope at a confirmed row as the coarse level has it. Kriging
-takes over the slope that the confirmed rows show, so the rounds approach the optimum of the fine level itself
+covariance. Inverse-distance weights would keep the slope of the coarse level at a confirmed row. Kriging uses
+the slope between the confirmed rows, so the rounds approach the optimum of the fine level
 (docs/decisions/044). Where a column is zero or changes its sign, differences replace ratios.
 
 References
@@ -53,7 +53,7 @@ class SearchView:
 
     @property
     def complete(self) -> Mask:
-        """Return which rows have all results, shape (N,)."""
+        """Return a mask of the rows with all results, shape (N,)."""
         return np.asarray(np.isfinite(np.hstack([self.objectives, self.margins])).all(axis=1))
 
 

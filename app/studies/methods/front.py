@@ -1,6 +1,6 @@
 """The Pareto front of several objectives, found by pymoo's NSGA-II.
 
-The front is searched at the coarse level, where places spread over it are polished too. The fine level
+The search runs at the coarse level, where points spread along the front are polished too. The fine level
 confirms them, which corrects the coarse level for the next round, as for one objective.
 """
 
@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
-from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
+from app.studies.methods.confirmation import WITHIN, Round, Run, State, state_of_met, unmet
 from app.studies.methods.correction import CorrectedAnswer
 from app.studies.methods.evolution import evolved
 from app.studies.methods.polish import ScaledProblem, polished
@@ -106,7 +106,7 @@ def pareto_front(
 
 
 def dominations(objectives: Array) -> Integers:
-    """Return how many rows dominate each row, shape (N,); objectives to minimise, shape (N, k)."""
+    """Return the number of rows that dominate each row, (N,), for objectives to minimise, (N, k)."""
     columns = [np.ascontiguousarray(column) for column in objectives.T]
     counts = np.zeros(len(objectives), dtype=np.int64)
     for row, values in enumerate(objectives):
@@ -123,7 +123,7 @@ def _state(rounds: list[Round]) -> State | None:
     if not all(one.agrees for one in rounds):
         return None
     if all(one.is_met for one in rounds):
-        return "settled"
+        return state_of_met(rounds)
     if any(one.fell_short for one in rounds):
         return None
     return unmet(rounds)

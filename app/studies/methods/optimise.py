@@ -1,8 +1,8 @@
 """One objective: explore at a coarse level, confirm at a fine one, correct, and repeat until both agree.
 
-After the first confirmation the search holds each limit plus the band of the fine level there, so that the
-confirmed optimum is met, and not only nearly. Feasible is not optimal: the ratios of a coarse level are right
-where they were taken, its slopes may be wrong. `trade` shows what each level would have chosen.
+After the first confirmation the search tightens each limit by the error band of the fine level, so that the
+confirmed optimum meets it fully. Feasible is not optimal: the ratios of a coarse level are right where they
+were taken, its slopes may be wrong. `trade` shows what each level would have chosen.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
-from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
+from app.studies.methods.confirmation import WITHIN, Round, Run, State, state_of_met, unmet
 from app.studies.methods.search import best
 from templates.core.arrays import Array
 
@@ -37,7 +37,8 @@ class Optimum:
     Attributes
     ----------
     state
-        `settled`: promise and truth agree, all criteria are met. `undecided`: they agree, but a limit lies in
+        `settled`: promise and truth agree, all criteria are met. `unconfirmed`: so do they, but the error of
+        a criterion at the fine level is not known. `undecided`: they agree, but a limit lies in
         the band of the fine level. `infeasible`: they agree, and nowhere that the search looked all criteria
         are met. `not_settled`: they do not agree after the last round, or the fine level refuses the place.
     best
@@ -122,7 +123,7 @@ def _state(done: list[Round]) -> State | None:
     if not confirmed.agrees:
         return None
     if confirmed.is_met:
-        return "settled"
+        return state_of_met([confirmed])
     looks_elsewhere = not confirmed.is_feasible and not done[0].agrees
     if confirmed.fell_short or looks_elsewhere:
         return None  # hold the bands, or a little more; or doubt the corrections first
@@ -136,7 +137,7 @@ def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
     chosen = done[-1]
     if met:
         chosen = min(met, key=lambda one: sense * float(one.confirmed[0]))
-        state = state if state == "settled" else "not_settled"
+        state = state_of_met([chosen]) if state in ("settled", "unconfirmed") else "not_settled"
     elif state is None and len(done) > 1 and not chosen.is_feasible:
         chosen = min(done, key=lambda one: float(np.max(-one.worst / run.scales)))
         state = unmet([chosen])

@@ -88,7 +88,7 @@ class Values:
         return np.asarray((nearest + 0.5) / len(self.values))
 
     def steps(self, count: int) -> Array:
-        """Return all values, whatever the count."""
+        """Return all values, regardless of the count."""
         return np.array(self.values)
 
 
@@ -111,7 +111,7 @@ class Space:
 
     @property
     def continuous(self) -> Mask:
-        """Return which variables take any value between two bounds, shape (d,)."""
+        """Return a mask of the variables that are continuous between two bounds, shape (d,)."""
         return np.array([isinstance(variable, Interval) for variable in self.variables], dtype=bool)
 
     def at(self, unit: Array) -> Array:

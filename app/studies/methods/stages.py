@@ -1,7 +1,7 @@
 """Stages of a search, stored so that an interrupted search does not repeat them.
 
-A search is a pure function of its seed and of the answers it receives. A stage is a part of it whose outcome
-is a few arrays. Whoever stores these, and what the stage asked for, can go on behind it.
+A search is a pure function of its seed and of the answers it receives. A stage is a part of a search that
+returns a few arrays. A caller that stores these arrays and the requests of the stage can resume after it.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Journal(Protocol):
     """A store of stages."""
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         ...
 
     def keep(self, name: str, stage: Stage) -> None:
-        """Keep a stage as far as it has come."""
+        """Store the present state of a stage."""
         ...
 
 

@@ -96,7 +96,7 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     patch = patch_of(design, typed)
     try:
         if based != str(design.revision):
-            raise Refused.because(STALE, f"revision {design.revision} was saved since")
+            raise Refused.because(STALE, f"revision {design.revision} was saved in the meantime")
         await services.change(id, based, patch, typed.get("note", ""))
     except Refused as refused:
         return await _again(request, services, id, typed, refused)
@@ -210,7 +210,7 @@ async def _again(
 
 
 def _refuse_taken(design: Design, patch: Patch) -> None:
-    """Let nobody add what would take the place of a parameter, a step or a model.
+    """Refuse a name that a parameter, a step or a model already has.
 
     Raises
     ------

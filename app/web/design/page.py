@@ -1,4 +1,4 @@
-"""The design page: worksheet and part, side by side."""
+"""The design page, which shows worksheet and part side by side."""
 
 from __future__ import annotations
 
@@ -291,7 +291,7 @@ async def _fields_of_solids(
 
 
 async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
-    """Return relations for parameters of models that are not set; none for whoever may not save them."""
+    """Return proposed relations for unset model parameters; none if the principal may not save."""
     if not (design.models and acting().may("author")):
         return []
     return await services.calculate(None, services.designs.proposals, design.id)

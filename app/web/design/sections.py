@@ -106,7 +106,7 @@ def _macro(page: str, name: str, *arguments: object) -> Markup:
 
 
 def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
-    """Return all that a section shows; the code of the template stands for what it declares."""
+    """Return all data of a section; the digest of the template represents its declarations."""
     template = step.template
     return (
         step.name,

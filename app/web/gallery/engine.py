@@ -93,6 +93,7 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
             "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
             "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
             "film.groove_start": "90 deg",
+            "film.bearing_width": "22 mm",
         }
         for n in range(1, cylinders + 1)
     }

@@ -7,7 +7,7 @@ import asyncio
 from fastapi import APIRouter, Request, Response
 
 from app.catalogue.routes.faults import list_catalogue_faults
-from app.catalogue.routes.templates import list_templates
+from app.catalogue.routes.templates import Search, list_templates
 from app.designs.routes.designs import (
     list_designs,
     show_measurements,
@@ -24,8 +24,8 @@ TAGS_ON_HOME = 30
 
 
 @router.get("/")
-async def home(request: Request, services: ThePageServices) -> Response:
-    """Show designs, templates, models, and where to start."""
+async def home(request: Request, services: ThePageServices, template: Search = "") -> Response:
+    """Show designs, templates, models, and where to start; `template` searches the templates."""
     designs, tags, templates, models, faulty = await asyncio.gather(
         services.run(list_designs, services.database, limit=ON_HOME),
         services.run(list_tags, services.database),
@@ -34,6 +34,9 @@ async def home(request: Request, services: ThePageServices) -> Response:
         services.run(list_catalogue_faults, services.catalogues, limit=500),
     )
     latest = [item for item in templates.items if item.latest]
+    shown = templates
+    if template.strip():
+        shown = await services.run(list_templates, services.catalogues, limit=500, search=template)
     return show(
         request,
         "home/home.html",
@@ -41,7 +44,9 @@ async def home(request: Request, services: ThePageServices) -> Response:
         tags=tags.items[:TAGS_ON_HOME],
         back="/",
         pictures=dict(await asyncio.gather(*(_picture(services, item.id) for item in designs.items))),
-        templates=templates.items,
+        templates=shown.items,
+        notes=shown.notes,
+        search=template,
         latest=latest,
         models=[item for item in models.items if item.latest],
         gallery=offered(templates.items, models.items),

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,12 +16,15 @@ from math import isfinite
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from app.calculations.tables import TableColumn, read_table
+from app.calculations.curves import MOST_BYTES, MOST_ROWS, file_of
+from app.calculations.indicator import as_cycle
+from app.calculations.table_files import FileText
+from app.calculations.tables import TableColumn, table_of
 from app.http.access import needs
 from app.http.strict_requests import StrictRoute
 from app.reference import Reference
 from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField
-from templates.core.errors import FaultyText, InvalidInputs, excerpt
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
 from templates.core.language.meaning import api_name
 from templates.core.units.quantity import read
 from templates.core.units.units import compatible, require_same_kind, unit
@@ -41,7 +46,11 @@ def paste(pasted: PastedTable) -> ReadTable:
     InvalidInputs
         If the text is not a table.
     """
-    columns = read_table(pasted.text)
+    file = _sent(pasted)
+    table = as_cycle(
+        table_of(file.text, most_rows=MOST_ROWS, most_characters=MOST_BYTES, is_sheet=file.is_sheet)
+    )
+    columns, assumed = table.columns, [*file.assumed, *table.assumed]
     chosen = _chosen(columns, pasted)
     shown = [
         ReadColumn(name=c.name, unit=o.unit, field=o.field) for c, o in zip(columns, chosen, strict=True)
@@ -59,9 +68,26 @@ def paste(pasted: PastedTable) -> ReadTable:
         first=[list(row) for row in zip(*(c.values[:SHOWN] for c in typed), strict=True)],
         rows=len(typed[0].values),
         notes=notes,
+        assumed=assumed,
         faults=faults,
         texts={} if faults else {o.field: text_of(c) for c, o in zip(typed, chosen, strict=True) if o.field},
     )
+
+
+def _sent(pasted: PastedTable) -> FileText:
+    """Return the text of the file that was chosen, else what was pasted.
+
+    Raises
+    ------
+    InvalidInputs
+        If the file is too large, damaged, or of another kind.
+    """
+    if not pasted.file:
+        return FileText(pasted.text)
+    try:
+        return file_of(base64.b64decode(pasted.file, validate=True))
+    except (binascii.Error, ValueError):
+        raise InvalidInputs([Fault("file", "not_base64", "send the bytes of the file in base64")]) from None
 
 
 def text_of(column: TableColumn) -> str:
@@ -96,7 +122,19 @@ def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> l
     for score, place, name in sorted(scores, reverse=True):
         if score > 0 and -place not in taken and name not in taken.values():
             taken[-place] = name
+    taken |= _alone(columns, fields, taken)
     return [taken.get(place, "") for place in range(len(columns))]
+
+
+def _alone(
+    columns: Sequence[TableColumn], fields: Sequence[TableField], taken: Mapping[int, str]
+) -> dict[int, str]:
+    """Return what is left by its kind: the only column of a kind goes to the only free field of it."""
+    free = [field for field in fields if field.name not in taken.values()]
+    left = [n for n, column in enumerate(columns) if n not in taken and column.unit not in ("", "1")]
+    fits = {n: [f.name for f in free if compatible(unit(columns[n].unit), unit(f.unit))] for n in left}
+    single = {n: names[0] for n, names in fits.items() if len(names) == 1}
+    return {n: name for n, name in single.items() if list(single.values()).count(name) == 1}
 
 
 def _likeness(column: TableColumn, field: TableField) -> float:

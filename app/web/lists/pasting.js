@@ -4,12 +4,12 @@ import { isolated } from "../shared/isolated.js";
 import { asDialog, fill } from "./dialogs.js";
 import { live } from "../shared/live.js";
 
-const LARGEST = 2_000_000; // of a file [bytes]; the service takes a million characters
+const LARGEST = 4_000_000; // of a file [bytes]
 
 export function startPasting(dialog) {
   const find = asDialog(dialog);
   const text = find("[data-paste-text]"), offset = find("[data-paste-offset]"), apply = find("[data-paste-apply]");
-  let lists = [], answer = null, chosen = null, signature = "";
+  let lists = [], answer = null, chosen = null, signature = "", file = "";
 
   const reading = live(
     (signal) => call("POST", "/tables", asked(), { signal }),
@@ -19,13 +19,13 @@ export function startPasting(dialog) {
 
   function asked() {
     const fields = lists.map(({ name, words, unit, symbol }) => ({ name, words, unit, symbol }));
-    return { text: text.value, fields, columns: chosen, offset: offset.value };
+    return { text: file ? "" : text.value, file, fields, columns: chosen, offset: offset.value };
   }
 
   function ask() {
     apply.disabled = true;
     find("[data-paste-state]").textContent = "";
-    if (text.value.trim()) reading.ask();
+    if (file || text.value.trim()) reading.ask();
     else show({ columns: [], first: [], rows: 0, notes: [], faults: [] });
   }
 
@@ -39,7 +39,8 @@ export function startPasting(dialog) {
     signature = JSON.stringify(payload.columns.map(({ name }) => name));
     apply.disabled = !Object.keys(payload.texts ?? {}).length;
     apply.textContent = apply.disabled ? "Take over" : `Take over ${payload.rows} rows`;
-    find("[data-paste-state]").textContent = (payload.notes ?? []).join(" ");
+    const assumed = payload.assumed?.length ? [`Assumed: ${payload.assumed.join(", ")}.`] : [];
+    find("[data-paste-state]").replaceChildren(isolated([...(payload.notes ?? []), ...assumed].join(" ")));
   }
 
   function table({ columns, first, rows }) {
@@ -86,6 +87,7 @@ export function startPasting(dialog) {
 
   text.addEventListener("input", () => {
     chosen = null;
+    file = "";
     ask();
   });
   offset.addEventListener("input", ask);
@@ -95,10 +97,11 @@ export function startPasting(dialog) {
     ask();
   });
   find("[data-paste-file]").addEventListener("change", async ({ target }) => {
-    const [file] = target.files;
-    if (!file) return;
-    if (file.size > LARGEST) return refuse(`${file.name} has ${Math.round(file.size / 1e6)} MB; a table has at most one million characters`);
-    text.value = decoded(await file.arrayBuffer());
+    const [sent] = target.files;
+    if (!sent) return;
+    if (sent.size > LARGEST) return refuse(`${sent.name} has ${Math.round(sent.size / 1e6)} MB; a table has at most ${LARGEST / 1e6} MB`);
+    file = await inBase64(sent);
+    text.value = "";
     chosen = null;
     ask();
   });
@@ -110,7 +113,7 @@ export function startPasting(dialog) {
 
   return (list, all) => {
     lists = [list, ...all.filter((other) => other !== list)];
-    text.value = offset.value = find("[data-paste-file]").value = "";
+    text.value = offset.value = find("[data-paste-file]").value = file = "";
     chosen = null;
     ask();
     dialog.showModal();
@@ -134,13 +137,11 @@ function named(kind, properties, label) {
   return control;
 }
 
-// The text of a file: UTF-8, UTF-16 as some spreadsheets write it, or the Western letters of Windows.
-function decoded(bytes) {
-  const [first, second] = new Uint8Array(bytes);
-  if (first === 0xff && second === 0xfe) return new TextDecoder("utf-16le").decode(bytes);
-  try {
-    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
-  } catch {
-    return new TextDecoder("windows-1252").decode(bytes);
-  }
+function inBase64(file) {
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(reader.result.slice(reader.result.indexOf(",") + 1));
+    reader.onerror = () => reject(reader.error);
+    reader.readAsDataURL(file);
+  });
 }

@@ -98,7 +98,7 @@ async def _built(
 
 
 async def _begun(services: PageServices, model: Model, cells: Mapping[str, Given]) -> str:
-    """Begin the build, as whoever may build, and return its key; it is waited for a moment.
+    """Begin the build and return its key, after waiting a moment for it.
 
     Raises
     ------

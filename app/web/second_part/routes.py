@@ -1,6 +1,6 @@
-"""The page that puts a bought part beside a model of a design: it writes the manifest of the assembly.
+"""The page that adds a bought part to a model of a design; it writes the manifest of the assembly.
 
-The assembly is imported as every imported model is; then the design takes it in place of the model.
+The assembly is imported like any other model, and then replaces the model in the design.
 """
 
 from __future__ import annotations

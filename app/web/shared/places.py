@@ -1,4 +1,4 @@
-"""The values of a design that may be varied, its results, and the names in its relations."""
+"""Lists for forms: the values of a design that may vary, its results, and the names for its relations."""
 
 from __future__ import annotations
 

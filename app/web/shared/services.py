@@ -1,4 +1,4 @@
-"""The services for the one who sent the request of a page.
+"""The services, bound to the principal and client of a page request.
 
 A page is a route like those of the interface: the same gate lets the same roles in, the same services decide
 and act for the same principal, and their models are what the interface answers. An error is the problem that
@@ -72,7 +72,7 @@ class Refused(Exception):
 
 
 def tag_of(revision: str) -> str:
-    """Return the ETag of a revision as a form names it; of what is not a number, one that matches nothing."""
+    """Return the ETag of the revision in a form; of an invalid number, an ETag that matches nothing."""
     return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
@@ -120,7 +120,7 @@ class PageServices(Services):
             return await run_in_threadpool(function, *arguments, **options)
 
     async def ask(self, answer: Awaitable[Result]) -> Result:
-        """Return what a service answers that runs in the event loop.
+        """Return the answer of a service that runs in the event loop.
 
         Raises
         ------
@@ -136,7 +136,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> SaveResult:
-        """Return what a change has saved; its job is waited for a moment: the page shows how it goes on.
+        """Return the saved state after waiting a moment for the job; the page shows its progress.
 
         Raises
         ------
@@ -214,7 +214,7 @@ class PageServices(Services):
             return await self.threads.run_within(seconds, self.request, function, *arguments, **options)
 
     def read(self, kind: type[Kind], body: object) -> Kind:
-        """Return what a form says as the model of a body, read as strictly as that of a client.
+        """Return a form as the model of a body, read as strictly as a client's body.
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """Cookies of a browser: one that identifies its requests, and one for a session after sign-in.
 
-The first says not whose the requests are. With the second, every form carries a token of the session, beside
+The first does not identify a principal. With the second, every form carries a token of the session, beside
 the rule of the gate that forms come from the service's own pages.
 """
 
@@ -36,7 +36,7 @@ def keep_session(request: Request, response: Response) -> None:
 
 
 def who_signed_in(request: Request) -> str:
-    """Return the name of whoever has signed in or sent a key; empty if nobody has."""
+    """Return the name of the principal that signed in or sent a key; empty without one."""
     who = request.scope.get(PRINCIPAL, ANONYMOUS)
     return "" if who is ANONYMOUS else str(who.name)
 
@@ -57,11 +57,11 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
     """
     token = request.scope.get(FORM_TOKEN)
     if token and not hmac.compare_digest(typed.get(FIELD, "").encode(), token.encode()):
-        raise CrossSite("the form is not of this session: open its page again, and send it from there")
+        raise CrossSite("the form belongs to another session: open its page again, and send it from there")
 
 
 def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:
-    """Give a browser the cookie of a session in which somebody has signed in, for so long [h]."""
+    """Set the cookie of a signed-in session in a browser, for a time [h]."""
     response.set_cookie(
         SIGN_IN,
         token,

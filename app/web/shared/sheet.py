@@ -145,7 +145,7 @@ def _field(
 
 
 def _hint(declared: DeclaredValue) -> str:
-    """Return the hint of a field: what an empty one stands for, or how a value is written."""
+    """Return the hint of a field: the meaning of an empty field, or how to write a value."""
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:

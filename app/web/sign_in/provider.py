@@ -46,7 +46,7 @@ async def leave(request: Request, back: Text = "/") -> Response:
 async def come_back(
     request: Request, identity: TheIdentity, state: Text = "", code: Text = "", error: Text = ""
 ) -> Response:
-    """From the provider; the page leads on by itself, so that the new cookie is sent along.
+    """Finish the sign-in; the page then redirects, so that the browser sends the new cookie.
 
     Raises
     ------
@@ -55,7 +55,7 @@ async def come_back(
     """
     kept = _KEPT.fullmatch(request.cookies.get(COOKIE, "")[:5000])
     if kept is None or error:
-        raise ProviderRefused("nobody has signed in: begin again, in this browser")
+        raise ProviderRefused("the sign-in was not completed: start again in this browser")
     provider = Provider(services_of(request).settings)
     person = await provider.person(Begun(*kept.groups()[:3]), state, code, _address(request))
     id = await run_in_threadpool(identity.signed_in_as, person.subject, person.name)

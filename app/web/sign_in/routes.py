@@ -1,4 +1,4 @@
-"""Signing in and out, and the page of whoever has: roles, limits, keys.
+"""Sign-in, sign-out, and the account page: roles, limits, keys.
 
 A session is a matter of browsers alone, so these pages begin and end it themselves.
 """
@@ -84,7 +84,7 @@ async def add_key(request: Request, services: ThePageServices) -> Response:
 
 @forms.post("/account/keys/{prefix}/revoke", dependencies=[needs()])
 async def revoke_key(prefix: Prefix, services: ThePageServices) -> Response:
-    """End the life of a key."""
+    """Revoke a key."""
     me = await services.run(routes.show_me, services.identity)
     await services.run(routes.revoke_key, me.id, prefix, services.identity)
     return go("/account")

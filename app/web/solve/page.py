@@ -139,7 +139,7 @@ def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
 
 
 def _number(text: str) -> float | str:
-    """Return a number as typed; the interface says what is wrong with a text that is none."""
+    """Return a number as typed; the interface reports a text that is not a number."""
     try:
         return float(text)
     except ValueError:

@@ -139,7 +139,7 @@ class StudyForm:
 
 
 def _whole(text: str) -> JsonValue:
-    """Return a whole number; the interface says what is wrong with a text that is none."""
+    """Return a whole number; the interface reports a text that is not one."""
     return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
 
 

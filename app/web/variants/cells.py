@@ -1,7 +1,7 @@
 """The cells of the table of variants on a page, and the CSV file that the interface takes instead.
 
-A control of the page is called after the address of its cell: `cell.B3`. A page has relations in place,
-behind their sign; the file has them in columns of their own, and their addresses lead back to the page.
+A control of the page is called after the address of its cell: `cell.B3`. The page shows relations in their
+cells, after an equals sign. The file has them in separate columns, whose addresses map back to the page.
 """
 
 from __future__ import annotations

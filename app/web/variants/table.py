@@ -16,8 +16,8 @@ from app.presentation.criteria import Line, line
 from app.presentation.input_text import text_of
 from app.reference import Reference
 from app.web.variants.cells import CONTROL, FIRST_VARIANT
+from templates.core.criteria.comparison import WORST_FIRST
 from templates.core.errors import FaultyText
-from templates.core.judging.comparison import WORST_FIRST
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation
 
@@ -26,7 +26,7 @@ EMPTY = Grid((("variant",), ("unit",)))
 
 @dataclass(frozen=True)
 class RefusedTable:
-    """A table that was not saved: its cells as typed, and what is wrong with them by address."""
+    """A table that was not saved: its cells as typed, and their faults by address."""
 
     grid: Grid
     faults: Mapping[str, str]
@@ -143,8 +143,8 @@ def variants_table(
     return VariantsTable(
         heads=heads,
         rows=rows,
-        criteria=[] if refused else _titles(out, names),
-        unchecked=[] if refused else _titles(out, unchecked),
+        criteria=[] if refused else [_title(out, name) for name in names],
+        unchecked=[] if refused else [_title(out, name) for name in unchecked],
         base=_outcome(design, out, out.base, names) if out.base and not refused else None,
         own=list(own.values()),
         count=len(out.variants),
@@ -229,15 +229,6 @@ def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
     checked = {one.name for row in judged for one in row.criteria if one.verdict != "not_checked"}
     names = [one.criterion for one in worst]
     return [name for name in names if name in checked], [name for name in names if name not in checked]
-
-
-def _titles(out: VariantsOut, names: Sequence[str]) -> list[str]:
-    """Return headings of criteria; those that judge the same value are distinguished by their names."""
-    titles = [_title(out, name) for name in names]
-    return [
-        f"{title} ({Reference.parse(name).own_name.replace('_', ' ')})" if titles.count(title) > 1 else title
-        for name, title in zip(names, titles, strict=True)
-    ]
 
 
 def _title(out: VariantsOut, name: str) -> str:

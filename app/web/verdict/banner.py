@@ -35,7 +35,7 @@ class Banner:
     @property
     def undecided(self) -> bool:
         """Return whether an exacter calculation might decide."""
-        return any(line.verdict == "undecided" for line in self.lines)
+        return any(line.is_open for line in self.lines)
 
     def worst_by_step(self) -> dict[str, Line]:
         """Return the worst criterion of each step that has any."""

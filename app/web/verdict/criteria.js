@@ -2,7 +2,7 @@
 import { percent, plain, quantityText } from "../shared/numbers.js";
 
 export const WORDS = { met: "met", not_met: "not met", undecided: "undecided", not_checked: "not checked" };
-const NOT_STATED = "the error of the calculation is not stated";
+const UNKNOWN = "error unknown";
 const ALMOST_ALL = 0.985;
 
 // Value, sign and limit of a requirement, as written.
@@ -22,11 +22,17 @@ export function stepOf({ name, require }) {
 
 const isName = (text) => /^\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*$/.test(text);
 
-// What is judged; of what is calculated within a criterion, its own name.
+// What is judged, and the criterion's own name where that does not hold it; another one may judge the same.
 export function title({ name, require }) {
-  const [left] = sides(require);
-  return plainName(isName(left) ? left : name);
+  const [left] = sides(require), own = plainName(name), subject = isName(left) ? plainName(left) : own;
+  return subject.includes(own) ? subject : `${subject} (${own})`;
 }
+
+const isErrorUnknown = ({ verdict, error_known: isKnown = true }) => ["met", "not_met"].includes(verdict) && !isKnown;
+
+export const verdictWords = (criterion) => `${WORDS[criterion.verdict]}${isErrorUnknown(criterion) ? `; ${UNKNOWN}` : ""}`;
+export const tagOf = (criterion) => `${criterion.verdict}${isErrorUnknown(criterion) ? " error-unknown" : ""}`;
+export const isOpen = (criterion) => criterion.verdict === "undecided" || (isErrorUnknown(criterion) && Boolean(criterion.level));
 
 export function compared({ value, limit, require }) {
   if (!value || !limit) return "";
@@ -46,9 +52,10 @@ export function margin({ margin: left, band, limit, require }) {
   return `${text} (${plain(least)} … ${plain(most)})`;
 }
 
-export function error({ value, error_stated: isStated = true, relative_error: relative }) {
+export function error({ value, error_known: isKnown = true, relative_error: relative }) {
   if (!value) return "";
-  return isStated && typeof relative === "number" ? `± ${percent(relative)}` : "not stated";
+  if (!isKnown) return "unknown";
+  return typeof relative === "number" ? `± ${percent(relative)}` : "open";
 }
 
 export function missing({ give, verdict, needs, reason }) {
@@ -58,11 +65,11 @@ export function missing({ give, verdict, needs, reason }) {
 }
 
 export function remarks(criterion) {
-  const { value, error_stated: isStated = true, unverified, waived, reason } = criterion;
+  const { unverified, waived, truth, reason } = criterion;
   return [
-    value && !isStated && NOT_STATED,
     unverified && `unverified: ${unverified}`,
     waived && `waived: ${waived}`,
+    truth?.includes(" ") && truth,
     where(criterion),
     reason && missing(criterion) !== reason && reason,
   ].filter(Boolean);

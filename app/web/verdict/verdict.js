@@ -1,5 +1,5 @@
 // The verdict on top of the design page and in the fold lines of its steps, as pages/verdict.html writes them.
-import { WORDS, compared, error, margin, missing, remarks, share, stepOf, title } from "./criteria.js";
+import { compared, error, isOpen, margin, missing, remarks, share, stepOf, tagOf, title, verdictWords } from "./criteria.js";
 import { isolated } from "../shared/isolated.js";
 import { fetched, foldOf } from "../shared/later.js";
 import { quantityText } from "../shared/numbers.js";
@@ -25,9 +25,9 @@ export function showVerdict({ verdict, criteria = [] }) {
   place.classList.remove("green", "bad", "open", "plain");
   place.classList.add(verdict.green ? "green" : TONES[verdict.verdict] ?? "plain");
   const decide = document.querySelector("[data-decide]");
-  if (decide) decide.hidden = !criteria.some((criterion) => criterion.verdict === "undecided");
-  const isOpen = place.querySelector("[data-all-criteria]")?.open;
-  place.querySelector("[data-verdict-inside]").replaceChildren(...banner(verdict, criteria, isOpen));
+  if (decide) decide.hidden = !criteria.some(isOpen);
+  const isUnfolded = place.querySelector("[data-all-criteria]")?.open;
+  place.querySelector("[data-verdict-inside]").replaceChildren(...banner(verdict, criteria, isUnfolded));
   for (const line of document.querySelectorAll("[data-fold-verdict]")) {
     const worst = criteria.find((criterion) => stepOf(criterion) === line.dataset.foldVerdict);
     line.replaceChildren(...(worst ? [tag(worst), ` ${share(worst.utilisation)}`] : []));
@@ -42,12 +42,12 @@ export function showKeys(step, { outputs = {} }) {
   }
 }
 
-function banner(verdict, criteria, isOpen) {
+function banner(verdict, criteria, isUnfolded) {
   const governing = criteria.find(({ name }) => name === verdict.governing);
   const head = element("div", { className: "verdict-line" }, element("h2", { className: "headline", id: "verdict" }, capital(verdict.headline)));
   if (governing) head.append(governs(governing));
   const unchecked = criteria.filter((criterion) => criterion.verdict === "not_checked");
-  const all = element("details", { open: Boolean(isOpen) }, element("summary", {}, `All ${criteria.length} criteria`), criteriaTable(criteria));
+  const all = element("details", { open: Boolean(isUnfolded) }, element("summary", {}, `All ${criteria.length} criteria`), criteriaTable(criteria));
   all.dataset.allCriteria = "";
   return [head, ...(unchecked.length ? [notChecked(unchecked)] : []), all];
 }
@@ -92,7 +92,7 @@ function why({ name }) {
   return design ? [" ", element("a", { className: "why", href: `/designs/${design}/explain/${name}`, title }, "why?")] : [];
 }
 
-const tag = ({ verdict }) => element("span", { className: `tag ${verdict}` }, WORDS[verdict]);
+const tag = (criterion) => element("span", { className: `tag ${tagOf(criterion)}` }, verdictWords(criterion));
 
 export function criteriaTable(criteria) {
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
@@ -114,9 +114,10 @@ function row(criterion) {
 }
 
 // The mark is the limit; the whole bar is 150 % of it.
-function bar({ utilisation, verdict }) {
+function bar(criterion) {
+  const { utilisation } = criterion;
   if (typeof utilisation !== "number") return "";
-  const node = drawn("svg", { class: `bar ${verdict}`, viewBox: "0 0 150 10", preserveAspectRatio: "none", role: "img", "aria-label": `${share(utilisation)} of the limit` });
+  const node = drawn("svg", { class: `bar ${tagOf(criterion)}`, viewBox: "0 0 150 10", preserveAspectRatio: "none", role: "img", "aria-label": `${share(utilisation)} of the limit` });
   const used = Math.min(150, Math.max(0, utilisation * 100));
   node.append(drawn("rect", { class: "track", width: 150, height: 10 }), drawn("rect", { class: "used", width: used, height: 10 }), drawn("path", { class: "mark", d: "M100,0V10" }));
   return node;

@@ -1,4 +1,4 @@
-"""The states of a worksheet on its page: steps done, the next step, and what it still needs."""
+"""The states of a worksheet on its page: the completed steps, the next step and its missing conditions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Dask's client, as a server uses it: it begins and ends within a time, whatever the scheduler does."""
+"""Dask's client with time limits: connecting and closing end in time, whatever the scheduler does."""
 
 from __future__ import annotations
 

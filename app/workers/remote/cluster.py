@@ -1,4 +1,4 @@
-"""A server's connection to the scheduler, made again when it breaks, and the free places of the machines."""
+"""A server's connection to the scheduler, restored when it breaks, and the free slots of the machines."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Cluster:
         return sum(there.size for there in self._places.get(lane, {}).values())
 
     def free(self, lane: Lane) -> int:
-        """Return how many more functions they would begin now."""
+        """Return how many more functions they could start now."""
         with self._changed:
             return sum(max(0, count) for count in self._free(lane).values())
 
@@ -109,7 +109,7 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event,
     ) -> tuple[Outcome, str]:
-        """Run an order on one machine; raises NeverBegun if it has gone before the order came there."""
+        """Run an order on one machine; raises NeverBegun if the machine is lost before the order arrives."""
         with self._place(lane, preferred, cancelled) as (client, machine):
             try:
                 return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
@@ -122,7 +122,7 @@ class Cluster:
                     raise JobCancelled from None
                 if client.status == "running":
                     raise
-                raise WorkerLost("the scheduler has gone") from error
+                raise WorkerLost("the scheduler has disconnected") from error
 
     def close(self) -> None:
         """Leave the scheduler; what still runs is killed there."""
@@ -181,7 +181,7 @@ class Cluster:
             if cancelled.is_set() or self._closed.is_set():
                 raise JobCancelled
             if client.status != "running" or future.status in ("lost", "cancelled"):
-                raise WorkerLost("the scheduler has gone")
+                raise WorkerLost("the scheduler has disconnected")
             self._strays.check(str(future.key))
             try:
                 message = messages.get(timeout=_GLANCE)
@@ -279,6 +279,6 @@ def _result(future: Future[Outcome]) -> Outcome:
     try:
         return future.result(timeout=_FETCH)
     except KilledWorker:
-        raise WorkerLost("the machine that ran it has gone") from None
+        raise WorkerLost("the machine that ran it has disconnected") from None
     except (CancelledError, OSError, TimeoutError) as error:
         raise WorkerLost(str(error) or type(error).__name__) from error

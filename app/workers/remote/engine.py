@@ -104,4 +104,4 @@ class DaskBatch:
             raise WorkerLost("the machine that ran it was stopped") from None
 
     def close(self) -> None:
-        """Do nothing: between two functions nothing runs, and the process that waits ends by itself."""
+        """Do nothing: no function runs between two others, and the waiting process ends by itself."""

@@ -125,7 +125,7 @@ class Machine(Worker):
         return lambda fraction, text: self.log_event(topic, (key, float(fraction), text))
 
     def _watch(self) -> None:
-        """Have the processes killed whose task was cancelled, or whose server or scheduler has gone."""
+        """Kill the processes whose task was cancelled or whose server or scheduler is lost."""
         while not self._watching.wait(_GLANCE):
             is_open = self.status in (Status.running, Status.paused)
             for key, unwanted in list(self._running.items()):
@@ -143,7 +143,7 @@ class Service:
     stopping: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self) -> None:
-        """Connect, and connect again when the scheduler has gone."""
+        """Connect, and reconnect when the scheduler is lost."""
         for number in (signal.SIGTERM, signal.SIGINT):
             asyncio.get_running_loop().add_signal_handler(number, self.stopping.set)
         processes = Processes(sum(self.settings.lanes.values()))

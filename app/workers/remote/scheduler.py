@@ -1,4 +1,4 @@
-"""The program of `crankwright scheduler`: Dask's, which runs no lost task again and shows no web pages.
+"""The program of `crankwright scheduler`: Dask's scheduler without retries and web pages.
 
 It holds nothing that must survive it: the queue of jobs is in the database.
 """

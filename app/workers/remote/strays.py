@@ -1,7 +1,7 @@
 """Find tasks that no machine works on, from the scheduler's repeated reports.
 
-Dask keeps a task whose machine has gone before it came there, in case that machine returns. Ours never do: a
-machine that connects again has another address. So such a task would be waited for without end.
+If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Our
+machines never return under the same address, so a server would wait for such a task for ever.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Strays:
         self._lost = frozenset(key for key, since in self._since.items() if now - since > _ON_ITS_WAY)
 
     def check(self, key: str) -> None:
-        """Return if a task is on a machine, or may be on its way there.
+        """Check that a task is on a machine, or may be on its way there.
 
         Raises
         ------
@@ -47,4 +47,4 @@ class Strays:
         if key in self._without_machine:
             raise NeverBegun
         if key in self._lost:
-            raise WorkerLost("the scheduler does not have it")
+            raise WorkerLost("the scheduler does not know the task")

@@ -1,6 +1,6 @@
 """Packed requests and outcomes, which the scheduler and Dask's workers pass on unopened.
 
-The scheduler imports this module, so it needs this program too; of another version is enough.
+The scheduler imports this module, so Crankwright must be installed there too; its version may differ.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Find the units of expressions by the language of worksheets itself."""
+"""Find the units of expressions with the parser of the worksheet language."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Declarations:
                 f"formula that the language refuses ({error})", _remedy(error.code)
             ) from None
         except lark.exceptions.LarkError:
-            raise Untranslatable("formula that is not understood", "write it by hand") from None
+            raise Untranslatable("formula that cannot be read", "write it by hand") from None
         finally:
             self.bound = before
         return result

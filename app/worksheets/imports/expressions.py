@@ -1,7 +1,7 @@
 """Mathcad's trees as expressions of worksheets.
 
-A vector of Mathcad is a list. A range variable stands for its values, one by one, and so does what it
-indexes. What worksheets do not have is refused by its name.
+A vector of Mathcad is a list. A range variable becomes the list of its values, and so does a list that it
+indexes. A construct that worksheets lack is refused by name.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def imported(content: bytes, title: str) -> ImportResult:
 
 
 def _left_out(sheet: OriginalSheet, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-    """Yield a refusal for each region that the file has by the other count and no outcome stands for."""
+    """Yield a refusal for each counted region of the file without an outcome."""
     reported = Counter(outcome.original.number for outcome in outcomes)
     for number in (sheet.counted - reported).elements():
         outcome = Outcome(Original(number, "other", 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Mathcad's names as names of a worksheet: plain letters, one meaning each; the look goes into `symbol`."""
+"""Mathcad's names as names of a worksheet: plain letters, one meaning each; `symbol` has the printed form."""
 
 from __future__ import annotations
 

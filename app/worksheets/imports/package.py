@@ -1,7 +1,7 @@
 """The parts of a .mcdx package, unpacked within limits that are counted while reading.
 
-The sizes that a ZIP states are a client's words, so they decide nothing. A part that is a ZIP itself (a text
-region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
+A client may forge the sizes that a ZIP states, so the reader ignores them. A part that is a ZIP itself (a
+text region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ class Package:
 
 
 def unpacked(content: bytes, budget: Budget) -> bytes:
-    """Return what a file compressed by gzip holds.
+    """Return the content of a file compressed by gzip.
 
     Raises
     ------

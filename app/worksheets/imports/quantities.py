@@ -16,7 +16,8 @@ from templates.core.units.units import unit
 _OURS: Mapping[str, str] = {
     "μm": "um", "mil": "thou", "in": "inch", "lbm": "lb", "gm": "g", "Ω": "ohm", "°": "deg", "l": "L",
     "sec": "s", "RPM": "rpm", "R": "degR", "°R": "degR", "C": "coulomb", "F": "farad", "H": "henry",
-    "Å": "angstrom", "meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K",
+    "Å": "angstrom", "Δ°C": "delta_degC", "Δ°F": "delta_degF",
+    "meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K",
 }  # fmt: skip
 """Where the names differ."""
 
@@ -226,7 +227,7 @@ def _monomial(node: Node) -> ScaledNumber:
 
 
 def is_infinite(text: str) -> bool:
-    """Return whether a stored number stands for infinity."""
+    """Return whether a stored number means infinity."""
     try:
         return not abs(float(text)) < BEYOND
     except ValueError:

@@ -1,8 +1,8 @@
 """The record of an import, kept with its worksheet: its regions, and which of them are unresolved now.
 
-A region that differs, is refused or is blocked forbids a release while every line that stood for it is
-still in the text as it was imported. To change one of these lines, or to remove one, is to resolve the
-region: somebody has looked at it. Blanks do not count.
+A region that differs, is refused or is blocked forbids a release while all of its imported lines are
+unchanged in the text. An author resolves the region by changing or removing one of these lines. Changes of
+blanks do not count.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class ImportRecord(SheetRecord):
 
 
 def record_of(row: Row) -> ImportRecord | None:
-    """Return the record of a version; None if somebody typed it. Nothing but an import writes records."""
+    """Return the import record of a version; None for a typed worksheet."""
     return cast("ImportRecord | None", row.imported)
 
 
@@ -116,7 +116,7 @@ def _stands(region: RegionRecord, present: set[str]) -> bool:
 
 
 def require_resolved(row: Row) -> None:
-    """Return if no region of the import of a version forbids its release.
+    """Check that no region of the import of a version forbids its release.
 
     Raises
     ------

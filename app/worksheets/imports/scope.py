@@ -1,4 +1,4 @@
-"""Meanings of Mathcad's names at one place of a sheet: each place sees the definitions above it."""
+"""Meanings of Mathcad's names at one position of a sheet: a position sees the definitions above it."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class Term:
         return self.text if self.tight >= least else f"({self.text})"
 
     def shaped(self, *others: Term) -> Term:
-        """Return the same text with the shape that it gets from what it is made of."""
+        """Return the same text with the shape that follows from its parts."""
         lists = [(part, part.axis) for part in others if part.axis is not None]
         if not lists:
             return self

@@ -33,13 +33,13 @@ _Place = Literal["", "factor", "quantity"]
 
 def letters_of(regions: Iterable[Original]) -> frozenset[str]:
     """Return the single letters that stand behind a number somewhere in a sheet, and so are units in it."""
-    letters = set[str]()
+    units = set[str]()
     for region in regions:
         if region.math is not None:
-            letters.update(
+            units.update(
                 key_of(name) for name, place in _placed(region.math, frozenset()) if place == "quantity"
             )
-    return frozenset(letters & _LETTERS)
+    return frozenset(units & _LETTERS)
 
 
 def label_units(math: Node, defined: Collection[str], letters: Collection[str]) -> None:

@@ -1,7 +1,6 @@
-"""The worksheet is read and calculated; its values are held against those that Mathcad stored.
+"""Read and calculate the worksheet, and compare its values with those that Mathcad stored.
 
-The language has the last word: a line that it refuses is a region that is refused, and what needs it is
-blocked.
+If the language refuses a line, the region of that line is refused, and regions that depend on it are blocked.
 """
 
 from __future__ import annotations
@@ -76,7 +75,7 @@ def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
 
 
 def _take_out(faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
-    """Turn faulty lines into remarks; those that only lack a name that is gone are blocked."""
+    """Turn faulty lines into remarks; block lines that only lack a removed name."""
     for fault in sorted(faults, key=lambda fault: fault.code == FOLLOWS):
         outcome = owners.get(fault.line)
         if outcome is None or outcome.state in ("refused", "blocked"):
@@ -93,7 +92,7 @@ def _take_out(faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone:
 
 
 def _block_followers(owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
-    """Block what needs names that are gone, in the order of the lines, without reading the sheet again."""
+    """Block lines that need removed names, in order, without reading the sheet again."""
     for outcome in {id(one): one for one in owners.values()}.values():
         names = _declared(outcome) if outcome.state == "unverified" else []
         lacking = [name for name in _used(outcome) if name in gone and name not in names] if names else []

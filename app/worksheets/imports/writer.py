@@ -1,4 +1,4 @@
-"""Parts that all writers of expressions share: the place in the sheet, and its questions to the sheet."""
+"""Base class of all expression writers: the position in the sheet, and look-ups of names there."""
 
 from __future__ import annotations
 

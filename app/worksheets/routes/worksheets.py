@@ -1,6 +1,6 @@
 """`/worksheets`: templates that an engineer writes as text, from the draft to the release.
 
-`app.calculations.routes.evaluate` has another thing of this name: the steps of one calculation on paper.
+`app.calculations.routes.evaluate` uses the same word for the printed steps of one calculation.
 """
 
 from __future__ import annotations

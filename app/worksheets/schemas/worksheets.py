@@ -1,7 +1,7 @@
 """Worksheets: templates that an engineer writes as text, and what the service says of a text.
 
-In code a user's text is a sheet. `app.calculations.schemas.evaluations.Worksheet` is another thing: the steps
-of one calculation on paper.
+The code calls a user's text a sheet. `app.calculations.schemas.evaluations.Worksheet` means the printed steps
+of one calculation.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Finding versions; digests and golden records of released ones."""
+"""The catalogue of versions, and the digests and golden records of released ones."""

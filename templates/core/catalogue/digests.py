@@ -20,7 +20,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from templates.core.catalogue.loading import text_of
+from templates.core.catalogue.modules import text_of
 from templates.core.language.origin import file_of
 from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
@@ -34,7 +34,7 @@ _SILENT = frozenset({"ctx", "kind", "type_comment"})  # fields that repeat what 
 
 
 def digest(cls: type[Template]) -> str:
-    """Return the digest of a version, computed from its file as it stands."""
+    """Return the digest of a version, computed from its current file."""
     return cls.sheet.digest() if cls.sheet else digest_of(_sources(cls))
 
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NoReturn, Protocol
 
 import numpy as np
 
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.criterion import Criterion
 from templates.core.language.ledger import Ledger
 from templates.core.language.spec import (
     Declaration,
@@ -72,7 +72,9 @@ class Calculation:
         self.ledger.handed = frozenset(values)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
+        raise AttributeError(
+            f"a {type(self).__name__} is a record of one calculation and cannot change; create a new one"
+        )
 
     def __delattr__(self, name: str) -> NoReturn:
         self.__setattr__(name, None)

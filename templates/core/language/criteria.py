@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Limit, MissingValue, is_angle
-from templates.core.judging.judgement import Judgement, not_judged, sentence
-from templates.core.judging.judging import Absent, Along, Instead, judge
-from templates.core.judging.limits import GivenLimit
-from templates.core.judging.summary import worst_first
+from templates.core.criteria.bands import Estimate, largest_true
+from templates.core.criteria.criterion import Criterion, Limit, MissingValue, is_angle
+from templates.core.criteria.evaluation import Absent, Along, Instead, judge
+from templates.core.criteria.judgement import Judgement, not_judged, sentence
+from templates.core.criteria.limits import GivenLimit
+from templates.core.criteria.summary import worst_first
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer
 from templates.core.language.ledger import Notice
@@ -202,7 +202,7 @@ def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estima
 
 
 def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
-    """Return a limit that nobody gave.
+    """Return a missing limit.
 
     An end of an input that is a list, where that is declared and given.
     """
@@ -240,25 +240,25 @@ def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Abs
     if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
         return _absent(template, formula, answer.reason)
     axes = formula.axes if isinstance(formula, Profile) else 0
-    error, is_stated = error_of(evaluated, name)
+    error = error_of(evaluated, name)
     scale = None if axes else _scale(evaluated, name)
     if scale is not None and (scale != scale if isinstance(scale, float) else np.isnan(scale).any()):
-        error, is_stated, scale = _where_it_has_a_scale(error, scale)
-    return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
+        error, scale = _where_it_has_a_scale(error, scale)
+    return Estimate(evaluated.value(name), error, axes, scale, answer.reasons)
 
 
-def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | None]:
+def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
     """Return an error that says nothing at the points where what it is relative to does not exist."""
     if not np.ndim(scale):
-        return float("nan"), False, None
-    return np.where(np.isnan(scale), np.nan, error), False, scale
+        return float("nan"), None
+    return np.where(np.isnan(scale), np.nan, error), scale
 
 
 def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
-    """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
+    """Return the reference value of an output's relative error [SI]; None if it is the output itself.
 
-    The largest of several outputs, such as the four stiffnesses, counts; NaN stands for a size that is no
-    output. The error of an angle is relative to 90°.
+    The largest of several outputs, such as the four stiffnesses, counts, as large as the truth may be by
+    their own errors; NaN stands for a size that is no output. The error of an angle is relative to 90°.
     """
     table = evaluated.measured.content.get("relative_to", {}) if evaluated.measured else {}
     if name not in table:
@@ -266,9 +266,11 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     others = table[name]
     if not isinstance(others, list):
         return float("nan") if others is None else float(others)
-    formulas = evaluated.template.formulas
-    sizes = [np.abs(getattr(evaluated.template, formulas[other].attribute)) for other in others]
-    return reduce(np.fmax, sizes)
+    assert evaluated.measured is not None
+    template, errors = evaluated.template, evaluated.measured.of(evaluated.template, [name, *others])
+    sizes = {other: np.abs(getattr(template, template.formulas[other].attribute)) for other in others}
+    largest = reduce(np.fmax, [largest_true(sizes[other], errors[other]) for other in others])
+    return largest * np.maximum(1 - errors[name], 1e-12)  # `band_relative_to` divides by it
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
@@ -278,19 +280,16 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
     return Absent(give, reason or absence(template, formula))
 
 
-def error_of(evaluated: EvaluatedValues, name: str) -> tuple[Any, bool]:
-    """Return the relative error of an output, and whether any was stated.
+def error_of(evaluated: EvaluatedValues, name: str) -> Any:
+    """Return the relative error of an output, NaN where it is not known.
 
     A template of which no errors were measured, or one without levels whose table does not name the output,
-    states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
+    states none.
     """
-    error = evaluated.errors.get(name)
-    table = evaluated.measured
-    if table is None or not (evaluated.template.levels or name in table.outputs):
-        return 0.0, False
-    if error is None:
-        return float("nan"), False
-    return error, not (math.isnan(error) if isinstance(error, float) else np.isnan(error).any())
+    error, table = evaluated.errors.get(name), evaluated.measured
+    if error is None or table is None or not (evaluated.template.levels or name in table.outputs):
+        return float("nan")
+    return error
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:

@@ -42,7 +42,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def _meaning(unit_text: str, words: str, **keywords: Unpack[Keywords]) -> Meaning:
-    """Return the meaning of a number; in a template K is a temperature, and a difference is in delta_degC."""
+    """Return the meaning of a result; one in K is a temperature, as differences are in delta_degC."""
     meant = meaning(unit_text, words, **keywords)
     return replace(meant, read_as="degC") if unit_text == "K" else meant
 
@@ -63,13 +63,13 @@ def given(
     is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
     Of a `single` one arrays are refused: all points share its value.
     """
-    meant = _meaning(unit, words, **keywords)
+    meant = meaning(unit, words, **keywords)
     return Given(meant, default, optional=optional, alternative=alternative, single=single)
 
 
 def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Unpack[Keywords]) -> Any:
     """Declare an optional input that is a list of at most so many rows; every column is in `unit`."""
-    return Table(_meaning(unit, words, **keywords), columns, most)
+    return Table(meaning(unit, words, **keywords), columns, most)
 
 
 def limits(
@@ -90,14 +90,14 @@ def curve(
     `along` names another axis: `inertias`. Optional ones that are missing are NaN, as those of `given`.
     """
     return Curve(
-        _meaning(unit, words, **keywords), default,
+        meaning(unit, words, **keywords), default,
         constant=constant, along=along, optional=optional, alternative=alternative,
     )  # fmt: skip
 
 
 def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
     """Declare an input that is one of the named options."""
-    return Choice(_meaning("1", words, name=name), options, default)
+    return Choice(meaning("1", words, name=name), options, default)
 
 
 def formula(
@@ -143,7 +143,8 @@ def require(
     """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
 
     Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
-    With the code of a `warning` nothing is refused, and the answer carries the sentence.
+    With the code of a `warning` nothing is refused, and the answer carries a sentence that is made from the
+    comparisons that do not hold.
     """
     return lambda function: Requirement(function, names, remedy, missing, warning)
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from templates.core.criteria.criterion import Criterion, NameDescription, read_criterion
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import Criterion, NameDescription, read_criterion
 from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 
@@ -24,7 +24,7 @@ def declared_criteria(
     if not raw:
         return ()
     if not isinstance(raw, Mapping):
-        raise TypeError(f"{name}: criteria is a dict by name")
+        raise TypeError(f"{name}: criteria must be a dict keyed by name")
     meanings = meanings_of(inputs, formulas)
     criteria = []
     for called, text in raw.items():
@@ -40,13 +40,13 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
     """A limit that nobody gives follows from an input that is a list, not from a result."""
     for limit in criterion.limits:
         if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
-            raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
+            raise FaultyText("syntax", f"the default of {limit.name} must name an input that is a list")
 
 
 def meanings_of(
     inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> dict[str, NameDescription]:
-    """Return what the names that a criterion may use measure: neither words nor tables.
+    """Return the units of the names that a criterion may use; words and tables are left out.
 
     Who writes a template knows that a speed is in rad/s: of its criteria no two readings are reported.
     """

@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.limits import GivenLimit
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.limits import GivenLimit
 from templates.core.language import tolerances
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer, UsedInput
-from templates.core.language.climbing import Rung, climb
 from templates.core.language.criteria import EvaluatedValues, judged, warned
 from templates.core.language.intake import remarks
 from templates.core.language.ledger import Notice
+from templates.core.language.level_choice import Rung, climb
 from templates.core.language.levels import accuracy, at_level
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Derived, Formula, Given, Input, Profile, Text
@@ -293,7 +293,7 @@ def _with_nulls(shown: Array) -> list[Any]:
 
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
-    """Return the warnings that hold whatever is calculated from these inputs.
+    """Return the warnings that hold for every calculation from these inputs.
 
     Of the version, and of tolerances.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -19,7 +20,8 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
-from templates.core.units.quantity import TypedQuantity, read
+from templates.core.language.violations import violation
+from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
 
@@ -27,9 +29,10 @@ from templates.core.units.units import Value, unit
 def read_inputs(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[dict[str, TypedQuantity | str], list[Fault]]:
-    """Return every input that was given, read in its unit, and what is wrong with the others."""
+    """Return every input that was given, read in its unit, and the faults of the others."""
     typed: dict[str, TypedQuantity | str] = {}
-    faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
+    raw, faults = _in_declared_sizes(cls, raw)
+    faults += unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
     for name, declared in cls.inputs.items():
         if name in raw:
             try:
@@ -42,15 +45,69 @@ def read_inputs(
     return typed, faults
 
 
+def _in_declared_sizes(
+    cls: type[Calculation], raw: Mapping[str, Any]
+) -> tuple[Mapping[str, Any], list[Fault]]:
+    """Return inputs with a diametral size in the place of a radial one, or the other way round.
+
+    A radial clearance is half the diametral one. Where both are given they must agree.
+    """
+    faults: list[Fault] = []
+    for other, name in _sizes(cls):
+        if other not in raw:
+            continue
+        raw = dict(raw)
+        given, declared = raw.pop(other), cls.inputs[name]
+        factor = 2.0 if name.startswith("diametral") else 0.5
+        try:
+            typed = scaled(read(given, declared.meaning.accepted), factor)
+            same = read(raw[name], declared.meaning.accepted) if name in raw else typed
+        except FaultyText as error:
+            faults.append(error.fault(other))
+            continue
+        if np.shape(same.si) != np.shape(typed.si) or not np.allclose(same.si, typed.si, rtol=1e-9, atol=0):
+            ratio = "twice" if factor == 2.0 else "half of"
+            detail = f"{name} is {ratio} {other}, and these differ; give one of them"
+            faults.append(Fault(other, "conflict", detail, (name,)))
+        raw.setdefault(name, typed)
+    return raw, faults
+
+
+def _sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
+    """Return the radial name of each diametral input that has none, and the other way round."""
+    pairs = ((name, _DIAMETRAL.sub(_opposite, name)) for name in cls.inputs)
+    return tuple((other, name) for name, other in pairs if other != name and other not in cls.inputs)
+
+
+_DIAMETRAL = re.compile(r"\A(?:diametral|radial)(?=_clearance)")
+
+
+def _opposite(match: re.Match[str]) -> str:
+    return "radial" if match[0] == "diametral" else "diametral"
+
+
 def _read_one(declared: Input, raw: Any) -> TypedQuantity | str:
     if isinstance(declared, Choice):
         option = (
             raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw
         )  # as answers write it
-        if isinstance(option, str) and option in declared.options:
-            return option
+        if isinstance(option, str) and (meant := option_named(declared.options, option)):
+            return meant
         raise FaultyText("not_an_option", f"{excerpt(raw)} is not one of {', '.join(declared.options)}")
     return read(raw, declared.meaning.accepted)
+
+
+def option_named(options: tuple[str, ...], text: str) -> str | None:
+    """Return the option that a text names, also as it is printed: `ISO VG 46` is iso_vg_46."""
+    if text in options:
+        return text
+    letters = _letters(text)
+    named = [option for option in options if letters and _letters(option) in (letters, f"iso{letters}")]
+    return named[0] if len(named) == 1 else None
+
+
+def _letters(text: str) -> str:
+    return "".join(sign for sign in text[:LONGEST_TEXT].lower() if sign.isalnum())
 
 
 def _example(declared: Input) -> str:
@@ -144,7 +201,7 @@ _defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
 def _left_out(cls: type[Calculation]) -> LeftOut:
-    """Return what stands for the inputs of a version that are not given."""
+    """Return the defaults for missing inputs of a version."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default
@@ -191,7 +248,7 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask | None]:
-    """Return the value and what is wrong with it.
+    """Return the value and its faults.
 
     A faulty point of an array is masked, and is not a fault.
     """
@@ -365,7 +422,8 @@ def remarks(self: Calculation) -> Iterator[Notice]:
     """Yield a warning for every rule that refuses nothing, where it does not hold, and for every remark."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
-            yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+            for name in rule.names:
+                yield Notice(rule.warning, name, f"{violation(self, rule, name)}; {rule.remedy}")
     for declared, remark in self._readings:
         if declared.attribute in vars(self) and declared.name not in self.ledger.typed:
             yield Notice("turns", declared.name, remark)

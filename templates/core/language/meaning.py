@@ -62,7 +62,7 @@ class Bounds:
 
     @property
     def open(self) -> bool:
-        """Return whether there is no limit at all."""
+        """Return whether there is no limit."""
         return all(getattr(self, side) is None for side, _ in _RELATIONS)
 
 
@@ -170,7 +170,7 @@ def _named(words: str, name: str | None) -> str:
     """
     name = name or api_name(words)
     if not _API_NAME.fullmatch(name):
-        raise TypeError(f"{words!r} makes the API name {name!r}; give it a name= in snake_case")
+        raise TypeError(f"{words!r} gives the API name {name!r}; give it a name= in snake_case")
     return name
 
 

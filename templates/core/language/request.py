@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import filterfalse
 from typing import Any
 
+from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
-from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.levels import at_level
 from templates.core.language.template import Template
 from templates.core.units.quantity import Unit, beside, require_same_kind
@@ -52,7 +52,7 @@ def read_request(
 
 
 def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits that are given for the template's criteria, and what is wrong with them."""
+    """Return the limits that are given for the template's criteria, and their faults."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -60,7 +60,7 @@ def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Give
 
 
 def require_points(template: Template, level: str | None, tolerance: float | None) -> None:
-    """Return if the level that will be calculated takes as many points; raises InvalidInputs.
+    """Check that the level that will be calculated takes as many points; raises InvalidInputs.
 
     With a tolerance the level of each point follows from the calculation, so there is nothing to check.
     """

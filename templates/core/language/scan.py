@@ -146,7 +146,7 @@ class SampledCurve(ABC):
         return self.miss_of(self.outputs(np.array([value])))
 
     def miss_of(self, outputs: Outputs) -> float:
-        """Return the same of the output at one value."""
+        """Return output minus target [SI] for the outputs at one value; NaN where the template refuses."""
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from templates.core.language.confirming import CONFIRMED, POLISHES, Root
+from templates.core.language.confirmation import CONFIRMED, POLISHES, Root
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.ledger import Notice
 from templates.core.language.question import read_question

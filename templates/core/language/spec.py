@@ -231,7 +231,9 @@ class Requirement:
         self.missing, self.warning = missing, warning
         self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
         if not self.sentence:
-            raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
+            raise TypeError(
+                f"{function.__qualname__}: a requirement needs a docstring: the sentence that a user reads"
+            )
 
     @cached_property
     def uses(self) -> tuple[str, ...]:

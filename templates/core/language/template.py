@@ -64,7 +64,7 @@ __all__ = [
 
 
 def _remark_of(declared: Declaration) -> str:
-    """Return how a formula of a worksheet may be read otherwise than it is; empty if it can not."""
+    """Return how a worksheet formula may be misread; empty if it is unambiguous."""
     return str(getattr(getattr(declared, "function", None), "remark", ""))
 
 
@@ -118,7 +118,7 @@ class Template(Calculation):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a template from what a user typed: read, convert to SI, check.
+        """Return a template from typed inputs: read, convert to SI, check.
 
         Once, before any formula runs.
 
@@ -172,6 +172,10 @@ class Template(Calculation):
     def measured_case(self) -> str:
         """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
+
+    def states_own_errors(self) -> bool:
+        """Return whether what a level states of itself holds for such inputs, not the measured errors."""
+        return True
 
     def own_error(self, output: str) -> Array:
         """Return the relative error of an output that the level itself states; NaN without one [-]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from templates.core.judging.criterion import Criterion, Limit
+from templates.core.criteria.criterion import Criterion, Limit
 from templates.core.language.template import Template
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from templates.core.catalogue.digests import digest
-from templates.core.judging.criterion import Limit
+from templates.core.criteria.criterion import Limit
 from templates.core.language.intake import is_single
 from templates.core.language.meaning import Bounds
 from templates.core.language.spec import (
@@ -230,7 +230,7 @@ def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:
 def documentation(cls: type[Template]) -> Mapping[str, list[str]]:
     """Return the sections of the docstring (Limits, Errata, References), each as its paragraphs or lines.
 
-    A line that begins a new sentence begins a new item; other lines go on.
+    A line that begins a new sentence begins a new item; other lines continue the item.
     """
     parts = re.split(r"\n\n?(\w+)\n-{3,}\n", cls.documentation())
     return {name: _items(text) for name, text in zip(parts[1::2], parts[2::2], strict=True)}

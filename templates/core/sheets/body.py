@@ -29,7 +29,7 @@ PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # of an operation, and beside it at each 
 
 
 def operations_seconds(operations: int, points: int) -> float:
-    """Return the time that operations take at so many points, as an order of magnitude [s]."""
+    """Return the time that operations take at a number of points, an order of magnitude [s]."""
     return operations * (PER_OPERATION + PER_PLACE * points)
 
 
@@ -75,7 +75,7 @@ class TreeBody(Body):
         return value
 
     def seconds(self, points: int) -> float:
-        """Return the time that its operations take at so many points, as an order of magnitude [s]."""
+        """Return the time that its operations take at a number of points, an order of magnitude [s]."""
         return operations_seconds(self._operations, points)
 
     @cached_property

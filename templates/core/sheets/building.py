@@ -37,7 +37,7 @@ from templates.core.sheets.solving import SolveBody, equation_of
 from templates.core.units.conformity import declared_kind, turns_remark
 from templates.core.units.nodes import EITHER, Kind, kind_of
 from templates.core.units.sorts import Sort
-from templates.core.units.units import compatible, difference_in
+from templates.core.units.units import compatible, difference_in, unit
 
 _ORDER = (
     ("function", "curve"),
@@ -49,7 +49,7 @@ _ORDER = (
 
 
 class Builder:
-    """Reads statement after statement; what one refuses does not hide what is wrong with the next."""
+    """Reads statement after statement; what one refuses does not hide the faults of the next."""
 
     def __init__(self, chunks: list[Chunk]) -> None:
         self.built, self.names = Built(), Names()
@@ -122,7 +122,7 @@ class Builder:
         self.built.statements.append(parsed(chunk))
 
     def _announce(self, statement: ParsedStatement) -> None:
-        """Let other statements use a name before the formula behind it is read."""
+        """Declare a name, so that other statements can use it before its formula is read."""
         match statement.kind:
             case "given" | "formula":
                 name, unit_text, axis = statement.parts[:3]
@@ -243,7 +243,9 @@ class Builder:
         unknowns = [str(unknown.children[0]) for unknown in parts]
         if len(unknowns) > MOST_UNKNOWNS:
             message = f"a system has at most {MOST_UNKNOWNS} unknowns"
-            raise statement.refuse("too_large", message, parts[MOST_UNKNOWNS], "solve for some in formulas")
+            raise statement.refuse(
+                "too_large", message, parts[MOST_UNKNOWNS], "solve some unknowns in separate formulas"
+            )
         meanings: dict[str, Meaning] = {}
         for unknown in parts:
             name, unit_text, words, clauses = unknown.children
@@ -305,23 +307,26 @@ class Builder:
         """Return the meaning of a declaration whose API name is no other's; its example is noted."""
         if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
             raise FollowsFromFault(missing[0])
-        meant, said = meaning_of(statement, unit_text, words, clauses, self.reader)
+        accepted = self._accepted(statement, unit_text)
+        meant, said = meaning_of(statement, unit_text, words, clauses, self.reader, accepted)
         other = self.built.lines.setdefault(meant.name, statement.chunk.line)
         if other != statement.chunk.line:
             message = f"line {other} has the same words, or words that make the name {meant.name} as well"
             raise statement.refuse("name", message, words, "use other words")
         if said.example is not None and statement.kind == "given":
             self.built.example[meant.name] = said.example
-        return self._in_kind(statement, meant)
-
-    def _in_kind(self, statement: ParsedStatement, meant: Meaning) -> Meaning:
-        """Return what is declared in K by the kind of its formula: a difference, or a temperature."""
-        sort = self.names.sorts[str(statement.parts[0])] if statement.kind in ("formula", "given") else None
-        if sort is None or sort.kind == kind_of(meant.unit) or sort.kind.unit not in ("degC", "delta_degC"):
+        if accepted == unit_text:
             return meant
-        if sort.kind.is_difference:
-            return replace(meant, unit=difference_in(meant.unit))
-        return replace(meant, read_as="degC")
+        return replace(meant, read_as=accepted) if unit(accepted).absolute else replace(meant, unit=accepted)
+
+    def _accepted(self, statement: ParsedStatement, unit_text: str) -> str:
+        """Return the unit that says the kind of what is declared in K, by its formula; else as declared."""
+        if statement.kind not in ("formula", "given") or kind_of(unit_text).temperatures != EITHER:
+            return unit_text
+        found = self.names.sorts[str(statement.parts[0])].kind
+        if found.is_difference:
+            return difference_in(unit_text)
+        return "degC" if found.unit == "degC" else unit_text
 
     def _make(self, statement: ParsedStatement, name: str, declaration: Declaration, node: Any) -> None:
         self.built.parts[name] = declaration

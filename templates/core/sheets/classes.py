@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from templates.core.catalogue.loading import WORKSHEETS
+from templates.core.catalogue.modules import WORKSHEETS
 from templates.core.language.template import Template
 
 

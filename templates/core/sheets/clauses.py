@@ -33,16 +33,21 @@ class Said:
 
 
 def meaning_of(
-    statement: ParsedStatement, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
+    statement: ParsedStatement,
+    unit_text: str,
+    words: lark.Token,
+    clauses: lark.Tree[Any],
+    reader: Reader,
+    accepted: str,
 ) -> tuple[Meaning, Said]:
-    """Return the meaning of a declared number, and its example.
+    """Return the meaning of a declared number, and its example; its limits are of the kind of `accepted`.
 
     Raises
     ------
     Refusal
         With code `clause`, `limit`, `name` or `unit_mismatch`.
     """
-    said = said_in(statement, clauses, reader, unit_text)
+    said = said_in(statement, clauses, reader, unit_text, accepted)
     return _meaning(statement, unit_text, words, said), said
 
 
@@ -73,13 +78,17 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
 
 
 def said_in(
-    statement: ParsedStatement, clauses: lark.Tree[Any] | None, reader: Reader, unit_text: str | None = None
+    statement: ParsedStatement,
+    clauses: lark.Tree[Any] | None,
+    reader: Reader,
+    unit_text: str | None = None,
+    accepted: str | None = None,
 ) -> Said:
     """Read clauses; bounds need the unit of the declaration."""
     said, keys = Said(), set[str]()
     for clause in clauses.children if clauses else ():
         if clause is not None:
-            key, value = _clause(statement, clause, reader, unit_text)
+            key, value = _clause(statement, clause, reader, unit_text, accepted)
             if key in keys:
                 message = f"{clause_name(clause)} is said twice"
                 raise statement.refuse("clause", message, clause, "leave out one of the two")
@@ -99,7 +108,11 @@ def clause_name(clause: lark.Tree[Any]) -> str:
 
 
 def _clause(
-    statement: ParsedStatement, clause: lark.Tree[Any], reader: Reader, unit_text: str | None
+    statement: ParsedStatement,
+    clause: lark.Tree[Any],
+    reader: Reader,
+    unit_text: str | None,
+    accepted: str | None,
 ) -> tuple[str, Any]:
     if clause.data == "said":
         return _said(statement, clause)
@@ -113,7 +126,7 @@ def _clause(
         return "integer", True
     if clause.data == "example":
         return "example", reader.typed(statement, numbers[0], unit_text, "the example")
-    limits = [reader.limit(statement, part, unit_text) for part in numbers]
+    limits = [reader.limit(statement, part, unit_text, accepted) for part in numbers]
     if clause.data == "published":
         if not limits[0] < limits[1]:
             remedy = "write the smaller one first"

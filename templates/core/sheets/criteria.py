@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from templates.core.criteria.criterion import read_criterion
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import read_criterion
 from templates.core.language.declared_criteria import meanings_of
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
@@ -32,7 +32,7 @@ def criterion_of(
     at = statement.parts[0]
     remedy = "write p <= 30 MPa; several conditions are several checks"
     if not (isinstance(node, Apply) and node.operation.sign in ("<=", ">=")):
-        raise statement.refuse("check", "a check compares two sides by one <= or >=", at, remedy)
+        raise statement.refuse("check", "a check needs exactly one <= or >=", at, remedy)
     names = {n: d.name for n, d in declared.items() if isinstance(d, Declaration)}
     try:
         left, right = (relation_text(side, names) for side in node.arguments)
@@ -66,12 +66,12 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
             return relation_text(part, names)
         case Apply(operation=operation, arguments=arguments):
             return _applied(operation.sign, [(part, relation_text(part, names)) for part in arguments])
-    raise FaultyText("check", "a check compares quantities; define this as a named value first")
+    raise FaultyText("check", "a check can compare quantities only; define this as a named value first")
 
 
 def _applied(sign: str, parts: list[tuple[Any, str]]) -> str:
     if sign not in _OPERATORS and sign not in FUNCTIONS and sign not in OVER_LISTS:
-        raise FaultyText("check", "a check compares quantities; define this as a named value first")
+        raise FaultyText("check", "a check can compare quantities only; define this as a named value first")
     if sign not in _OPERATORS:
         return f"{sign}({', '.join(text for _, text in parts)})"
     texts = [f"({text})" if isinstance(part, Apply) else text for part, text in parts]

@@ -17,6 +17,7 @@ from templates.core.sheets.faults import FollowsFromFault
 from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.testing import ExpectedResult, SheetTest
 from templates.core.units.rules import is_number
+from templates.core.units.units import difference_in, unit
 
 Parts = Mapping[str, Any]
 
@@ -114,7 +115,8 @@ def _expected(
         message = f"{text} has no unit"
         raise statement.refuse("limit", message, within, "write within 0.2 %, or within 1 um")
     elif text != "0":
-        difference = declared.meaning.unit if not declared.meaning.scale.absolute else "K"
+        is_temperature = unit(declared.meaning.accepted).absolute
+        difference = difference_in(declared.meaning.unit) if is_temperature else declared.meaning.unit
         reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
     if not 0 <= number < np.inf:
         message = f"{text} is not a tolerance: it is finite, and not below 0"

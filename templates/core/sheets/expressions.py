@@ -14,10 +14,11 @@ from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.remedies import declared_in, names_in_units, remedy_at
 from templates.core.units.conformity import misfit
 from templates.core.units.expressions import FaultyPlace, checked
+from templates.core.units.expressions import constant as checked_constant
 from templates.core.units.operations import Constant
-from templates.core.units.rules import is_number
+from templates.core.units.rules import as_difference, is_number
 from templates.core.units.sorts import Part, Sort
-from templates.core.units.units import unit
+from templates.core.units.units import require_same_kind, unit
 
 
 class Reader:
@@ -29,7 +30,7 @@ class Reader:
     sort_of = staticmethod(sort_of)
 
     def part(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> Part:
-        """Return an expression and what it gives.
+        """Return an expression and its sort.
 
         Raises
         ------
@@ -95,8 +96,12 @@ class Reader:
             message = f"{name} is declared over {axis}, but this is {what}"
             raise statement.refuse("axis_mismatch", message, at, _along_of(got.axis))
 
-    def limit(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str) -> float:
+    def limit(
+        self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, accepted: str | None = None
+    ) -> float:
         """Return a limit in the declared unit: typed in it without a unit, or in any other with one.
+
+        It takes the kind of what it limits, which `accepted` says where the declared unit does not.
 
         Raises
         ------
@@ -109,7 +114,11 @@ class Reader:
             raise statement.refuse("limit", "a limit is one number", tree, "write it like <= 2 m")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
-        value = self.fitting(statement, part, unit_text, "a limit", tree).value
+        accepted = accepted or unit_text
+        if sort.kind.literal and unit(accepted).difference:
+            constant = checked_constant(as_difference(constant.text))
+            part = constant, Sort(constant.kind)
+        value = self.fitting(statement, part, accepted, "a limit", tree).value
         return float(unit(unit_text).from_si(value))
 
     def typed(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
@@ -142,7 +151,7 @@ class Reader:
         if body.uses:
             raise statement.refuse("limit", f"{name} takes numbers, not names", tree, "write its value")
         if isinstance(node, Constant) and node.text:
-            return node.text
+            return self._as_typed(statement, node.text, tree, unit_text)
         with np.errstate(all="ignore"):
             value = np.asarray(body(None), dtype=float)
         if not np.isfinite(value).all():
@@ -150,6 +159,17 @@ class Reader:
             raise statement.refuse("limit", f"{name} is not finite", tree, remedy)
         shown = np.asarray(unit(unit_text).from_si(value))
         return {"value": shown.tolist(), "unit": unit_text}
+
+    def _as_typed(self, statement: ParsedStatement, text: str, tree: lark.Tree[Any], unit_text: str) -> str:
+        """Return a number with its unit, if a user might type it for something in the declared unit."""
+        if " " not in text and unit_text != "1":
+            return f"{text} {unit_text}"
+        try:
+            require_same_kind(text.partition(" ")[2] or "1", unit_text)
+        except FaultyText as error:
+            message, _, remedy = str(error).partition("; ")
+            raise statement.refuse("unit_mismatch", message, tree, remedy or _given_in(unit_text)) from None
+        return text
 
     def declared_unit(self, statement: ParsedStatement, text: lark.Token) -> str:
         """Return the unit between brackets.

@@ -10,7 +10,7 @@ from typing import Any
 
 import lark
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.errors import excerpt
 from templates.core.sheets.faults import Refusal, SheetFault
 from templates.core.sheets.hints import remedy_of
@@ -26,7 +26,7 @@ REMEMBERED = 512  # trees of up to 100 kB
 _STATEMENTS = files(__package__).joinpath("worksheet.lark").read_text(encoding="utf-8")
 _parser = lark.Lark(
     f"{GRAMMAR}\n{_STATEMENTS}", parser="lalr", start="statement", propagate_positions=True,
-    maybe_placeholders=True, cache=prepared.file("statement.grammar"),
+    maybe_placeholders=True, cache=definition_cache.file("statement.grammar"),
 )  # fmt: skip
 _DECLARED = re.compile(r"(?:(?:given|choice|curve|solve)[ \t]+)?([A-Za-z][A-Za-z0-9_]*)")
 

@@ -157,7 +157,7 @@ def system_of(
     equations = list(_joined(node))
     remedy = "write as many equations as unknowns, as in x + y == 3 N and x - y == 1 N"
     if not all(isinstance(one, Apply) and one.operation.sign == "==" for one in equations):
-        raise statement.refuse("equation", "these are not equations joined by and", tree, remedy)
+        raise statement.refuse("equation", "only equations can be joined by `and` here", tree, remedy)
     if len(equations) != len(unknowns):
         message = f"for {len(unknowns)} unknowns there must be as many equations, not {len(equations)}"
         raise statement.refuse("equation", message, tree, remedy)

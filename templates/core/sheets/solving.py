@@ -79,7 +79,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """Return the time that the search takes at so many points, as an order of magnitude [s]."""
+        """Return the time that the search takes at a number of points, an order of magnitude [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property

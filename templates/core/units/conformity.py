@@ -15,6 +15,9 @@ from templates.core.units.rules import as_difference, in_words, meanings_of
 from templates.core.units.units import Unit, compatible, is_rate, radians, registry
 
 _TYPED = re.compile(r"-?[0-9.eE+-]+ \S+")
+_MINUTES = re.compile(
+    r"(?<![\w.)*/])60(?:\.0*)?\s*\*(?!\*)\s*|\s*(?<!\*)[*/]\s*60(?:\.0*)?(?![\w.(*])(?!\s*\*\*)"
+)
 _PER = re.compile(r"1\s*/\s*(.+)", re.DOTALL)
 _OF_TURNS = re.compile(r"(?:(2)\s*\*\s*)?pi\s*\*\s*(.+)", re.DOTALL)
 
@@ -29,7 +32,7 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
     want
         The declared unit.
     text
-        The expression that gives the value, for the remedy.
+        The expression that gives the value, for the remedy; empty where it is not known.
     """
     if not compatible(kind, want):
         return f"this gives {in_words(kind)}", _remedy_of_rates(kind, want, text)
@@ -66,19 +69,29 @@ def _other_kind(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
 def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
     if not (is_rate(kind.base) and is_rate(want.base)):
         return ""
+    text, minutes = _without_minutes(text)
     if kind.cycles and radians(want.base):
         times = re.sub(r"(?<![\w.])pi(?![\w.])", "2*pi", text)
-        return f"Hz counts cycles: write {times if kind.pi == 1 else f'2*pi*{_in_brackets(text)}'}"
+        return f"Hz counts cycles: {minutes}write {times if kind.pi == 1 else f'2*pi*{_in_brackets(text)}'}"
     if radians(kind.base) and want.cycles:
-        return f"Hz counts cycles: write {_in_brackets(text)}/(2*pi)"
+        return f"Hz counts cycles: {minutes}write {_in_brackets(text)}/(2*pi)"
     return ""
 
 
 def _counted(text: str) -> str:
     """Return the ways to say what a rate in 1/s counts."""
+    if not text:
+        return "multiply it by 1 turn or by 1 rad"
+    text, minutes = _without_minutes(text)
     if per := _PER.fullmatch(text.strip()):
-        return f"write 1 turn / {per[1]} or 1 rad / {per[1]}"
-    return f"write {_in_brackets(text)} * 1 turn or {_in_brackets(text)} * 1 rad"
+        return f"{minutes}write 1 turn / {per[1]} or 1 rad / {per[1]}"
+    return f"{minutes}write {_in_brackets(text)} * 1 turn or {_in_brackets(text)} * 1 rad"
+
+
+def _without_minutes(text: str) -> tuple[str, str]:
+    """Return a product without a factor 60, which minutes bring into formulas of numbers, and the advice."""
+    bare = _MINUTES.sub("", text) if not re.search(r"[-+,]", text) else text
+    return bare, "leave out 60, which the units hold, and " if bare != text else ""
 
 
 def _in_brackets(text: str) -> str:
@@ -118,14 +131,15 @@ def _both_readings(names: list[str], want: Unit, text: str) -> str:
     which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
     if radians(want.base):
         return f"{which}, but in a formula the value is in rad/s already: leave out 2*pi or pi/30"
-    in_turns = text
+    bare, minutes = _without_minutes(text)
+    in_turns = bare
     for name in names:
         in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({_over(name, '2*pi')})", in_turns)
-    plain = _OF_TURNS.fullmatch(text.strip()) if len(names) == 1 and not re.search(r"[-+,]", text) else None
+    plain = _OF_TURNS.fullmatch(bare.strip()) if len(names) == 1 and not re.search(r"[-+,]", text) else None
     same = f", which is {plain[2]}{'' if plain[1] else '/2'}" if plain else ""
-    turns = f": {in_turns}{same}" if in_turns != text else ""
+    turns = f": {in_turns}{same}" if in_turns != bare else ""
     return (
         f"{which}, but in a formula the value is in rad/s, and {want.text} holds no angle; if the formula "
-        f"takes turns, write {_over(names[0], '2*pi')} for {names[0]}{turns}; if it takes radians, "
+        f"takes turns, {minutes}write {_over(names[0], '2*pi')} for {names[0]}{turns}; if it takes radians, "
         f"give {names[0]} in rad/s, or write {_over(names[0], '1 rad')}"
     )

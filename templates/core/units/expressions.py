@@ -55,7 +55,7 @@ class Scope(Protocol):
     """The names of an expression."""
 
     def name(self, text: str) -> Part:
-        """Return the node of a name, and what it gives.
+        """Return the node of a name, and its sort.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class FaultyPlace(FaultyText):
 
 
 def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
-    """Return a checked expression, and what it gives.
+    """Return a checked expression, and its sort.
 
     Raises
     ------

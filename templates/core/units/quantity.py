@@ -42,12 +42,16 @@ from templates.core.units.units import (
 
 __all__ = [
     "Tolerance", "TypedQuantity", "Unit", "Value", "beside", "compatible", "read", "read_any", "read_beside",
-    "registry", "require_same_kind", "unit",
+    "registry", "require_same_kind", "scaled", "unit",
 ]  # fmt: skip
 
 _PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
 _ABSOLUTE = re.compile(r"(?<![\w°])(?:degC|degF|°C|°F|celsius|fahrenheit|degree_?[CF]\w*)(?!\w)")
 _DEEPEST = 4  # axes of an array
+_DECIMAL_COMMA = re.compile(r"(?<![0-9.,])((?:[0-9]{1,3}(?:\.[0-9]{3}){1,6}|[0-9]*)),([0-9]+)(?![0-9.,])")
+_ENGLISH = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,[0-9]{3})+\.[0-9]+(?![0-9.,])")
+_GROUPED = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2},[0-9]{3}(?![0-9.,])")
+_GRADE = re.compile(r"(?:sae|iso ?vg|vg)[ -]?[0-9]", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -120,8 +124,24 @@ def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
 
 
+def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
+    """Return a multiple of a quantity, its tolerance with it."""
+    tolerance = typed.tolerance
+    if tolerance is not None:
+        tolerance = replace(
+            tolerance, lower=tolerance.lower * factor, upper=tolerance.upper * factor, zone=None
+        )
+    extra = {
+        key: value * factor if isinstance(value, float | int) else value
+        for key, value in typed.extra.items()
+        if key != "zone"
+    }
+    value = (np.asarray(typed.value, dtype=float) * factor).tolist()
+    return replace(typed, value=value, si=typed.si * factor, extra=extra, tolerance=tolerance)
+
+
 def read_any(raw: Any) -> TypedQuantity:
-    """Read a quantity of whatever kind its own unit says.
+    """Read a quantity of any kind; its unit decides.
 
     Raises
     ------
@@ -137,7 +157,7 @@ def _own_unit(raw: Any) -> str:
             break
         raw = raw[0]
     match raw:
-        case str() if parts := _parted(raw):
+        case str() if parts := _parted(_with_points(raw)):
             written = split(parts[1])
             return written.unit if written else parts[1] or "1"
         case {"unit": str() as name}:
@@ -147,6 +167,7 @@ def _own_unit(raw: Any) -> str:
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
 def _read_text(text: str, declared: str) -> TypedQuantity:
+    _refuse_decimal_comma(text, declared)
     if not (parts := _parted(text)):
         raise _no_quantity(text, declared)
     number, name = parts
@@ -157,6 +178,38 @@ def _read_text(text: str, declared: str) -> TypedQuantity:
     if is_zone(name):
         raise FaultyText("missing_unit", f'{number} {name} has no unit; write it like "{number} mm {name}"')
     return _quantity(_finite(float(number)), name, declared)
+
+
+def _refuse_decimal_comma(text: str, declared: str) -> None:
+    """Refuse a text that is a quantity but for its decimal commas, and say how to write it.
+
+    Raises
+    ------
+    FaultyText
+        With the same text in decimal points.
+    """
+    if (plain := _with_points(text)) == text or not _parted(plain):
+        return
+    try:
+        _read_text(plain, declared)
+        rest = f", or {text.replace(',', '').strip()} if thousands are meant" if _GROUPED.search(text) else ""
+    except FaultyText as error:
+        rest = f"; {error}"
+    kind = "grouped digits" if _ENGLISH.search(text) else "decimal comma"
+    raise FaultyText("decimal_comma", f"{kind}: write {plain.strip()}{rest}")
+
+
+def _with_points(text: str) -> str:
+    """Return a text whose decimal commas do not hide its unit."""
+    if "," not in text or len(text) > LONGEST_TEXT:
+        return text
+    ungrouped = _ENGLISH.sub(lambda match: match[0].replace(",", ""), text)
+    return _DECIMAL_COMMA.sub(_in_points, ungrouped)
+
+
+def _in_points(match: re.Match[str]) -> str:
+    whole, fraction = match[1].replace(".", ""), match[2]
+    return f"{whole or 0}.{fraction}"
 
 
 def _toleranced(number: float, written: Written, declared: str) -> TypedQuantity:
@@ -281,4 +334,7 @@ def _joined(rows: Sequence[Any], length: int) -> list[Any]:
 
 def _no_quantity(raw: Any, declared: str) -> FaultyText:
     form = '"1.5"' if declared == "1" else f'"1.5 {declared}"'
-    return FaultyText("not_a_quantity", f"{excerpt(raw)} is not a quantity; write it as {form}")
+    hint = ""
+    if isinstance(raw, str) and _GRADE.match(raw):
+        hint = "; a grade of oil is given as oil_grade, where there is such an input"
+    return FaultyText("not_a_quantity", f"{excerpt(raw)} is not a quantity; write it as {form}{hint}")

@@ -17,7 +17,7 @@ from typing import Any
 import lark
 import numpy as np
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.conditions import CONDITIONS, IS
 from templates.core.units.conformity import misfit, turns_remark
@@ -33,7 +33,7 @@ __all__ = ["Kind", "Relation", "is_relation", "parse"]
 MAX_LENGTH, MAX_DEPTH, MAX_PARTS = 2000, 100, 400
 REMEMBERED = 1024  # trees of up to 50 kB
 
-_parser = lark.Lark(GRAMMAR, parser="lalr", cache=prepared.file("relation.grammar"))
+_parser = lark.Lark(GRAMMAR, parser="lalr", cache=definition_cache.file("relation.grammar"))
 
 
 @dataclass(frozen=True)

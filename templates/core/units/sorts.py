@@ -42,11 +42,11 @@ class Sort:
 
 
 Part = tuple[Any, Sort]
-"""A node and what it gives."""
+"""A node and its result."""
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:
-    """Return an operation applied to its parts, and what it gives.
+    """Return an operation applied to its parts, and its sort.
 
     A single value that meets a list is given a trailing axis here, once.
 
@@ -62,7 +62,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
 
 
 def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> Sort:
-    """Return the sort of an operation's result, whatever its lists run over.
+    """Return the sort of an operation's result, regardless of its list axes.
 
     Raises
     ------

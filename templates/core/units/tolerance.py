@@ -1,7 +1,6 @@
 """Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
 
-A tolerance says between which limits a value lies and how it is distributed there. Nothing that calculates
-with the value alone reads it.
+A tolerance gives the limits of a value and its distribution between them. Ordinary calculations ignore it.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.fits import deviations, zones
-from templates.core.units.units import Unit, Value, require_same_kind, unit
+from templates.core.units.units import Unit, Value, difference_of, require_same_kind, unit
 
 Distribution = Literal["normal", "uniform", "triangular"]
 DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
@@ -202,7 +201,7 @@ def _of_text(name: str, declared: str) -> Unit:
         raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
     scale = unit(name or "1")
     if scale.absolute and unit(declared).absolute:
-        raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or delta_{name}")
+        raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or {difference_of(name)}")
     return _difference(name or "1", declared)
 
 

@@ -23,11 +23,24 @@ import flexcache
 import flexparser
 import pint
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
 Value = float | Array
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PRINTED = {
+    "deg": "°",
+    "degC": "°C",
+    "degF": "°F",
+    "delta_degC": "K",
+    "delta_degF": "Δ°F",
+    "um": "µm",
+    "ohm": "Ω",
+    "thou": "mil",
+    "inch": "in",
+    "ureyn": "µreyn",
+}
 
 _PARSED = f"units-{pint.__version__}-{flexparser.__version__}-{flexcache.__version__}"
 """The folder that keeps Pint's definitions parsed; Pint names its files by what they were made from."""
@@ -37,7 +50,7 @@ def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
     return pint.UnitRegistry(cache_folder=parsed)
 
 
-registry: pint.UnitRegistry[float] = prepared.from_folder(_PARSED, _registry)
+registry: pint.UnitRegistry[float] = definition_cache.from_folder(_PARSED, _registry)
 registry.define("@alias revolution = rev")
 
 _NAME = r"(?:[A-Za-zµμ°Ω]+(?:_[A-Za-z]+)*|%)"
@@ -46,6 +59,9 @@ _FACTOR = rf"{_NAME}{_POWER}"
 _PRODUCT = rf"{_FACTOR}(?:[*·]{_FACTOR})*"
 _UNIT = rf"(?:1|{_PRODUCT})(?:[*·/](?:{_FACTOR}|\({_PRODUCT}\)))*"
 _PATTERN = re.compile(_UNIT)
+_REVOLUTION = re.compile(r"(?<![A-Za-z_])r(?=/(?:min|s|h)(?![A-Za-z]))")
+"""The revolution as ISO 80000-3 writes it: r/min."""
+_MIL = re.compile(r"(?<![A-Za-z_])mils?(?![A-Za-z_])")
 LONGEST_UNIT = 60
 
 
@@ -103,9 +119,12 @@ def unit(text: str) -> Unit:
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
         raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
+    if _MIL.search(text):
+        message = f"{text} is ambiguous: write thou for 0.001 inch, mrad for an angle"
+        raise FaultyText("ambiguous_unit", message)
     forget_units()
     try:
-        named = registry.Unit("" if text == "1" else text)
+        named = registry.Unit("" if text == "1" else _REVOLUTION.sub("rev", text))
         size, base = registry.get_base_units(named)
         factor = float(size)  # type: ignore[arg-type]
         zero, two = (float(registry.Quantity(x, named).to_base_units().magnitude) for x in (0.0, 2.0))
@@ -297,3 +316,14 @@ def _measured(scale: Unit) -> str:
         return "an angular speed"
     same = (words for words, si in _KINDS.items() if registry.get_dimensionality(unit(si).base) == dimensions)
     return next(same, str(dimensions))
+
+
+def unit_symbol(text: str) -> str:
+    """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+
+    Nothing for a pure number.
+    """
+    if text == "1":
+        return ""
+    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(_RAISED), text)
+    return re.sub(r"[A-Za-z_]+", lambda word: _PRINTED.get(word[0], word[0]), raised).replace("*", "·")

@@ -106,7 +106,7 @@ def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_a
 
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
-    """Return what nodes lose by pressure and by shear, for H³ between and at the nodes and H between them.
+    """Return the outflow of nodes by pressure and shear, for H³ between and at nodes and H between.
 
     Both have one pattern, so that sums of them need no other.
     """

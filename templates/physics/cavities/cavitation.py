@@ -58,7 +58,7 @@ class Network:
         return np.asarray(order[~self.fixed[order]], np.intp)
 
     def loss(self, P: Array, void: Array) -> Array:
-        """Return what each node loses: 0 where the balance holds, −inflow from outside at fixed nodes."""
+        """Return the net outflow of each node: 0 where it balances, −inflow from outside at fixed nodes."""
         return np.asarray(self.A @ P + self.T @ (1 - void))
 
 

@@ -117,7 +117,7 @@ class ColumnScaledSum:
 
     @cached_property
     def width(self) -> int:
-        """Return how far from the diagonal the farthest value is."""
+        """Return the bandwidth: the largest distance of a value from the diagonal."""
         return int(np.abs(self.pattern.indices - self.column).max(initial=0))
 
     def diagonals(self) -> Array:

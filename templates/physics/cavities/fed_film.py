@@ -188,7 +188,7 @@ class Search:
         return best
 
     def start(self) -> Place:
-        """Return where the film map has the journal."""
+        """Return the position of the journal by the film map."""
         eps = mapped_eccentricity(np.array(self.load), np.array(self.ratio))
         eps = np.where(np.isnan(eps), ECCENTRICITY_LIMIT, np.maximum(eps, _SMALLEST))
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
@@ -203,7 +203,7 @@ class Search:
         return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh)
 
     def lack(self, place: Place, film: LinearFilm) -> Lack:
-        """Return what the film there lacks; `film` is in axes of the line of centres."""
+        """Return the missing force of the film there; `film` is in axes of the line of centres."""
         step = self._step_to_grooves if self.feed.grooves else self._step_with_line
         missing, displacement = step(place, film)
         share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf

@@ -3,7 +3,12 @@
 Newton's method on a mesh that stands still while it searches; then the mesh is graded to the place found,
 until both agree, and refined: 32, 64 and 128 intervals around. No step takes more than 70 % of the gap
 anywhere, and none is kept that leaves the force farther from the load. The last two meshes give Richardson's
-extrapolation and an estimate of the error.
+extrapolation, the last three an estimate of the error.
+
+A mesh of a lobed or grooved bore, graded to one lobe, exerts a force on a journal in the middle. Under a
+light load that force counts, and the meshes are not in their asymptote. So where the last step of refinement
+moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals follows. If the
+steps still do not fall as the square of the mesh, nothing is extrapolated: the finest mesh answers.
 
 Oil comes in where `Feed` has grooves, which stand still relative to the load. Without grooves it comes along
 the joints of a lobed bore, and else along a line opposite the displacement of the journal's middle.
@@ -13,7 +18,7 @@ search begins where the plain film would have the journal, then near the middle,
 balance without resistance to slow displacement, det K ≤ 0, is none.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -28,12 +33,22 @@ from templates.physics.films.film_map_inverse import mapped_eccentricity
 from templates.physics.films.film_shape import Bore, Lie, narrowest
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
-MESHES = ((32, 6), (64, 8), (128, 16))
+MESHES: Sequence[tuple[int, int]] = ((32, 6), (64, 8), (128, 16))
 """Intervals around, and across half the width."""
+FINER = 256, 32
+"""Those of the mesh that follows where the others have not settled."""
+SETTLED = 0.01
+"""Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
+SAFETY = 1.25
+"""What a stated error is over the change by refinement, after Roache 1994 [-]."""
+OFF_ORDER = 0.5
+"""Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
 LEAST_GAP = 1e-6
 """Smallest gap at which a film is looked for [-]."""
 SMALLEST = 1e-3
 """Eccentricity of the plain film below which a load is taken as this one's, in proportion [-]."""
+_SUDDEN = 6
+"""Limit on what the step before adds to the last: a mesh that misses a lobe tells nothing of finer ones."""
 _STEPS = 40
 _TURNS = 8
 """Limit on how often the mesh is graded again before the place is taken as it is."""
@@ -65,7 +80,7 @@ class Loaded:
     """Whether cavities conserve mass."""
 
     def pockets(self, attitude: float) -> list[Pocket]:
-        """Return where oil comes in, if the journal's middle is displaced in a direction."""
+        """Return the oil inlets if the journal's middle is displaced in a direction."""
         if self.feed.grooves:
             return [Pocket(angle, width, self.feed.pressure) for angle, width in self.feed.grooves]
         if self.bore.is_lobed:
@@ -83,13 +98,70 @@ class Loaded:
 
 
 @dataclass(frozen=True)
-class Balance:
-    """The film that bears a load, on two meshes."""
+class Refined:
+    """The film that bears a load on one mesh."""
 
-    coarse: ShapedFilm
-    fine: ShapedFilm
-    at_coarse: Lie
-    at_fine: Lie
+    film: ShapedFilm
+    lie: Lie
+    gap: float
+    """The least gap [-]."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The film that bears a load, on the last meshes, coarse to fine."""
+
+    before: Refined | None
+    """None where only two meshes bear it."""
+    coarse: Refined
+    fine: Refined
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether three meshes bear the load and the last of them changes little."""
+        step, _ = self._steps
+        moved = float(np.hypot(*step)) <= SETTLED * self.fine.lie.eps
+        return self.before is not None and moved and abs(self.fine.gap / self.coarse.gap - 1) <= SETTLED
+
+    @property
+    def is_asymptotic(self) -> bool:
+        """Return whether the steps of refinement fall as the square of the mesh, or the last is small."""
+        step, previous = self._steps
+        off = float(np.hypot(*(step - previous / 4)))
+        return self.is_settled or (self.before is not None and off <= OFF_ORDER * float(np.hypot(*step)))
+
+    @property
+    def place_error(self) -> float:
+        """Return how far the journal may lie from where it is said to, over its displacement [-]."""
+        step, previous = (float(np.hypot(*step)) for step in self._steps)
+        return SAFETY * max(step, min(previous / 4, _SUDDEN * step)) / max(self.fine.lie.eps, 1e-300)
+
+    @property
+    def gap_error(self) -> float:
+        """Return how far the least gap may be off, relative [-]."""
+        return self._error(lambda refined: refined.gap, 2)
+
+    @property
+    def pressure_error(self) -> float:
+        """Return how far the largest pressure may be off, relative [-]."""
+        return self._error(lambda refined: refined.film.peak[0], 2)
+
+    @property
+    def flow_error(self) -> float:
+        """Return how far the side flow may be off, relative [-]."""
+        return self._error(lambda refined: refined.film.side_flow, 1)
+
+    def _error(self, value: Callable[[Refined], float], order: int) -> float:
+        """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""
+        coarse, fine = value(self.coarse), value(self.fine)
+        previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
+        return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
+
+    @property
+    def _steps(self) -> tuple[Array, Array]:
+        """The last displacement by refinement, and the one before it."""
+        e = self.coarse.lie.e
+        return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
 
 def balance(loaded: Loaded) -> Balance:
@@ -109,7 +181,7 @@ def balance(loaded: Loaded) -> Balance:
     raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
-def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
+def _ladders(loaded: Loaded) -> list[Sequence[tuple[int, int]]]:
     """Return meshes to refine over.
 
     In a bore of lobes also without the coarsest, which may miss some of them.
@@ -140,17 +212,29 @@ def _inside(loaded: Loaded, e: Array) -> Array:
     raise NoBalance("the tilted journal touches the bore in every position")
 
 
-def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> Balance:
-    """Return the balance on the meshes, each begun at that of the coarser one."""
-    films: list[tuple[ShapedFilm, Lie]] = []
+def _refined(loaded: Loaded, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
+    """Return the balance on the meshes, each begun at that of the coarser one, and on `FINER` if needed."""
+    films: list[Refined] = []
     for mesh in meshes:
-        film, lie = _agreed(loaded, e, mesh, films[-1][0] if films else None)
-        if np.linalg.det(film.linear[0]) <= 0:
-            raise NoBalance("the equilibrium position found is not stable")
-        films.append((film, lie))
-        e = lie.e
-    (coarse, at_coarse), (fine, at_fine) = films[-2:]
-    return Balance(coarse, fine, at_coarse, at_fine)
+        films.append(
+            stable_film(loaded, films[-1].lie.e if films else e, mesh, films[-1].film if films else None)
+        )
+    balanced = Balance(films[-3] if len(films) > 2 else None, *films[-2:])
+    if balanced.is_settled:
+        return balanced
+    try:
+        finer = stable_film(loaded, balanced.fine.lie.e, FINER, balanced.fine.film)
+    except (ArithmeticError, RuntimeError, np.linalg.LinAlgError):
+        return balanced
+    return Balance(balanced.coarse, balanced.fine, finer)
+
+
+def stable_film(loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None) -> Refined:
+    """Return the balance on one mesh, which resists slow displacement."""
+    film, lie = _agreed(loaded, e, mesh, near)
+    if np.linalg.det(film.linear[0]) <= 0:
+        raise NoBalance("the equilibrium position found is not stable")
+    return Refined(film, lie, narrowest(loaded.bore, lie)[0])
 
 
 def _agreed(

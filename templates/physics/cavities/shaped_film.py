@@ -83,7 +83,7 @@ class ShapedFilm:
 
     @cached_property
     def load_couple(self) -> float:
-        """Return what pressure adds to the friction on the journal, from half of ∬ H dP.
+        """Return the friction on the journal due to pressure, from half of ∬ H dP.
 
         In a plain bearing it is So eps sin(attitude)/2, the couple of load and reaction.
         """

@@ -146,12 +146,12 @@ def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
 
 
 def pressed(nodes: Nodes, H: Gaps) -> csc_array:
-    """Return what nodes lose by pressure, per pressure."""
+    """Return the outflow of nodes due to pressure, per unit of pressure."""
     return _conducted(nodes, H.around**3, H.across**3)
 
 
 def sheared(nodes: Nodes, H: Gaps) -> csc_array:
-    """Return what nodes lose by shear, per fill of the node from which it comes."""
+    """Return the outflow of nodes by shear, per fill of the upstream node."""
     n, m = nodes.shape
     flow = diags_array((6 * H.around * nodes.across).ravel())
     return csc_array(-nodes.steps[0].T @ flow @ eye_array(n * m))

@@ -29,7 +29,7 @@ class Journal:
         return np.asarray(1 - eps[0] * np.cos(phi) - eps[1] * np.sin(phi))
 
     def load(self, P: Array) -> Array:
-        """Return what a pressure bears, F psi²/(B D eta Omega), along the axes of the frame, (2,)."""
+        """Return the force of a pressure, F psi²/(B D eta Omega), along the axes of the frame, (2,)."""
         line = P @ dual_widths(self.zeta)[:-1] * np.pi / self.phi.size
         return np.array([np.cos(self.phi), np.sin(self.phi)]) @ line
 

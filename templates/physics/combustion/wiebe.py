@@ -186,7 +186,7 @@ def peak(p: Array) -> Array:
 
 @units("Pa", "rad", returns="rad")
 def peak_angle(p: Array, theta: Array) -> Array:
-    """Return where the pressure of the curve is largest [rad]."""
+    """Return the angle of the curve's largest pressure [rad]."""
     return np.asarray(theta[np.argmax(p, axis=-1)])[()]
 
 

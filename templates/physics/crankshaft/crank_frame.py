@@ -169,7 +169,7 @@ class CrankFrame:
         return ends
 
     def flexibility(self, count: int, webs: Array) -> Flexibility:
-        """Of the mains to forces on themselves, and on `count` rods and then the webs at these places [m]."""
+        """Displacements of the mains under forces on themselves, on `count` rods and on the webs [m]."""
         size = 6 * len(self.frame.nodes)
         drive = self.axis[-1][1]
         held = [6 * node + d for node in (self.at_main[0], self.at_main[-1]) for d in (0, 1)]

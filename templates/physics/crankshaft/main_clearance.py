@@ -224,7 +224,7 @@ def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Tru
 
 @units(None, None, returns="1")
 def law_residual(forces: Vectors, supported: Supported | None) -> Array:
-    """Return what of the supports' law is left over the displacements; 0 below 1e-8, none without mains."""
+    """Return the residual of the supports' law, relative; 0 below 1e-8, none without mains."""
     if not np.ndim(forces):
         return _NONE
     if supported is None:

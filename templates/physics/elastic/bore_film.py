@@ -86,7 +86,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def deformation(self) -> Array:
-        """Return what the pressure adds to the gap (n + 1, m + 1) [-]."""
+        """Return the change of the gap due to pressure (n + 1, m + 1) [-]."""
         plain = SoftFilm(self.mesh, self.ratio, self.softness, self.modes, self.eps, self.P).deformation
         return np.asarray(plain + self.shapes[..., BENDING] @ (self.bent @ self.P.ravel()))
 

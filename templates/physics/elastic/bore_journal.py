@@ -110,7 +110,7 @@ def bore_film_at(
 
 
 def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
-    """Return what gives way, dimensionless; without a matrix the half plane is stiff too."""
+    """Return the compliances, dimensionless; without a matrix the half plane is stiff too."""
     per_gap = float(one.pressure / one.clearance)
     tail = per_gap * half_plane(one.inner, one.modulus, one.poisson) * bool(matrix.any())
     return BoreSoftness(

@@ -70,7 +70,7 @@ def half_plane(radius: Array, modulus: Array, poisson: Array) -> Array:
 
 @units(None, returns="1")
 def is_square(rows: Rows) -> Truth:
-    """Return whether a matrix has a row for each mode, or none at all."""
+    """Return whether a matrix has a row for each mode, or no rows."""
     return len(rows) in (0, len(MODES))
 
 

@@ -143,7 +143,7 @@ def elastic_film_at(level: str, So: Array, ratio: Array, elasticity: Elasticity)
 
 
 def _softness(level: str, one: Elasticity) -> Softness:
-    """Return what gives way at a level, dimensionless."""
+    """Return the compliances of a level, dimensionless."""
     per_gap = float(one.pressure / one.clearance)
     ring = np.zeros(HARMONICS + 1)
     if level == HOUSING:

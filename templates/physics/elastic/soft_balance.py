@@ -59,7 +59,7 @@ def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int)
 
 
 def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
-    """Return the film of a bearing that gives way, from the rigid one of the same load.
+    """Return the film of an elastic bearing, from the rigid film under the same load.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _opened(film: SoftFilm, before: SoftFilm) -> float:
 
 
 def carried(found: Balanced, So: float, around: int, across: int) -> Balanced:
-    """Return the balance on a mesh of so many intervals that is graded to its gap."""
+    """Return the balance on a mesh of this number of intervals that is graded to its gap."""
     film, own = found.film, found.film.mesh
     least = min(max(float(film.H.min()), 1e-7), 1.0)
     mesh = ring_mesh(1 - least, film.ratio, around, across)

@@ -95,7 +95,7 @@ class SoftFilm:
 
     @cached_property
     def deformation(self) -> Array:
-        """Return what the pressure adds to the gap (n + 1, m + 1) [-]."""
+        """Return the change of the gap due to pressure (n + 1, m + 1) [-]."""
         mean = self.P @ self.mesh.weight_zeta / 2
         ring = self.modes.shapes @ (self.modes.compliance * (mean @ self.modes.taken))
         return np.asarray(self.softness.liner * self.P + ring[:, None])
@@ -125,7 +125,7 @@ class SoftFilm:
 
     @cached_property
     def loss(self) -> Array:
-        """Return what each node loses more than it gains (n + 1, m + 1)."""
+        """Return the net outflow of each node (n + 1, m + 1)."""
         H, eta, _, rise = self.around
         width = dual_widths(self.mesh.zeta)
         onward = -(H**3) / eta * rise + 6 * (H - (1 - self.eps))

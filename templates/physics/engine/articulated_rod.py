@@ -47,7 +47,7 @@ class ArticulatedCrank(OffsetCrank):
 
     @cached_property
     def articulated(self) -> NDArray[np.bool_]:
-        """Return which rods work on another one, (N,)."""
+        """Return a mask of the articulated rods, (N,)."""
         return np.asarray(self.carrier != np.arange(self.carrier.size))
 
     @cached_property
@@ -77,7 +77,7 @@ class ArticulatedCrank(OffsetCrank):
         return ArticulatedMotion(self, alpha)
 
     def _dead_centre(self, *, highest: bool) -> Array:
-        """Return where the piston is highest or lowest, by Newton's method from the best of samples."""
+        """Return the angle of a dead centre, by Newton's method from the best of samples."""
         alpha = np.linspace(-np.pi, np.pi, _SAMPLES, endpoint=False) + np.zeros((self.carrier.size, 1))
         x = self.at(alpha).x
         best = np.argmax(x if highest else -x, axis=-1)
@@ -236,7 +236,7 @@ def link_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, w
 
 
 def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
-    """What the masses at articulated pins put on the frame [N] beyond those on the crankpin's circle."""
+    """Force of the masses at articulated pins on the frame [N] beyond that of the crankpin's circle."""
     if not isinstance(motion, ArticulatedMotion):
         return np.zeros(1, dtype=complex)
     circle = motion.crank.r[..., None] * (motion.cos + 1j * motion.sin)

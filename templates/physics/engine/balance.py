@@ -168,7 +168,7 @@ class TwoPlanes:
 
 
 def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> TwoPlanes:
-    """Return what balances the rotating masses, forces and couples, in the planes at x_f and x_d [m]."""
+    """Return masses that balance the rotating forces and couples, in the planes at x_f and x_d [m]."""
     place = row.arm + np.asarray(reference)[..., None]
     x_f, x_d = np.asarray(x_f), np.asarray(x_d)
     flywheel = row.rotating(place - x_d[..., None]) / (x_d - x_f)
@@ -178,6 +178,6 @@ def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> Tw
 
 @units("kg", None, returns="rad", latex=r"\operatorname{{arg}}\left({1}\right)")
 def balance_angle(m_rot: Array, phasor: Phasor) -> Array:
-    """Return where a balancing mass stands [rad], from 0 to a turn; nowhere (NaN) if it has no size."""
+    """Return the angle of a balancing mass [rad], from 0 to 2π; NaN if the mass is 0."""
     angle = np.angle(m_rot * phasor) % (2 * np.pi)
     return np.where(np.abs(m_rot * phasor) > 0, angle, np.nan)[()]

@@ -34,6 +34,8 @@ class Layout:
     pin: Array
     firing: Array
     throw: NDArray[np.intp]
+    is_timed: bool = True
+    """Whether firing angles are given; without gas pressures pins alone lay an engine out."""
 
     @cached_property
     def cycle(self) -> float:
@@ -76,17 +78,30 @@ def count_of(*lists: Array) -> int:
 
 
 def arranged(
-    strokes: Array, order: Array, pins: Array, firing: Array, banks: Array, throws: Array, top: Array
+    strokes: Array,
+    order: Array,
+    pins: Array,
+    firing: Array,
+    banks: Array,
+    throws: Array,
+    top: Array,
+    gas_cycle: str,
 ) -> Layout:
-    """Return the layout by the lists that are given; NaN where there is none, which the rules here refuse."""
+    """Return the layout by the lists that are given; NaN where there is none, which the rules here refuse.
+
+    Without gas pressures a cylinder whose firing nobody states stands as if it fired in the first turn.
+    """
     count = count_of(order, pins, firing)
     cycle, bank, top = float(np.pi * strokes), np.atleast_1d(banks), np.atleast_1d(top)
     none = np.full(count, np.nan)
+    is_timed = bool(times_are_said(strokes, order, pins, firing, "")) or gas_cycle != "none"
     if listed(firing):
         phi = firing + np.zeros(count)
     elif listed(pins):
         base = (bank - pins + top) % TURN
-        phi = _timed(order, base, cycle) if base.ndim == 1 and base.size == count else none
+        phi = none
+        if base.ndim == 1 and base.size == count:
+            phi = base if not is_timed else _timed(order, base, cycle)
     elif listed(order) and is_order(order, pins, firing):
         phi = np.asarray(np.argsort(order) * (cycle / count), dtype=float)
     else:
@@ -94,7 +109,7 @@ def arranged(
     psi = pins + 0 * phi if listed(pins) else (bank - phi + top) % TURN
     named = listed(throws) and throws_are_named(throws, order, pins, firing)
     throw = np.rint(throws).astype(np.intp) - 1 if named else np.arange(count)
-    return Layout(round(float(strokes)), bank + 0 * phi, psi, phi, throw)
+    return Layout(round(float(strokes)), bank + 0 * phi, psi, phi, throw, is_timed)
 
 
 def _timed(order: Array, base: Array, cycle: float) -> Array:
@@ -152,13 +167,13 @@ def is_order(order: Array, pins: Array, firing: Array) -> Truth:
     return bool(np.array_equal(np.sort(order, axis=-1).ravel(), np.arange(1, count + 1)))
 
 
-@units("1", "1", "rad", "rad", returns="1")
-def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether the firing is given.
+@units("1", "1", "rad", "rad", None, returns="1")
+def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array, gas_cycle: str) -> Truth:
+    """Return whether the firing is given, or does not count because there are no gas pressures.
 
     In a four-stroke engine the pins alone leave two turns to choose from.
     """
-    return listed(order) or listed(firing) or bool(strokes == 2)
+    return listed(order) or listed(firing) or bool(strokes == 2) or gas_cycle == "none"
 
 
 def _is_near(one: Array, other: Array, period: float) -> bool:
@@ -217,14 +232,16 @@ def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
 
 @units(None, returns="rad")
 def pin_angles(layout: Layout) -> Array:
-    """Return where the pin of each cylinder stands from the reference line, from 0° to 360° [rad]."""
+    """Return the angle of each cylinder's pin from the reference line, from 0 to 2π [rad]."""
     around = layout.pin % TURN
     return np.where(TURN - around < _ROUNDING, 0.0, around)
 
 
 @units(None, returns="rad")
 def firing_angles(layout: Layout) -> Array:
-    """Return where each cylinder fires, within one cycle [rad]."""
+    """Return the firing angle of each cylinder within one cycle [rad]."""
+    if not layout.is_timed:
+        return np.full_like(layout.firing, np.nan)
     around = layout.firing % layout.cycle
     return np.where(layout.cycle - around < _ROUNDING, 0.0, around)
 
@@ -248,11 +265,13 @@ def pin_splits(layout: Layout) -> Array:
 @units(None, returns="1")
 def layout_in_words(layout: Layout) -> str:
     """Return the layout in words: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
+    strokes = "two" if layout.strokes == 2 else "four"
+    if not layout.is_timed:
+        return f"{_kind(layout)}, {strokes} strokes, no firing order"
     intervals = np.degrees(firing_intervals(layout).reshape(-1, layout.throw.size)[0])
     even = bool(np.ptp(intervals) < 1e-6)
     steps = f"every {intervals[0]:.6g}" if even else "after " + " ".join(f"{gap:.6g}" for gap in intervals)
     order = "-".join(str(place + 1) for place in layout.order)
-    strokes = "two" if layout.strokes == 2 else "four"
     return f"{_kind(layout)}, {strokes} strokes, fires {order} {steps} deg"
 
 

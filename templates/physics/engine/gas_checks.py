@@ -42,7 +42,7 @@ def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
 
 @units(None, None, returns="1")
 def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Return whether combustion ends before the exhaust opens; other rules report what is not given."""
+    """Return whether combustion ends before the exhaust opens; other rules report missing inputs."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
     return ~(cycle.v_cut >= cycle.v_opened)
@@ -68,7 +68,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Return whether a table of rising angles covers the cycle.
 
-    From its end to its begin is at most a step.
+    The gap from its end to its beginning is at most one step.
     """
     if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
         return True  # another rule reports it

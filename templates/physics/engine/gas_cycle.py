@@ -163,7 +163,7 @@ class Polytropic(GasCycle):
         )
 
     def corners(self) -> Array:
-        """Return where the events begin that may change the pressure at once, and where combustion ends."""
+        """Return the angles of events that may make the pressure jump, and of the end of combustion."""
         events = (
             self.exchange_begins,
             self.exchange_ends,

@@ -123,7 +123,7 @@ def largest_at(parts: Harmonics) -> Array:
 
 @units(None, returns="rad")
 def largest_towards(parts: Harmonics) -> Array:
-    """Return where it points to there [rad], from x in the sense of rotation, from 0 to 2π."""
+    """Return its direction there [rad], from x in the sense of rotation, from 0 to 2π."""
     angle = np.angle(parts.there) % (2 * np.pi)
     return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)
 
@@ -142,7 +142,7 @@ def couple_size(phasor: Phasor) -> Array:
 
 @units(None, returns="rad")
 def direction(phasor: Phasor) -> Array:
-    """Return where a vector points to [rad], from 0 to 2π; 0 if it vanishes."""
+    """Return the direction of a vector [rad], from 0 to 2π; 0 for a zero vector."""
     angle = np.angle(phasor) % (2 * np.pi)
     return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)[()]
 

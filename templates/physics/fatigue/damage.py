@@ -73,7 +73,7 @@ def one_tensor_leads(criterion: str, history: Array) -> Truth:
 
 @units(None, returns="1")
 def shares_of_leading_tensors(history: Array) -> Array:
-    """Return what one tensor carries of the squares of the stress of each point [1]."""
+    """Return the share of one tensor in the squared stress of each point [1]."""
     return leading_tensor(history)[1]
 
 
@@ -117,7 +117,7 @@ def reversed_amplitudes(
 
 
 def mean_shares(correction: str, credit: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
-    """Return what means [..., point, cycle] [Pa] take from the amplitude that is borne [1].
+    """Return the share of the bearable amplitude that mean stresses [..., point, cycle] [Pa] use up [1].
 
     A compressive mean takes nothing, and gives nothing unless there is `credit` for it.
     """
@@ -206,6 +206,6 @@ def inverse_or_none(value: Array) -> Array:
 
 @units("1", returns="1")
 def life_in_words(damage: Array) -> Any:
-    """Return whether a life is finite or endless."""
+    """Return in words whether a life is finite or endless."""
     words = np.select([np.isnan(damage), damage > 0], ["", "finite"], "endless")
     return words if words.ndim else str(words)

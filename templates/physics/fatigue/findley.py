@@ -149,7 +149,7 @@ def _acting(tensors: Array, normals: Array) -> tuple[Array, Array]:
 
 
 def _weights(n: Array, m: Array) -> Array:
-    """Return what the six components of a tensor contribute to the stress n·sigma·m."""
+    """Return the factors of a tensor's six components in the stress n·sigma·m."""
     x, y, z = 0, 1, 2
     pairs = ((x, y), (y, z), (x, z))
     straight = [n[..., i] * m[..., i] for i in (x, y, z)]

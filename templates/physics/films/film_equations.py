@@ -51,7 +51,7 @@ class Equations:
 
     @cached_property
     def brought(self) -> Array:
-        """Return what rotation and squeeze bring to a node, (n + 1, m + 1)."""
+        """Return the inflow of nodes due to rotation and squeeze, (n + 1, m + 1)."""
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:

@@ -82,7 +82,7 @@ def measure(field: Field) -> Film:
 
 
 def rupture_angle(field: Field) -> Array:
-    """Return where the film ends, (m + 1,), from the last two pressures, which fall with the square [rad]."""
+    """Return the film's end [rad], (m + 1,), from the last two pressures, which fall quadratically."""
     phi, P = field.mesh.phi, np.sqrt(np.maximum(field.rupture.P[:, :-1], 0))
     last = np.maximum(P.shape[0] - 1 - (P[::-1] > 0).argmax(axis=0), 1)
     column = np.arange(P.shape[1])

@@ -62,7 +62,7 @@ class Bore:
         return self.preload / (1 - self.preload)
 
     def joints(self) -> Array:
-        """Return where lobes meet, (lobes,) or none, from the load [rad]."""
+        """Return the angles at which lobes meet, (lobes,) or none, from the load [rad]."""
         arc = 2 * np.pi / self.lobes
         joints = self.angle + arc * (np.arange(self.lobes) - 0.5)
         return np.asarray(joints, float) if self.is_lobed else np.zeros(0)
@@ -74,7 +74,7 @@ class Bore:
         return begin, begin + arc, begin + arc * self.offset
 
     def around(self, phi: Array, side: int = 1) -> Array:
-        """Return what lobes add to the gap of a centred journal, at angles from the load [-].
+        """Return the addition of lobes to the gap of a centred journal, at angles from the load [-].
 
         Where lobes meet, with side 1 that of the lobe ahead, with −1 that of the lobe behind.
         """
@@ -85,7 +85,7 @@ class Bore:
         return np.asarray(2 * self.excess * np.sin((within - arc * self.offset) / 2) ** 2)
 
     def along(self, zeta: Array) -> Array:
-        """Return what the bell mouth adds: a parabola that begins at its length from the end [-]."""
+        """Return the gap of the bell mouth: a parabola that begins at its length from the end [-]."""
         if self.mouth_length <= 0:
             return np.zeros_like(zeta)
         depth = np.maximum(np.abs(zeta) - (1 - self.mouth_length), 0.0) / self.mouth_length

@@ -182,7 +182,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """Return the same of the points of these numbers alone."""
+        """Return the same object for the points of these numbers."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
@@ -306,7 +306,7 @@ def viscosity_at_150(
 
 @units("Pa*s", "Pa*s", "1", None, returns="1", latex=r"\frac{{{0}-{2}\,{1}}}{{(1-{2})\,{1}}}")
 def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
-    """Of what shear can take at 150 °C, what 1e6 1/s leave; NaN for an oil that does not thin [-].
+    """Share of the shear-dependent viscosity left at 150 °C and 1e6 1/s; NaN without shear thinning [-].
 
     Parameters
     ----------

@@ -153,7 +153,7 @@ class MixedJournal:
         return film * np.cos(attitude) + contact, across, film, contact, scale * around, So, attitude
 
     def excess(self, deep: Array, speed: Array, number: Array) -> Array:
-        """Return what bears at an eccentricity of 1 − exp(−deep) more than the load, −1 … 1 [-]."""
+        """Return the excess of force over load at an eccentricity of 1 − exp(−deep), −1 … 1 [-]."""
         i = number.astype(np.int64)
         along, across, *_ = self.shares(-np.expm1(-deep), speed, i)
         force = np.hypot(along, across)
@@ -196,7 +196,7 @@ def mixed_journal(level: str, bearing: RoughJournal) -> MixedJournal:
     }
 )
 def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """Return what bears the load at each speed, arrays like these.
+    """Return the balance of film and contact at each speed, arrays of the same shape.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ def composite_roughness(R_1: Array, R_2: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}^2-{1}^2}}{{{0}^2+{1}^2}}")
 def roughness_asymmetry(R_1: Array, R_2: Array) -> Array:
-    """What one face has more of the square of the roughness than the other, 0 if both are smooth [-]."""
+    """Asymmetry of the squared roughness of both faces, 0 if both are smooth [-]."""
     total = np.hypot(R_1, R_2)
     return ((R_1 - R_2) / np.where(total > 0, total, 1.0) * ((R_1 + R_2) / np.where(total > 0, total, 1.0)))[
         ()

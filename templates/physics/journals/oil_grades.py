@@ -41,7 +41,7 @@ def grades() -> tuple[str, ...]:
 
 
 def basis(grade: str) -> str:
-    """Return where the viscosities of a grade come from."""
+    """Return the source of a grade's viscosities."""
     return next(row[4] for row in _rows() if row[0] == grade)
 
 

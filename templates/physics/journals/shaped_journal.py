@@ -90,7 +90,13 @@ class StaticFilm:
     couple_y: Array
     """The same ahead of the load."""
     mesh_error: Array
-    """Difference of the smallest gap on two meshes, relative; NaN of a plain film."""
+    """How far the smallest gap may be off by its meshes, relative; NaN of a plain film."""
+    place_error: Array
+    """How far the journal may lie from where it is said to, over its displacement; NaN of a plain film."""
+    pressure_error: Array
+    """How far the largest pressure may be off by its meshes, relative; NaN of a plain film."""
+    flow_error: Array
+    """The same of the side flow."""
     K: Array
     """Stiffness in the units of So; NaN of a plain film, see `linear_of`."""
     B: Array
@@ -106,7 +112,7 @@ class StaticFilm:
 
 @units(None, returns="1")
 def middle_of_least_gap(bore: str) -> Array:
-    """Return which share of a lobe's arc lies before its least gap.
+    """Return the share of a lobe's arc before its least gap.
 
     All if halves are offset, else half [-].
     """
@@ -180,11 +186,12 @@ def journal_film_at(
 def plain_film(film: JournalFilm) -> StaticFilm:
     """Return the film of a plain, aligned bearing that is fed along its widest gap, as that of any bore."""
     nought, matrix = np.zeros_like(film.eps), np.full((*np.shape(film.eps), 2, 2), np.nan)
+    unknown = np.full_like(nought, np.nan)
     with np.errstate(invalid="ignore"):
         couple = film.So * np.where(np.isinf(film.eps), np.nan, film.eps) * np.sin(film.attitude) / 2
     return StaticFilm(
         film.eps, film.attitude, 1 - film.eps, film.P_max, film.attitude + film.peak, film.shear, couple,
-        film.side_flow, nought, nought, np.full_like(nought, np.nan), matrix, matrix,
+        film.side_flow, nought, nought, unknown, unknown, unknown, unknown, matrix, matrix,
     )  # fmt: skip
 
 
@@ -206,7 +213,7 @@ def _solved(
         balanced = balance(Loaded(smallest, ratio, bore, tilt, feed, conserving))
     except NoBalance:
         return _unborne()
-    return _measured(balanced, bore, tilt, So / smallest if smallest > 0 else 1.0)
+    return measured(balanced, bore, tilt, So / smallest if smallest > 0 else 1.0)
 
 
 def _unborne() -> dict[str, Array | float]:
@@ -214,30 +221,34 @@ def _unborne() -> dict[str, Array | float]:
     return none | {"eps": np.inf}
 
 
-def _measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
-    """Values extrapolated by Richardson, with order 2, or 1 where they see a front or the ends' pressure.
+def measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
+    """Return the fields of `StaticFilm`, extrapolated by Richardson where the meshes are in their asymptote.
 
-    The share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
+    With order 2, or 1 where they see a front or the ends' pressure. Elsewhere those of the finest mesh. The
+    share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
     """
-    coarse, fine = balanced.coarse, balanced.fine
-    gaps = [narrowest(bore, lie)[0] for lie in (balanced.at_coarse, balanced.at_fine)]
-    lie = Lie(share * (balanced.at_fine.e + (balanced.at_fine.e - balanced.at_coarse.e) / 3), tilt)
-    if not 0.5 * gaps[1] < narrowest(bore, lie)[0] and share == 1:
-        lie = balanced.at_fine
-    couple = fine.couple + (fine.couple - coarse.couple) / 3
-    first = 1 if fine.conserving else 3
+    coarse, fine, at_fine = balanced.coarse.film, balanced.fine.film, balanced.fine.lie
+    third = 1 / 3 if balanced.is_asymptotic else 0.0
+    lie = Lie(share * (at_fine.e + third * (at_fine.e - balanced.coarse.lie.e)), tilt)
+    if not 0.5 * balanced.fine.gap < narrowest(bore, lie)[0] and share == 1:
+        lie = at_fine
+    couple = fine.couple + third * (fine.couple - coarse.couple)
+    first = third if not fine.conserving else 3 * third
     return {
         "eps": lie.eps,
         "attitude": lie.attitude,
         "least": narrowest(bore, lie)[0],
-        "P_max": share * (fine.peak[0] + (fine.peak[0] - coarse.peak[0]) / 3),
+        "P_max": share * (fine.peak[0] + third * (fine.peak[0] - coarse.peak[0])),
         "peak": fine.peak[1],
-        "shear": fine.shear + (fine.shear - coarse.shear) / first,
-        "load_couple": share * (fine.load_couple + (fine.load_couple - coarse.load_couple) / 3),
-        "side_flow": share * (2 * fine.side_flow - coarse.side_flow),
+        "shear": fine.shear + first * (fine.shear - coarse.shear),
+        "load_couple": share * (fine.load_couple + third * (fine.load_couple - coarse.load_couple)),
+        "side_flow": share * (fine.side_flow + 3 * third * (fine.side_flow - coarse.side_flow)),
         "couple_x": float(couple[0]),
         "couple_y": float(couple[1]),
-        "mesh_error": abs(gaps[1] - gaps[0]) / gaps[1],
+        "mesh_error": balanced.gap_error,
+        "place_error": balanced.place_error,
+        "pressure_error": balanced.pressure_error,
+        "flow_error": balanced.flow_error,
         "K": fine.linear[0],
         "B": fine.linear[1],
     }

@@ -48,7 +48,7 @@ class Groove:
     """(C,) how far it goes in that sense; 2 pi goes all around [rad]."""
 
     def of(self, cases: Mask) -> "Groove":
-        """Return the same of fewer cases."""
+        """Return the same object for a subset of the cases."""
         return Groove(self.share[cases], self.start[cases], self.extent[cases])
 
     def covers(self, direction: Array, half: float = SECTOR) -> Array:
@@ -77,7 +77,7 @@ class Passing:
     groove: Groove
 
     def of(self, cases: Mask) -> "Passing":
-        """Return the same of fewer cases."""
+        """Return the same object for a subset of the cases."""
         return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
     def with_distinct_rings(self) -> tuple["Passing", NDArray[np.intp]]:
@@ -103,7 +103,7 @@ class Passing:
         return ring_of(replace(self.load, S=rows), finer)
 
     def covered(self, nodes: int) -> Array:
-        """Return the share s on the ring of `periodic_orbit` that has so many nodes, (C, nodes) [-].
+        """Return the share s on the ring of `periodic_orbit` that has this number of nodes, (C, nodes) [-].
 
         Raises
         ------
@@ -152,7 +152,7 @@ class GroovedLaw:
 
 
 def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
-    """Return what a supply pressure bears at rest in a groove and over its lands, as a load number.
+    """Return the load number that a supply pressure supports at rest in a groove and over its lands.
 
     0 without one.
 

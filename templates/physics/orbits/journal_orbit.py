@@ -65,7 +65,7 @@ class CyclicLoad:
     """(C, N) mean speed of journal and sleeve relative to the frame, over Omega [-]."""
 
     def of(self, cases: Mask) -> "CyclicLoad":
-        """Return the same of fewer cases."""
+        """Return the same object for a subset of the cases."""
         return CyclicLoad(self.angle, self.period, self.S[:, cases], self.w[cases])
 
 

@@ -26,7 +26,7 @@ class Turning:
     """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
 
     def of(self, cases: Mask) -> "Turning":
-        """Return the same of fewer cases."""
+        """Return the same object for a subset of the cases."""
         return Turning(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:

@@ -77,7 +77,7 @@ class PadFilm(ABC):
 
     @property
     def friction_fixed(self) -> Array:
-        """Return the friction on the pad, likewise: less by the pressure on the incline."""
+        """Return the friction on the pad in the same way; the pressure on the incline reduces it."""
         return shear_of_wedge(self.a) - 3 * (self.a - 1) * self.load
 
     @property

@@ -99,7 +99,7 @@ def rating_life(ratio: Array, p: Array) -> Array:
 
 @units("1", "rad/s", returns="s", latex=r"\frac{{2\pi\,{0}}}{{{1}}}")
 def time_of_turns(turns: Array, omega: Array) -> Array:
-    """Return the time of so many revolutions [s]."""
+    """Return the time of a number of revolutions [s]."""
     return 2 * np.pi * turns / omega
 
 

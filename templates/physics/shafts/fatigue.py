@@ -42,7 +42,7 @@ _LONGEST = np.log(1e300)  # of a life that is reported as a number
 
 @units(None, "Pa", "Pa", "Pa", returns="1", latex=_SHARES)
 def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
-    """Return what a mean stress [Pa] takes from the amplitude that is borne [1]; 1 takes all of it.
+    """Return the share of the bearable amplitude that a mean stress [Pa] uses up [1], at most 1.
 
     Goodman: sigma_m/sigma_u. Gerber: (sigma_m/sigma_u)². Morrow: sigma_m/sigma_f'.
     """
@@ -122,6 +122,6 @@ def is_below(one: Array, other: Array) -> Any:
 
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
-    """Return whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
+    """Return in words whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
     words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
     return words if words.ndim else str(words)

@@ -147,7 +147,7 @@ def _left_vectors(matrix: Array) -> Array:
 
 
 def _finite(matrix: Array) -> NDArray[np.bool_]:
-    """Return which matrices are finite [..., 1, 1]."""
+    """Return a mask of the finite matrices [..., 1, 1]."""
     return np.asarray(np.isfinite(matrix).all(axis=(-2, -1), keepdims=True))
 
 

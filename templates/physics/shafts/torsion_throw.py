@@ -41,7 +41,7 @@ def ring(outer: Array, inner: Array) -> Array:
 
 @units("m", returns="1")
 def recommended(overlap: Array) -> Any:
-    """Return which formula suits a throw whose pin overlaps the journal by so much [m]: carter or wilson."""
+    """Return the formula for a throw with a pin overlap [m]: carter or wilson."""
     return _selected([overlap > 0, overlap <= 0], [WILSON, CARTER])
 
 

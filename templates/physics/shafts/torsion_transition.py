@@ -63,7 +63,7 @@ def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
 
 @units("1", returns="1")
 def recommended(share: Array) -> Any:
-    """Return which formula suits a throw, by the share [1] of Ker Wilson's: carter, wilson or between."""
+    """Return the formula for a throw, by the share [1] of Ker Wilson's: carter, wilson or between."""
     return _selected([share <= 0, share >= 1, share > 0], [CARTER, WILSON, BETWEEN])
 
 

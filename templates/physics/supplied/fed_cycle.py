@@ -193,7 +193,7 @@ class FedOrbit:
 
 
 def _of_points(texts: Sequence[str]) -> str:
-    """Return what holds of all points, or of which point what holds; empty where nothing does."""
+    """Return a statement for all points, or one for each point; empty if there is none."""
     if len(set(texts)) <= 1:
         return next(iter(texts), "")
     return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)
@@ -279,7 +279,7 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
 
 
 def _driven(level: str, cases: _Cases, eps: Array, weight: Array) -> Array:
-    """Return what the supply pressure drives from the groove over both lands, mean over the cycle, (C,).
+    """Return the mean flow from the groove over both lands due to supply pressure, (C,).
 
     The pressure of the film does not hinder it, as ISO 7902-1 has it for a steady load. 0 where the level
     knows no supply pressure, or counts that flow as side flow.

@@ -53,26 +53,26 @@ class Feeding:
 
     @property
     def grooved(self) -> Mask:
-        """Return where there is a groove."""
+        """Return a mask of the points with a groove."""
         return np.isfinite(self.groove_width)
 
     @property
     def sleeve_holed(self) -> Mask:
-        """Return where the sleeve has a hole."""
+        """Return a mask of the points with a hole in the sleeve."""
         return np.isfinite(self.sleeve_length)
 
     @property
     def pin_holed(self) -> Mask:
-        """Return where the pin has a hole."""
+        """Return a mask of the points with a hole in the pin."""
         return np.isfinite(self.pin_length)
 
     @property
     def count(self) -> Array:
-        """Return how many of the three exist."""
+        """Return the number of inlets among the three."""
         return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
 
     def partial(self) -> Mask:
-        """Return where the groove does not go all around."""
+        """Return a mask of the points whose groove does not go all around."""
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
@@ -97,7 +97,7 @@ class Feeding:
 
 
 def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
-    """Return what feeds each point, a `Supply`, (...).
+    """Return the `Supply` of each point, (...).
 
     None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
     """

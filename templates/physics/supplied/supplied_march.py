@@ -97,12 +97,12 @@ class Duty:
 
     @cached_property
     def mesh_turning(self) -> TurnedAngle:
-        """Of the mesh in the frame, at the mean speed of journal and sleeve."""
+        """Rotation of the mesh in the frame, at the mean speed of journal and sleeve."""
         return TurnedAngle(self.load.angle, self.load.period, self.load.w[0])
 
     @cached_property
     def journal_turning(self) -> TurnedAngle:
-        """Of the journal in the mesh; the sleeve turns back by as much."""
+        """Rotation of the journal in the mesh; the sleeve turns back by as much."""
         return TurnedAngle(self.load.angle, self.load.period, self.sliding / 2)
 
     @cached_property

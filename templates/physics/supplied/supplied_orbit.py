@@ -300,7 +300,7 @@ def _require_return(duty: Duty) -> None:
 
 
 def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
-    """Return what the last cycle was like."""
+    """Return the verdict on the last cycle."""
     change = _change(duty, runs)
     run = next((run for run in reversed(runs) if run.gaps), runs[-1])
     mesh, states = run.mesh, run.states[1:] or run.states
@@ -365,7 +365,7 @@ def _totals(duty: Duty, run: Run) -> Totals:
 
 
 def _verdict(run: Run, share: float) -> Verdict:
-    """Return how the last run ended; `share` of the cycle the pockets are under the load."""
+    """Return how the last run ended; `share` is the share of the cycle with all pockets under the load."""
     if run.ending is Ending.REPEATING:
         return Verdict.REPEATING
     if run.ending is Ending.THINNING or (run.ending is Ending.FAILED and share >= OFTEN):

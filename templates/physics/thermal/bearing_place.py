@@ -70,7 +70,7 @@ class Placing:
                 if size < _NOISE:
                     return self._film(fluidity, self.y)
                 if fresh:
-                    raise NoBalance("no position of the journal supports more of the load")
+                    raise NoBalance("no trial position of the journal supports more of the load")
                 self.slopes = None
                 continue
             y, film, after = nearer

@@ -120,7 +120,7 @@ def _inner(values: Array) -> Array:
 
 
 def _dissipation(film: Pressed, drag: Array) -> Array:
-    """By shear of drag, of the flow around and of that across; its sum is the work put in."""
+    """Dissipation by drag, by the flow around and by that across; its sum is the work put in."""
     gap, arc = film.gap, film.gap.arc
     faces, nodes, step = gap.faces, gap.nodes, np.diff(arc.phi)
     steep = (np.diff(film.P, axis=0) / step[:, None]) ** 2 @ arc.across
@@ -149,7 +149,7 @@ def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
     system = _System(flow, heating, edges)
     T = splu(system.matrix()).solve(system.right)
     if not np.isfinite(T).all():
-        raise RuntimeError("nothing removes the heat")
+        raise RuntimeError("no oil flow or surface removes the heat")
     return system.read(T)
 
 

@@ -113,7 +113,7 @@ class Pressed:
 
     @property
     def torque(self) -> float:
-        """Of shear on the journal, M psi/(B R² eta_s omega), without the groove [-]."""
+        """Torque of shear on the journal, M psi/(B R² eta_s omega), without the groove [-]."""
         gap, arc = self.gap, self.gap.arc
         drag = arc.around * self.fill * gap.nodes.shear / gap.H_nodes
         pushed = (np.diff(self.P, axis=0) * (1 - self.void[:-1])) @ arc.across

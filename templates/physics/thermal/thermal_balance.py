@@ -62,7 +62,7 @@ class Bearing:
         return Placing(self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y)
 
     def start(self) -> Array:
-        """Return where a film of the supply's viscosity, fed along its widest gap, would have the journal."""
+        """Return the journal's position in a film of the supply's viscosity, fed along its widest gap."""
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
         eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
         attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]
@@ -118,7 +118,7 @@ def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -
         slope = (found - lack) / (after - T) if after != T else -1.0
         T, lack = after, found
         after = T - float(np.clip(lack / min(slope, -0.3), -2 * step, 2 * step))
-    raise NoBalance("no temperature below 500 degC dissipates the heat")
+    raise NoBalance("no film temperature below 500 degC balances the heat")
 
 
 def _mean(film: Pressed, heating: Heating) -> float:
@@ -128,7 +128,7 @@ def _mean(film: Pressed, heating: Heating) -> float:
     air = 0.0 if np.isinf(heating.wall) else 2 * np.pi * heating.wall
     gained = heating.delta * float(flow.heat.sum()) + air * (heating.outside - heating.supply)
     if not side + air > 0:
-        raise NoBalance("nothing removes the heat")
+        raise NoBalance("no oil flow or surface removes the heat")
     return heating.supply + gained / (2 * side + air)
 
 
@@ -148,7 +148,7 @@ def warm(bearing: Bearing, placing: Placing, T: Array) -> Warm:
         try:
             found = heated(film, heating, placing.edges)
         except RuntimeError as failure:
-            raise NoBalance("nothing removes the heat") from failure
+            raise NoBalance("no oil flow or surface removes the heat") from failure
         change = found.T - T
         rise = max(float(np.abs(found.T - heating.supply).max()), 1e-3)
         if float(np.abs(change).max()) < _ACCURACY * rise:

@@ -159,7 +159,7 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
 
 
 def _tops(curve: Array, low: Array) -> Integers:
-    """Return where the peak of each curve, (R, N), is, by parabolas.
+    """Return the position of each curve's peak, (R, N), by parabolas.
 
     None is more than `low` above its sample.
     """

@@ -100,7 +100,7 @@ class TestTemplates:
         again = run(*arguments)
         assert again.exit_code == 1
         assert "oil_film_v1.json" in again.output
-        assert "make a new one" in again.output
+        assert "create a new version" in again.output
         assert file.read_bytes() == frozen
         golden = json.loads((ROOT / "tests/golden/oil_film_v1.json").read_text())
         assert json.loads(frozen)["digest"] == golden["digest"]

@@ -35,6 +35,21 @@ def test_templates_evaluate_and_solve(client):
     assert named.in_units("us").roots[0].unit == "inch"
 
 
+@pytest.mark.parametrize("target", ["40 degC", "72 degF", "40 K", "72 delta_degF"])
+def test_a_target_of_a_rise_is_a_difference(client, target):
+    inputs = {
+        "radial_load": "25 kN", "bearing_diameter": "48 mm", "bearing_width": "18 mm", "speed": "7000 rpm",
+        "supply_temperature": "80 degC",
+    }  # fmt: skip
+    between = ("0.02 mm", "0.2 mm")
+    solution = client.solve(
+        "oil_film", 2, inputs, "diametral_clearance", between, {"temperature_rise": target},
+        outputs=["temperature_rise"],
+    )  # fmt: skip
+    shown = solution.evaluation.outputs["temperature_rise"]
+    assert (shown.value, shown.unit) == (pytest.approx(40, rel=1e-6), "delta_degC")
+
+
 def test_a_quantity_of_an_answer_is_an_input(client):
     curve = client.curves("load [kN]\n25\n30\n").curves["load"]
     loads = client.evaluate("oil_film", 1, {**OIL_FILM, "radial_load": curve}, outputs=["density"])

@@ -4,7 +4,7 @@ import copy
 
 import numpy as np
 import pytest
-from row_designs import BEARING, CATALOGUES, CURVES, FILM, assert_equal_to_designs, calculated, net_of, ref
+from row_designs import BEARING, CATALOGUES, CURVES, FILM, assert_equal_to_designs, calculated, engine_of, ref
 from row_designs import spread as nearby
 
 from app.designs.document import Document
@@ -47,18 +47,18 @@ class TestConditions:
             "place": "2",
         }
         raw = bearing(parameters)
-        net = net_of(raw, "diameter", "width", "clearance")
+        engine = engine_of(raw, "diameter", "width", "clearance")
         wanted = [FILM, *map(ref, ("chosen", "steps", "largest", "picked"))]
-        rows = nearby(net, 40)
-        table = net(rows, wanted)
-        assert assert_equal_to_designs(raw, net, rows, wanted, table) == 0
+        rows = nearby(engine, 40)
+        table = engine(rows, wanted)
+        assert assert_equal_to_designs(raw, engine, rows, wanted, table) == 0
         assert len(set(np.round(table.columns[ref("chosen")] / rows[ref("width")]))) == 2
 
     def test_analytic_an_index_of_each_row_picks_from_a_list(self):
         raw = bearing({"picked": "= [width, 2 * width, 1 mm][place]", "place": "2"})
-        net = net_of(raw, "width", "place")
+        engine = engine_of(raw, "width", "place")
         rows = {ref("width"): np.array([0.018] * 4), ref("place"): np.array([1.0, 2.0, 3.0, 4.0])}
-        table = net(rows, [ref("picked")])
+        table = engine(rows, [ref("picked")])
         np.testing.assert_allclose(table.columns[ref("picked")], [0.018, 0.036, 0.001, np.nan])
         assert {row: refusal.code for row, refusal in table.refusals.items()} == {3: "not_finite"}
 
@@ -69,10 +69,10 @@ class TestConditions:
             "largest": "= max(abs(factor * loads.main_load_x)) + bore / 1 m * 1 N",
             "swing": "= sum(factor - mean(factor))",
         }
-        net = net_of(raw, "bore", "factor")
+        engine = engine_of(raw, "bore", "factor")
         wanted = [ref("mean"), ref("largest"), ref("swing")]
-        rows = nearby(net, 24)
-        assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+        rows = nearby(engine, 24)
+        assert assert_equal_to_designs(raw, engine, rows, wanted, engine(rows, wanted)) == 0
 
     def test_analytic_slopes_pass_through_the_branch_that_holds(self):
         """Width follows from the clearance in one branch: slope 400; the other is a constant."""
@@ -185,16 +185,16 @@ class TestChoices:
     def test_analytic_rows_with_choices_and_lists_equal_designs(self):
         raw = bearing({"half": f"{self.GRADE} + clearance"})
         raw["parameters"]["both"] = "= [half, width][1]"
-        net = net_of(raw, "clearance")
-        wanted, rows = [ref("half"), ref("both")], nearby(net, 5)
-        assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+        engine = engine_of(raw, "clearance")
+        wanted, rows = [ref("half"), ref("both")], nearby(engine, 5)
+        assert assert_equal_to_designs(raw, engine, rows, wanted, engine(rows, wanted)) == 0
 
     def test_analytic_relations_in_lists_test_choices(self):
         pair = ["= if film.viscosity_law is vogel then 1 mm else 2 mm", "3 mm"]
-        net = net_of(raw := bearing({"pair": pair}, {"viscosity_law": "vogel"}), "clearance")
+        engine = engine_of(raw := bearing({"pair": pair}, {"viscosity_law": "vogel"}), "clearance")
         np.testing.assert_array_equal(calculated(raw).value(ref("pair")), [0.001, 0.003])
         np.testing.assert_array_equal(
-            net(nearby(net, 2), [ref("pair")]).columns[ref("pair")][1], [0.001, 0.003]
+            engine(nearby(engine, 2), [ref("pair")]).columns[ref("pair")][1], [0.001, 0.003]
         )
 
     def test_property_a_choice_that_is_tested_is_explained(self):

@@ -8,7 +8,8 @@ from starlette.requests import cookie_parser
 
 from app.api.responses import patience
 from app.calculations.bodies import OIL_FILM, EvaluateIn
-from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
+from app.calculations.curves import read_curves
+from app.calculations.tables import _NUMBER, LONGEST_LINE
 from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
@@ -23,7 +24,7 @@ from app.reports.routes import REPORTS, _wanted
 from app.solids.routes.models import BuildIn
 from app.web.shared.forms import kept, patch_of
 from cad.lists import listed
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names
 from templates.core.language.meaning import api_name
 from templates.core.nearest import nearest

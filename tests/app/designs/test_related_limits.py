@@ -14,8 +14,8 @@ from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.shifts import Upstream
 from app.designs.engine.verdicts import _operations
 from app.reference import Reference
-from templates.core.judging.bands import Estimate
-from templates.core.judging.comparison import WORST_FIRST
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.comparison import VERDICTS
 
 RELATED = {"permissible_film": "= share * least"}
 PARAMETERS = {"least": "4 um", "share": "0.5"}
@@ -129,7 +129,7 @@ def test_rows_are_judged_as_designs_of_their_own():
     load, share = Reference("film", None, "radial_load"), Reference("share")
     rows = {load: np.array([1e3, 6e3, 25e3, 60e3]), share: np.array([0.5, 0.6, 0.8, 0.9])}
     table = DesignEngine.of(Document.model_validate(raw), CATALOGUES, rows)(rows, [], judge=True)
-    words = {name: [WORST_FIRST[code] for code in codes] for name, codes in table.verdicts.items()}
+    words = {name: [VERDICTS[code] for code in codes] for name, codes in table.verdicts.items()}
     assert set(words["film.own_film"]) == {"met", "not_met"}
     for row in range(4):
         one = merge(raw, {"parameters": {"share": repr(float(rows[share][row]))}})

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import pytest
 from row_designs import BEARING, CURVES, FILM, LOSS
-from test_net_judging import assert_judged_as_designs, chained
+from test_design_engine_verdicts import assert_judged_as_designs, chained
 
 from app.designs.engine import shifts
 from app.designs.engine.columns import RowEstimate
 from app.designs.engine.shifts import Origins, Shifts
-from templates.core.judging.bands import Estimate
+from templates.core.criteria.bands import Estimate
 
 VARIED = ("clearance", "load")
 

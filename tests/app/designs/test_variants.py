@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from row_designs import BEARING, CATALOGUES, CURVES, net_of, ref
+from row_designs import BEARING, CATALOGUES, CURVES, engine_of, ref
 
 from app.calculations.json_values import rendered
 from app.designs.document import Document, merge
@@ -257,9 +257,9 @@ class TestItems:
         assert [(fault.name, fault.code) for fault in faults] == [("load", "index")]
 
     def test_rows_of_a_net_have_their_own_items(self):
-        net = net_of(self.indexed("bearing", {}).model_dump(), "bearing")
+        engine = engine_of(self.indexed("bearing", {}).model_dump(), "bearing")
         load = ref("film.radial_load")
-        table = net({ref("bearing"): np.array([1.0, 3.0, 7.0, 5.0])}, [load])
+        table = engine({ref("bearing"): np.array([1.0, 3.0, 7.0, 5.0])}, [load])
         np.testing.assert_allclose(table.columns[load], [20e3, 24e3, np.nan, 20e3], rtol=SAME)
         assert (table.refusals[2].place, table.refusals[2].code) == ("load", "index")
         assert "from 1 to 5" in table.refusals[2].detail

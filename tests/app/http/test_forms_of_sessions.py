@@ -42,7 +42,7 @@ def browser(team):
 def test_a_form_without_the_token_of_its_session_is_refused(browser, path, body):
     answer = browser.post(filled(path), content=body, headers=URLENCODED)
     assert answer.status_code == 403, answer.text
-    assert "the form is not of this session" in answer.text
+    assert "the form belongs to another session" in answer.text
 
 
 def parts(**fields):
@@ -61,7 +61,7 @@ def parts(**fields):
 def test_a_form_with_a_file_carries_the_token_too(browser, path, fields):
     answer = browser.post(filled(path), content=parts(**fields), headers=MULTIPART)
     assert answer.status_code == 403, answer.text
-    assert "the form is not of this session" in answer.text
+    assert "the form belongs to another session" in answer.text
 
 
 def test_pages_with_files_send_the_token_and_are_taken(browser):
@@ -69,7 +69,7 @@ def test_pages_with_files_send_the_token_and_are_taken(browser):
     form = re.search(r'<form method="post" action="/worksheets/import".*?</form>', page, re.DOTALL)[0]
     token = re.search(r'name="form_token" value="([^"]+)"', form)[1]
     answer = browser.post("/worksheets/import", content=parts(form_token=token, id="a_b"), headers=MULTIPART)
-    assert "the form is not of this session" not in answer.text
+    assert "the form belongs to another session" not in answer.text
     assert answer.status_code in (303, 422), answer.text
 
 

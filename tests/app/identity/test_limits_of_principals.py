@@ -137,5 +137,5 @@ def test_whoever_has_used_all_storage_is_refused_without_a_time_to_wait(person, 
     answer = http.post(f"{API}/models/plain_bearing/versions/1/build", json=build)
     refused = problem(answer, 429, "limit-reached")
     assert "retry-after" not in answer.headers
-    assert "neither waiting nor deletion restores" in refused["detail"]
+    assert "neither waiting nor deleting files frees it" in refused["detail"]
     assert "an administrator may raise the limit" in refused["detail"]

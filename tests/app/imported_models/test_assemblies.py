@@ -269,7 +269,7 @@ def test_an_assembly_does_not_hold_itself(http, bolt, assembly, design):
     part = {"name": "self", "design": design["id"]}
     problem = refusal(http, manifest(part, base=None), id="bolted_bearing")
     assert problem["status"] == 422
-    assert "is made of bolted_bearing itself" in problem["detail"]
+    assert "contains bolted_bearing itself" in problem["detail"]
 
 
 def test_a_place_out_of_range_is_refused_by_name(http, assembly):

@@ -185,6 +185,9 @@ def test_the_search_ends_at_the_limit_that_it_holds(http, held):
     assert (result["settled"], result["global"]) == (True, "not proven")
     assert best["at"]["length"]["value"] == pytest.approx(2.5, rel=1e-6)
     assert best["verdicts"] == {"long_enough": "met"}
+    assert (best["error_unknown"], best["confirmed"]) == (["long_enough"], False)  # nobody measured `double`
+    assert "error of the confirming levels is unknown" in result["notes"][0]
+    assert result["notes"][1:] == ["the optimum sits on the limit of long_enough"]
     assert result["trade"][0]["confirmed"][OUT]["value"] == pytest.approx(5, rel=1e-6)
     row = rows(http, study, sort=OUT, where="met", limit=1)["items"][0]
     assert row["values"][OUT] == pytest.approx(best["outputs"][OUT]["value"])
@@ -303,7 +306,8 @@ def test_files_hold_the_rows(http, sampled):
     items = rows(http, sampled)["items"]
     expected = [row["values"][LOSS] for row in items]
     table = list(csv.reader(io.StringIO(content(http, sampled, "csv").decode())))
-    assert table[0] == ["row", "clearance", THICKNESS, LOSS, "thick_enough", "verdict", "level", "reason"]
+    of_verdicts = ["thick_enough", "verdict", "error unknown"]
+    assert table[0] == ["row", "clearance", THICKNESS, LOSS, *of_verdicts, "level", "reason"]
     assert table[1][:4] == ["", "mm", "um", "W"]
     assert [float(line[3]) for line in table[2:]] == expected
     sheet = load_workbook(io.BytesIO(content(http, sampled, "xlsx"))).active

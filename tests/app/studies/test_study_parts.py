@@ -17,8 +17,8 @@ from app.studies.front import front, ranked
 from app.studies.uploads import read_rows
 from app.workers.inline import Inline
 from app.workers.pieces import Pieces
+from templates.core.criteria.comparison import MET, NOT_MET, UNDECIDED
 from templates.core.errors import InvalidInputs
-from templates.core.judging.comparison import MET, NOT_MET, UNDECIDED
 
 
 def test_equal_arrays_are_equal_bytes_whatever_their_order():

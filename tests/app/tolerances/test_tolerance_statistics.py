@@ -11,7 +11,7 @@ from app.tolerances.factors import Factor, inverse, lattice, placed, scattered, 
 from app.tolerances.scatter import SCRAMBLINGS, Rows, scatter
 from app.tolerances.shares import shares
 from app.tolerances.worst import worst
-from templates.core.judging.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED
+from templates.core.criteria.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED
 
 A = Factor("a", 1.0, 0.9, 1.1, "normal")
 B = Factor("b", 2.0, 1.8, 2.2, "uniform")

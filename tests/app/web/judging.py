@@ -9,7 +9,7 @@ WORST = {
     "limit": {"value": 2.0, "unit": "um"},
     "band": {"value": [1.48, 1.58], "unit": "um"},
     "relative_error": 0.033,
-    "error_stated": True,
+    "error_known": True,
     "utilisation": 1.307,
     "margin": {"value": -0.47, "unit": "um"},
     "source": "DIN 31652-3",
@@ -23,7 +23,7 @@ UNDECIDED = {
     "limit": {"value": 1.5, "unit": "um"},
     "band": {"value": [1.48, 1.58], "unit": "um"},
     "relative_error": 0.033,
-    "error_stated": True,
+    "error_known": True,
     "utilisation": 0.98,
     "margin": {"value": 0.03, "unit": "um"},
     "needs": 0.019,
@@ -34,7 +34,7 @@ UNCHECKED = {
     "require": "maximum_pressure <= permissible_pressure",
     "verdict": "not_checked",
     "value": {"value": 61.0, "unit": "MPa"},
-    "error_stated": False,
+    "error_known": False,
     "give": ["film.permissible_pressure"],
 }
 MET = {
@@ -44,7 +44,7 @@ MET = {
     "verdict": "met",
     "value": {"value": 84.0, "unit": "degC"},
     "limit": {"value": 110.0, "unit": "degC"},
-    "error_stated": False,
+    "error_known": False,
     "unverified": "no public copy of the standard was at hand",
     "waived": "accepted in test 12",
 }
@@ -58,7 +58,7 @@ def verdict(*criteria):
     order = ("met", "not_met", "undecided", "not_checked")
     worst = next((word for word in words if counts[word]), "met")
     governing = next((one["name"] for one in criteria if one["verdict"] != "not_checked"), None)
-    stated = all(one["error_stated"] and not one.get("unverified") for one in criteria)
+    stated = all(one["error_known"] and not one.get("unverified") for one in criteria)
     summary = {
         "verdict": worst,
         "counts": counts,

@@ -31,7 +31,7 @@ def test_a_task_has_time_to_come_to_the_scheduler():
     strays.note({"task": None}, TIME + 119)
     strays.check("task")
     strays.note({"task": None}, TIME + 121)
-    with pytest.raises(WorkerLost, match="the scheduler does not have it"):
+    with pytest.raises(WorkerLost, match="the scheduler does not know the task"):
         strays.check("task")
 
 

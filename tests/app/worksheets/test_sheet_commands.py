@@ -93,7 +93,7 @@ def test_commands_take_a_file_to_its_release(run, folder, http):
     assert f"{id} version 1: draft" in run("import-text", file, "--author", "A. Weber")
     assert f"digest {digest}" in run("test", id)
     assert "is the author" in run("review", id, "--reviewer", "A. Weber", "--digest", digest[:12], code=1)
-    assert "read its text again" in run("review", id, "--reviewer", "B", "--digest", "0" * 12, code=1)
+    assert "read its current text first" in run("review", id, "--reviewer", "B", "--digest", "0" * 12, code=1)
     assert "review not verified" in run("review", id, "--reviewer", "B. Klein", "--digest", digest[:12])
     assert "released" in run("release", id)
     listed = next(line for line in run("list").splitlines() if line.startswith(f"{id} "))

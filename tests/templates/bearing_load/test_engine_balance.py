@@ -67,6 +67,16 @@ class TestLiteratureBalance:
         )
 
     @every_layout
+    def test_literature_by_pins_alone_without_gas(self, row):
+        """Balance follows from the pins: a firing order is not needed, and none is stated."""
+        raw = {**sizes(row), "pin_angles": degrees(numbers(row["pin_angles"])), "gas_cycle": "none"}
+        out = values(raw, UNBALANCE)
+        assert_facts(row, out)
+        if raw["strokes"] == 4:
+            assert out["ignition_angles"] is None or np.isnan(out["ignition_angles"]).all()
+            assert out["layout"].endswith("no firing order")
+
+    @every_layout
     def test_literature_by_firing_angles_alone(self, row):
         """The pins follow, up to a common turn of the reference line."""
         out = values({**sizes(row), "firing_angles": degrees(numbers(row["firing_angles"]))}, UNBALANCE)

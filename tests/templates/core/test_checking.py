@@ -11,8 +11,8 @@ from app.catalogue.check import check_content
 from cad.catalogue import models
 from templates.core.catalogue import golden
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import declared_in_file, find
-from templates.core.checking.check import faults_of
+from templates.core.catalogue.discovery import declared_in_file, find
+from templates.core.checks.check import faults_of
 from templates.core.language.template import Template
 from templates.door import built_in
 

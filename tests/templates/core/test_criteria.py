@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from templates.core.criteria import limits as limits_of
+from templates.core.criteria.limits import Library, RowValue
 from templates.core.errors import InvalidInputs
-from templates.core.judging import limits as limits_of
-from templates.core.judging.limits import Library, RowValue
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template, choice, curve, formula, given, profile, text
@@ -110,9 +110,9 @@ def test_analytic_criteria_of_an_evaluation():
     stress, sag, slender = (by_name(result)[name] for name in ("stress", "sag", "slender"))
     assert (stress.verdict, stress.value, stress.limit) == ("not_met", pytest.approx(300), pytest.approx(200))
     assert (stress.utilisation, stress.margin) == (pytest.approx(1.5), pytest.approx(-100))
-    assert not stress.is_stated  # nobody measured the error of the beam
+    assert not stress.error_known  # nobody measured the error of the beam
     assert (sag.verdict, sag.give) == ("not_checked", ("stiffness", "largest_sag"))
-    assert (slender.verdict, slender.is_stated, slender.is_certain) == ("met", True, False)  # inputs alone
+    assert (slender.verdict, slender.error_known, slender.is_certain) == ("met", True, False)  # inputs alone
     assert slender.margin == pytest.approx(20)
     assert [judgement.name for judgement in result.criteria] == ["stress", "sag", "slender"]
 
@@ -121,7 +121,7 @@ def test_a_criterion_that_is_not_met_warns_with_its_code():
     result = evaluate(Beam, {"force": "30 kN"}, limits={"permissible_stress": "200 MPa"})
     (warning,) = [w for w in result.warnings if w.code == "overloaded"]
     assert warning.name == "stress"
-    assert warning.detail == "stress 300 MPa > permissible_stress 200 MPa (150 %): not met"
+    assert warning.detail == "stress 300 MPa is above permissible stress 200 MPa: not met; error unknown"
     assert not evaluate(Beam, {"force": "1 kN"}, limits={"permissible_stress": "200 MPa"}).warnings
 
 
@@ -206,13 +206,13 @@ def test_curves_are_judged_with_the_error_of_their_level(wave):
     assert (height.verdict, height.where[0].value, height.limit) == ("undecided", pytest.approx(180), 1)
 
 
-def test_an_error_that_was_not_measured_leaves_it_undecided(wave):
+def test_an_error_that_was_not_measured_is_not_known(wave):
     raw = {"angle": ANGLES, "size": "1 mm"}
     height = by_name(evaluate(wave, raw, level="fine", limits={"least_height": "0.1 mm"}))["height"]
-    assert (height.verdict, height.is_stated, height.band) == ("undecided", False, None)
-    assert height.reason == "the error of height is not known here"
+    assert (height.verdict, height.error_known, height.band) == ("met", False, None)
+    assert height.reason == "error of height unknown"
     outside = by_name(evaluate(wave, {**raw, "size": "2 m"}))["top"]  # beyond the table
-    assert (outside.verdict, outside.is_stated) == ("undecided", False)
+    assert (outside.verdict, outside.error_known) == ("not_met", False)
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ def test_an_error_is_relative_to_what_its_table_says(wave, others, half):
     levels._cache[Wave].content["relative_to"] = {"top": others}
     top = by_name(evaluate(wave, {"angle": ANGLES, "size": "10 mm"}, outputs=["top"]))["top"]
     if half is None:  # a size that is not an output
-        assert (top.verdict, top.band, top.is_stated) == ("undecided", None, False)
+        assert (top.verdict, top.band, top.error_known) == ("met", None, False)
     else:
         assert top.band == pytest.approx((11 - half, 11 + half))
         assert top.verdict == ("undecided" if 11 + half > 12 else "met")
@@ -259,7 +259,7 @@ def test_a_bad_criterion_is_refused_with_its_class(bad):
 
 
 def test_criteria_are_a_dict():
-    with pytest.raises(TypeError, match="Worse: criteria is a dict"):
+    with pytest.raises(TypeError, match="Worse: criteria must be a dict"):
         type("Worse", (Beam,), {"criteria": ["stress <= 3 MPa"], "__doc__": "Worse."})
 
 

@@ -16,7 +16,7 @@ from templates.core.catalogue.digests import (
     digest_of,
     release_file,
 )
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.catalogue.golden import mark_released
 from templates.core.language.template import Template
 

@@ -23,9 +23,9 @@ from templates.core.paper.schema import describe, inputs_schema
 class TestLanguage:
     def test_property_a_template_is_a_record(self):
         template = Shaft.from_quantities(Shaft.example)
-        with pytest.raises(AttributeError, match="make a new one"):
+        with pytest.raises(AttributeError, match="create a new one"):
             template.d = 1.0
-        with pytest.raises(AttributeError, match="make a new one"):
+        with pytest.raises(AttributeError, match="create a new one"):
             del template.d
         assert template.t is template.t
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from templates.core.catalogue.golden import _as_text, record
-from templates.core.checking.golden import _equal, differences
+from templates.core.checks.golden import _equal, differences
 from templates.core.language.template import Template, formula, given
 
 PRECISION = 1e-9

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from templates.core.criteria.criterion import read_comparison
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import read_comparison
 from templates.core.units.items import item_of
 from templates.core.units.relation import Kind, parse
 from templates.core.units.units import unit

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import MOST_LISTED, FaultyText, UnusableFile, listed, unknown_names
 from templates.core.language.evaluate import evaluate
 from templates.core.language.solve import solve

@@ -8,7 +8,7 @@ import pytest
 
 import templates
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.catalogue.golden import freeze, golden_file, record
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, Unreachable, UnusableFile
 from templates.core.language.evaluate import evaluate

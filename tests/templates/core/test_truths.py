@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from templates.core.language import levels
-from templates.core.language.climbing import reachable
 from templates.core.language.evaluate import evaluate
+from templates.core.language.level_choice import reachable
 from templates.core.language.levels import Accuracy, absolute_error, accuracy, next_levels, truth_of
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared

@@ -2,9 +2,9 @@
 
 import pytest
 
+from templates.core.criteria.criterion import read_criterion
+from templates.core.criteria.limits import read_limits
 from templates.core.errors import InvalidInputs
-from templates.core.judging.criterion import read_criterion
-from templates.core.judging.limits import read_limits
 from templates.core.units.units import require_same_kind, unit
 from templates.door import built_in
 from templates.library.choices import CHOICES

@@ -59,7 +59,7 @@ def test_oil_that_burns_in_a_thrust_bearing_warns():
 def test_a_thrust_bearing_that_barely_turns_is_refused_by_name():
     with pytest.raises(InvalidInputs, match="no film ratio"):
         answer("thrust_bearing", speed="1 rpm")
-    with pytest.raises(InvalidInputs, match="sector"):
+    with pytest.raises(InvalidInputs, match="level"):
         answer("thrust_bearing", level="mean_rectangle")
 
 

@@ -1,4 +1,4 @@
-"""The schema of the first release: all tables, the counters, what the database refuses and sums."""
+"""The schema of the first release: all tables, counters, constraints and triggers."""
 
 import sqlalchemy as sa
 from alembic import op

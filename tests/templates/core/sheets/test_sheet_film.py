@@ -12,7 +12,7 @@ import benchmarks
 from app.pool.sources import SheetSource, loaded, source_of
 from templates.core.catalogue import golden
 from templates.core.catalogue.digests import digest, release_file
-from templates.core.checking.check import faults_of
+from templates.core.checks.check import faults_of
 from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
 from templates.core.language.evaluate import evaluate

@@ -241,6 +241,32 @@ class TestHertz:
             assert remedy in fault.remedy
             sheet(formula("1", f"if N {sign} {remedy} then 1 else 2"))
 
+    @pytest.mark.parametrize(
+        ("unit", "text", "remedy", "value"),
+        [
+            ("rpm", "60*v/(pi*r)", "(v/(pi*r)) * 1 turn", 600 / (2 * math.pi)),
+            ("rpm", "v/(pi*r) * 60", "(v/(pi*r)) * 1 turn", 600 / (2 * math.pi)),
+            ("rpm", "60*f", "2*pi*f", 3000),
+            ("Hz", "N/60", "N/(2*pi)", 83.33333),
+        ],
+    )
+    def test_a_factor_of_minutes_is_left_out(self, unit, text, remedy, value):
+        """Textbooks write n = 60 v/(π D) for numbers; units hold the minute already."""
+        fault = refused(formula(unit, text))
+        assert "leave out 60" in fault.remedy
+        assert remedy in fault.remedy
+        assert result(formula(unit, remedy)) == (pytest.approx(value, rel=1e-5), [])
+
+    @pytest.mark.parametrize(
+        ("unit", "text", "remedy", "value"),
+        [("m/s", "pi*D*N/60", "D*N/2", 12.56637), ("W", "2*pi*T*N/60", "T*N", 1000)],
+    )
+    def test_a_report_leaves_out_minutes_too(self, unit, text, remedy, value):
+        _, (report,) = result(formula(unit, text))
+        assert "leave out 60" in report
+        assert f"which is {remedy}" in report
+        assert result(formula(unit, remedy))[0] == pytest.approx(value, rel=1e-6)
+
     def test_a_sum_of_turns_and_of_1_per_s_is_refused(self):
         assert "1 turn" in refused(formula("rpm", "N + 1/t")).remedy
         assert result(formula("rpm", "N + 1 turn / t"))[0] == pytest.approx(5600)
@@ -296,3 +322,42 @@ class TestSpelling:
         raw = {**cls.example, "speed": f"{speed!r} rad/s"}
         answer = evaluate(cls, raw, units={"x": shown}).outputs["x"]
         assert np.asarray(answer.value) * SPELLED[shown] == pytest.approx(speed, rel=1e-12)
+
+
+UNITS = [
+    "rpm",
+    "rps",
+    "rad/s",
+    "deg/s",
+    "Hz",
+    "1/s",
+    "1/min",
+    "rad",
+    "turn",
+    "1",
+    "K",
+    "degC",
+    "delta_degC",
+    "degF",
+]
+
+
+class TestEveryPair:
+    @pytest.mark.parametrize("declared", UNITS)
+    @pytest.mark.parametrize("typed", UNITS)
+    def test_property_a_default_is_taken_or_refused_as_a_typed_value_is(self, declared, typed):
+        """What the language accepts as a default, the service accepts as an input; nothing else happens."""
+        line = f'given z [{declared}] = 2 {typed} "z"\ny [{declared}] = z "y"'.replace("2 1 ", "2 ")
+        try:
+            cls = sheet(line)
+        except SheetRefused as refusal:
+            faults = refusal.faults
+        else:
+            faults = ()
+        if faults:
+            assert all(fault.code == "unit_mismatch" and fault.remedy for fault in faults)
+            return
+        plain = evaluate(cls, cls.example).outputs["y"].value
+        own = declared if typed == "1" else typed
+        again = evaluate(cls, {**cls.example, "z": "2" if own == "1" else f"2 {own}"})
+        assert again.outputs["y"].value == pytest.approx(plain, rel=1e-12)

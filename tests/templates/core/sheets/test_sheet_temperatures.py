@@ -182,6 +182,33 @@ class TestDeclarations:
     def test_what_is_accepted_is_right(self, line, value):
         assert outputs(line)["y"] == (pytest.approx(value[0], rel=1e-9), value[1])
 
+    @pytest.mark.parametrize(
+        ("declared", "limit", "accepted", "refused_"),
+        [
+            ("y [K] = T2 - T1", "60 degC", 59, 61),
+            ("y [K] = T2 - T1", "108 degF", 59, 61),
+            ("given y [delta_degC] = 5 K", "60 degC", 59, 61),
+            ("y [K] = (T1 + T2)/2", "330 K", 329, 331),
+            ("y [K] = (T1 + T2)/2", "56.85 degC", 329, 331),
+            ("y [degC] = (T1 + T2)/2", "330 K", 329, 331),
+        ],
+    )
+    def test_a_bound_takes_the_kind_of_what_it_bounds(self, declared, limit, accepted, refused_):
+        meaning = sheet(f'{declared} "y" (<= {limit})').declarations["y"].meaning
+        assert meaning.admits(float(accepted))
+        assert not meaning.admits(float(refused_))
+
+    @pytest.mark.parametrize("within", ["1 degC", "1.8 degF"])
+    def test_the_tolerance_of_a_test_is_a_difference(self, within):
+        line = 'y [degC] = (T1 + T2)/2 "y"\ntest "by hand" with T1 = 40 degC gives y = 65 degC within {}'
+        said = refused(line.format(within))
+        remedy = said.rpartition("write ")[2]
+        assert remedy in ("1 delta_degC", "1.8 delta_degF")
+        (outcome,) = run_tests(sheet(line.format(remedy)))
+        assert outcome.passed
+        (outcome,) = run_tests(sheet(line.replace("65", "67").format(remedy)))
+        assert not outcome.passed
+
     def test_a_test_of_a_difference_expects_one(self):
         line = 'y [K] = T2 - T1 "y"\ntest "by hand" with T1 = 40 degC gives y = {} within {}'
         for expected, within in (

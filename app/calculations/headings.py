@@ -1,0 +1,113 @@
+"""Headings of measured tables: a name with its unit, as measuring programs write it.
+
+`pressure [bar]`, `Druck (bar(g))`, `p / bar`. Crank angles are written `°CA`, `degCA` or `°KW`, and pressures
+`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. What such a unit means beside
+its size is stated.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from templates.core.errors import FaultyText
+from templates.core.units.units import Unit, unit
+
+_CRANK = re.compile(
+    r"(?:(?:°|º|deg(?:ree)?s?|grad)[ ._]?(?:c\.?a\.?|kw|ckw|cra|crank(?:[ ._]?angle)?)"
+    r"|(?:ca|kw)[ ._]?(?:°|º|deg)|cad)",
+    re.IGNORECASE,
+)
+_PRESSURE = re.compile(
+    r"(?P<unit>mbar|bar|mmHg|inHg|hPa|kPa|MPa|Pa|psi)[ ._]?"
+    r"(?P<open>\()?(?:(?P<absolute>absolute?|abs\.?|a)|(?P<gauge>gauge|ga|g|relativ|rel\.?|ü|ue))(?(open)\))",
+    re.IGNORECASE,
+)
+_USUAL = {name.lower(): name for name in "mbar bar mmHg inHg hPa kPa psi V mV N kN s ms".split()}
+_CALIBRATED = re.compile(
+    r"(?:V[ ,;@x*·=]*)?(?P<size>[0-9]{1,6}(?:[.,][0-9]{1,6})?) ?(?P<unit>[A-Za-z]{1,6})/V"
+)
+LONGEST_UNIT = 60
+
+
+@dataclass(frozen=True)
+class HeadingUnit:
+    """A unit of a heading: its text here, what values are multiplied by, and what it says beside its size.
+
+    `is_crank` says that it is one of crank angles by name.
+    """
+
+    text: str
+    factor: float = 1.0
+    assumed: str = ""
+    is_crank: bool = False
+
+    @property
+    def scale(self) -> Unit:
+        """Return the unit."""
+        return unit(self.text)
+
+
+def heading_unit(text: str) -> HeadingUnit:
+    """Read the unit of a heading; `-` is that of a pure number.
+
+    Raises
+    ------
+    FaultyText
+        If it is none.
+    """
+    plain = text.strip()
+    if plain == "-":
+        return HeadingUnit("1")
+    if len(plain) > LONGEST_UNIT:
+        return HeadingUnit(unit(plain).text)
+    if _CRANK.fullmatch(plain):
+        return HeadingUnit("deg", assumed=plain, is_crank=True)
+    if match := _PRESSURE.fullmatch(plain):
+        kind = "absolute" if match["absolute"] else "gauge"
+        name = _USUAL.get(match["unit"].lower(), match["unit"])
+        return HeadingUnit(unit(name).text, assumed=f"{plain}: {kind} pressure, as it stands in the file")
+    if match := _CALIBRATED.fullmatch(plain):
+        size = float(match["size"].replace(",", "."))
+        name = _USUAL.get(match["unit"].lower(), match["unit"])
+        said = f"volts times {match['size']} {name}/V, the zero of the sensor as in the file"
+        return HeadingUnit(unit(name).text, size, said)
+    try:
+        return HeadingUnit(unit(plain).text)
+    except FaultyText:
+        if plain.lower() in _USUAL and plain.lower() in ("bar", "mbar", "psi"):
+            return HeadingUnit(_USUAL[plain.lower()])
+        raise
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit of a heading."""
+    try:
+        heading_unit(text)
+    except FaultyText:
+        return False
+    return True
+
+
+def parted(cell: str) -> tuple[str, str]:
+    """Return name and unit of a heading such as `load_x [kN]`, `p / bar` or `load_x`, which has no unit."""
+    for opening, closing in ("[]", "()"):
+        start = _opening(cell, opening, closing)
+        if start >= 0:
+            return cell[:start].strip(), cell[start + 1 : -1].strip()
+    name, slash, last = cell.rpartition(" / ")
+    if slash and name.strip() and last.strip() and is_unit(last):
+        return name.strip(), last.strip()
+    return cell.strip(), ""
+
+
+def _opening(cell: str, opening: str, closing: str) -> int:
+    """Return where the bracket opens that closes at the end of a text; -1 if none does."""
+    if not cell.endswith(closing):
+        return -1
+    depth = 0
+    for place in range(len(cell) - 1, -1, -1):
+        depth += (cell[place] == closing) - (cell[place] == opening)
+        if not depth:
+            return place
+    return -1

@@ -1,0 +1,110 @@
+"""The text of a file that holds a table: CSV in the letters of any usual program, or a sheet of XLSX.
+
+What is assumed of a file is stated beside its text. XLSX is a zip archive of XML that a stranger made: the
+sizes of its parts are bounded before any is read.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from templates.core.errors import Fault, InvalidInputs
+
+ZIP, OLD_EXCEL = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+MOST_PARTS, MOST_COLUMNS = 500, 40
+DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or send CSV"
+_SAMPLE = 4096
+"""Bytes by which UTF-16 without a mark is recognised."""
+
+
+@dataclass(frozen=True)
+class FileText:
+    """The text of a table, and what was assumed of its letters; `is_sheet` says that XLSX had its numbers."""
+
+    text: str
+    assumed: tuple[str, ...] = ()
+    is_sheet: bool = False
+
+
+def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: int) -> FileText:
+    """Return the text of a CSV file, or of the first visible sheet of an XLSX file.
+
+    Raises
+    ------
+    InvalidInputs
+        If it is too large, damaged, or of another kind.
+    """
+    if len(content) > most_bytes:
+        raise _wrong("too_long", f"a table has at most {most_bytes / 1e6:g} MB; take fewer rows")
+    if content.startswith(ZIP):
+        return FileText(sheet_text(content, most_unpacked, most_rows), is_sheet=True)
+    if content.startswith(OLD_EXCEL):
+        raise _wrong("old_excel", "this is a file of an old spreadsheet (.xls); save it as .xlsx or as CSV")
+    return _decoded(content)
+
+
+def _decoded(content: bytes) -> FileText:
+    """Return the text in UTF-8, in UTF-16, or else in the Western letters of Windows."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return FileText(content.decode("utf-16", errors="replace"), ("UTF-16",))
+    sample = content[:_SAMPLE]
+    for encoding, zeros in (("utf-16-le", sample[1::2]), ("utf-16-be", sample[::2])):
+        if len(sample) > 3 and zeros.count(0) > 0.7 * len(zeros):
+            return FileText(content.decode(encoding, errors="replace"), ("UTF-16",))
+    try:
+        return FileText(content.decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        pass
+    try:
+        return FileText(content.decode("cp1252"), ("Latin-1",))
+    except UnicodeDecodeError:
+        return FileText(content.decode("latin-1"), ("Latin-1",))
+
+
+def sheet_text(content: bytes, most_unpacked: int, most_rows: int) -> str:
+    """Return the first visible sheet of an XLSX file, a row a line, its cells separated by tabs.
+
+    Raises
+    ------
+    InvalidInputs
+        If it is too large or damaged, or has no visible sheet.
+    """
+    from openpyxl import load_workbook  # type: ignore[import-untyped]
+
+    _check_size(content, most_unpacked)
+    try:
+        book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)
+        sheet = next((s for s in book.worksheets if s.sheet_state == "visible"), None)
+        if sheet is None:
+            raise _wrong("no_sheet", "the file has no visible sheet")
+        sheet.reset_dimensions()  # what the file says of its own size may be wrong
+        rows = sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS)
+        return "\n".join(_lines(islice(rows, most_rows + 4)))
+    except InvalidInputs:
+        raise
+    except Exception:  # openpyxl raises whatever a damaged file makes of it
+        raise _wrong("damaged", DAMAGED) from None
+
+
+def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
+    for row in rows:
+        yield "\t".join("" if value is None else " ".join(str(value).split()) for value in row)
+
+
+def _check_size(content: bytes, most_unpacked: int) -> None:
+    """Refuse what would unpack to more than any table; `zipfile` unpacks no more than the archive says."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = archive.infolist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError):
+        raise _wrong("damaged", DAMAGED) from None
+    if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > most_unpacked:
+        raise _wrong("too_large", "the unpacked file is too large; keep only the sheet with the rows")
+
+
+def _wrong(code: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault("file", code, detail)])

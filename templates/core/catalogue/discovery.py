@@ -1,0 +1,184 @@
+"""Find every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import Generic, TypeVar
+
+from templates.core.catalogue.modules import failing_line, load
+from templates.core.errors import (
+    QuarantinedTemplate,
+    UnknownTemplate,
+    UnreleasedTemplate,
+    UnusableFile,
+    plain,
+)
+from templates.core.language.template import VERSIONED, Template
+
+T = TypeVar("T", bound=Template)
+
+
+@dataclass(frozen=True)
+class Catalogue(Generic[T]):
+    """All versions of all templates (or models) in the folders; `kind` names them in messages.
+
+    `quarantined` says why a version cannot be used whose file has faults, `unreleased` why one cannot that is
+    the draft of a worksheet.
+    """
+
+    versions: dict[tuple[str, int], type[T]]
+    kind: str = "template"
+    quarantined: Mapping[tuple[str, int], str] = field(default_factory=dict)
+    unreleased: Mapping[tuple[str, int], str] = field(default_factory=dict)
+
+    @cached_property
+    def ids(self) -> tuple[str, ...]:
+        """Return every id, sorted."""
+        return tuple(sorted({id for id, _ in self.versions}))
+
+    def of(self, id: str) -> dict[int, type[T]]:
+        """Return the versions of one id, ascending.
+
+        Raises
+        ------
+        UnknownTemplate
+            If there is none.
+        """
+        classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
+        if not classes:
+            refused = (*self.quarantined, *self.unreleased)
+            self._refuse_unusable(id, max((n for name, n in refused if name == id), default=0))
+            raise UnknownTemplate(
+                id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
+            )
+        return classes
+
+    def get(self, id: str, version: int) -> type[T]:
+        """Return one version of one id.
+
+        Raises
+        ------
+        UnknownTemplate
+            If there is none.
+        """
+        if (version_class := self.versions.get((id, version))) is None:
+            self._refuse_unusable(id, version)
+            listing = ", ".join(map(str, self.of(id)))
+            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
+        return version_class
+
+    def _refuse_unusable(self, id: str, version: int) -> None:
+        """Say why a version cannot be used that is there, if it is.
+
+        Raises
+        ------
+        QuarantinedTemplate
+            If its file has faults.
+        UnreleasedTemplate
+            If it is the draft of a worksheet.
+        """
+        if reason := self.unreleased.get((id, version)):
+            raise UnreleasedTemplate(id, f"{self.kind} {id} version {version} is not a release: {reason}")
+        if reason := self.quarantined.get((id, version)):
+            raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
+
+    def latest(self, id: str) -> type[T]:
+        """Return the newest version that is not withdrawn, else the newest."""
+        versions = list(self.of(id).values())
+        return next((cls for cls in reversed(versions) if not cls.withdrawn), versions[-1])
+
+    def __iter__(self) -> Iterator[type[T]]:
+        return iter(self.versions.values())
+
+
+def find(
+    folders: Iterable[Path],
+    base: type[T],
+    kind: str = "template",
+    *,
+    id: str | None = None,
+    version: int | None = None,
+) -> Catalogue[T]:
+    """Import every versioned file below the folders and collect what it declares, if that is a `base`.
+
+    With an `id` or a `version` it imports only files that have them in their names.
+
+    Raises
+    ------
+    UnusableFile
+        If a file cannot be imported, declares none or several, or claims another file's version.
+    """
+    versions: dict[tuple[str, int], type[T]] = {}
+    for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
+        match = VERSIONED.match(path.stem)
+        if not match or id not in (None, match[1]) or version not in (None, int(match[2])):
+            continue
+        cls = declared_in(_usable(path), path)
+        if not issubclass(cls, base):
+            continue  # a calculation beside models
+        if (cls.id, cls.version) in versions:
+            raise UnusableFile(
+                str(path), f"{cls.id} version {cls.version} is already declared in another file"
+            )
+        versions[cls.id, cls.version] = cls
+    return Catalogue(dict(sorted(versions.items())), kind)
+
+
+def declared_in_file(path: Path) -> type[Template]:
+    """Return the template, or model, that one versioned file declares.
+
+    Raises
+    ------
+    UnusableFile
+        If it cannot be imported, or declares none or several.
+    """
+    return declared_in(_usable(path), path)
+
+
+def _imported(path: Path) -> ModuleType:
+    """Return the module of a file: by its package's name where it has one, else from its content."""
+    if package := package_of(path.parent):
+        return importlib.import_module(f"{package}.{path.stem}")
+    return load(path, path.read_bytes())
+
+
+def package_of(folder: Path) -> str:
+    """Return the name of the package that a folder is; empty if it is none."""
+    if not (folder / "__init__.py").exists():
+        return ""
+    parent = package_of(folder.parent)
+    return f"{parent}.{folder.name}" if parent else folder.name
+
+
+def _usable(path: Path) -> ModuleType:
+    """Return the module of a file, or the line of it that fails."""
+    try:
+        return _imported(path)
+    except Exception as error:
+        line = failing_line(error, path)
+        where = f"line {line}: " if line else ""
+        text = error.msg if isinstance(error, SyntaxError) else str(error)
+        raise UnusableFile(str(path), f"{where}{type(error).__name__}: {text}") from error
+
+
+def declared_in(module: ModuleType, path: Path) -> type[Template]:
+    """Return the template, or model, that the module of a versioned file declares.
+
+    Raises
+    ------
+    UnusableFile
+        If it declares none or several.
+    """
+    classes = [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
+    ]
+    if len(classes) != 1:
+        raise UnusableFile(str(path), f"it declares {len(classes)} templates; it must declare one")
+    return classes[0]

@@ -1,1 +1,0 @@
-"""Checks of a template that somebody wrote: what is wrong with it, where, and what would be right."""

@@ -1,0 +1,145 @@
+"""Compare one side with the other, each in its band: a verdict for every point and place of a curve.
+
+The verdict follows from the values themselves, unless a band, as far as it is known, holds the limit. Whether
+every error behind it is known stands beside it: `met` with an error that is not known confirms nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Mask, Truth
+from templates.core.criteria.bands import Bounds, Estimate, Shift, aligned, spread, value_and_bounds
+from templates.core.criteria.criterion import Criterion, Sign
+from templates.core.errors import FaultyText
+from templates.core.units.relation import Relation
+from templates.core.units.units import Value
+
+Verdict = Literal["not_met", "undecided", "not_checked", "met"]
+
+WORST_FIRST: tuple[Verdict, ...] = ("not_met", "undecided", "not_checked", "met")
+NOT_MET, UNDECIDED, NOT_CHECKED, MET_ERROR_UNKNOWN, MET = range(5)
+VERDICTS: tuple[Verdict, ...] = (*WORST_FIRST, "met")
+"""The verdict of each code."""
+Codes = int | NDArray[np.int8]
+"""Verdicts as places in `VERDICTS`: the least is the worst. Met counts apart where an error is not known."""
+
+
+def is_met(codes: NDArray[Any]) -> Mask:
+    """Return which verdicts are met, whether or not every error behind them is known."""
+    mask: Mask = np.isin(codes, (MET_ERROR_UNKNOWN, MET))
+    return mask
+
+
+@dataclass(slots=True)  # frozen, each would cost four times as much
+class Comparison:
+    """Both sides of a criterion [SI] with their bands, and the verdict at every point and place.
+
+    Attributes
+    ----------
+    is_known
+        Where every error that contributes to the bands is known; the bands are those of the known ones.
+    """
+
+    value: Value
+    limit: Value
+    value_bounds: Bounds
+    limit_bounds: Bounds
+    is_known: Truth
+    codes: Codes
+    axes: int
+
+    def filled(self, rows: Codes) -> Comparison:
+        """With other verdicts at the points where a side has no value; of a curve nothing changes."""
+        if self.axes:
+            return self
+        codes = np.where(np.equal(self.codes, NOT_CHECKED), rows, self.codes).astype(np.int8)
+        return replace(self, codes=codes if codes.ndim else int(codes))
+
+    def rows(self) -> Codes:
+        """Return the verdict at every point: of a curve the worst of its places."""
+        if not self.axes or isinstance(self.codes, int):
+            return self.codes
+        worst = self.codes.min(axis=tuple(range(-self.axes, 0)))
+        return worst if worst.ndim else int(worst)
+
+
+def compare(
+    criterion: Criterion,
+    estimates: Mapping[str, Estimate],
+    shifts: Sequence[Shift] = (),
+    *,
+    is_known: Truth = True,
+) -> Comparison:
+    """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
+
+    `shifts` are the values of all names, with something upstream shifted to either end of its band;
+    `is_known` says where the errors of all that is upstream are known.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where arrays of different lengths meet.
+    """
+    axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
+    fitted = aligned(estimates, axes)
+    moved = [(_spread(low, estimates, axes), _spread(high, estimates, axes)) for low, high in shifts]
+    value, value_bounds, is_value_known = value_and_bounds(criterion.value, fitted, moved)
+    limit, limit_bounds, is_limit_known = value_and_bounds(criterion.limit, fitted, moved)
+    try:
+        known = is_known & is_value_known & is_limit_known
+        codes = verdicts(criterion.sign, value, limit, value_bounds, limit_bounds, known)
+    except ValueError:
+        message = f"{criterion.require!r} compares arrays of different lengths"
+        raise FaultyText("shape", message) from None
+    return Comparison(value, limit, value_bounds, limit_bounds, known, codes, axes)
+
+
+def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
+    """Return shifted values, those of points alone as arrays that go with a curve."""
+    return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
+
+
+def side_of(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
+    """Return the value of a side [SI]."""
+    if name := side.only_name:
+        return estimates[name].value
+    return side.value({name: estimates[name].value for name in side.names})
+
+
+def verdicts(
+    sign: Sign,
+    value: Value,
+    limit: Value,
+    value_bounds: Bounds,
+    limit_bounds: Bounds,
+    is_known: Truth = True,
+) -> Codes:
+    """Return the verdict where each side lies in its band; equality meets.
+
+    The bands are as wide as the known errors make them; `is_known` says where these are all.
+    """
+    safe, bad = _opposed(sign, value_bounds, limit_bounds)
+    if not np.ndim(is_known) and all(isinstance(end, float) for end in (value, limit, *safe, *bad)):
+        if value != value or limit != limit:
+            return NOT_CHECKED
+        met = MET if is_known else MET_ERROR_UNKNOWN
+        return met if safe[0] >= safe[1] else NOT_MET if bad[0] < bad[1] else UNDECIDED
+    with np.errstate(invalid="ignore"):
+        is_met = np.greater_equal(*safe)
+        decided = [np.isnan(value) | np.isnan(limit), is_met & is_known, is_met, np.less(*bad)]
+    cases = [NOT_CHECKED, MET, MET_ERROR_UNKNOWN, NOT_MET]
+    codes = np.select(np.broadcast_arrays(*decided), cases, UNDECIDED)
+    return codes.astype(np.int8) if codes.ndim else int(codes)
+
+
+def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
+    """Return pairs (a, b): a criterion is met if a ≥ b in the first, and not met if a < b in the second."""
+    if sign == ">=":
+        return (value[0], limit[1]), (value[1], limit[0])
+    return (limit[0], value[1]), (limit[1], value[0])

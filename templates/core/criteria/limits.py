@@ -1,0 +1,120 @@
+"""Limits that a user gives: by hand, or by a row of a library of materials and the like.
+
+A criterion may declare limits that the calculation itself does not take. Whoever gives one by hand writes a
+quantity; `"bearing_material": "row id"` fills every limit that is declared `from` that library and for which
+the row has a value. A limit given by hand wins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from templates.core.criteria.criterion import Criterion, Limit
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name, unknown_names
+from templates.core.units.quantity import read_beside
+from templates.core.units.units import Value
+
+
+@dataclass(frozen=True, slots=True)
+class RowValue:
+    """A value of a row: a quantity as text, such as `35 MPa`, and where it comes from."""
+
+    quantity: str
+    source: str
+
+
+Row = Mapping[str, RowValue]
+"""The values of a row by the names of the limits that they fill."""
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """The rows from which limits can be taken.
+
+    Attributes
+    ----------
+    rows
+        The ids of all rows.
+    row
+        The values of one; raises `KeyError` if there is none of this id.
+    """
+
+    rows: Callable[[], Iterable[str]]
+    row: Callable[[str], Row]
+
+
+_libraries: dict[str, Library] = {}
+
+
+def register(name: str, library: Library) -> None:
+    """Let limits declared `"from": name` be taken from the rows of a library."""
+    _libraries[name] = library
+
+
+@dataclass(frozen=True, slots=True)
+class GivenLimit:
+    """A limit as it was given: its value [SI], and its source if that is known."""
+
+    value: Value
+    source: str | None = None
+
+
+def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[str, GivenLimit]:
+    """Return the limits that a user gives for criteria, by name.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming everything that is wrong at once: `limits.permissible_pressure`.
+    """
+    if not raw:
+        return {}
+    declared = {limit.name: limit for criterion in criteria for limit in criterion.limits}
+    choices = {limit.library for limit in declared.values() if limit.library}
+    candidates = [*declared, *sorted(choices)]
+    faults = unknown_names((name for name in raw if name not in candidates), candidates, "limit")
+    given: dict[str, GivenLimit] = {}
+    for name in (name for name in raw if name in candidates):
+        try:
+            if name in declared:
+                given[name] = _by_hand(declared[name], raw[name])
+            else:
+                filled = _by_row(name, raw[name], declared)
+                given |= {limit: value for limit, value in filled.items() if limit not in raw}
+        except FaultyText as error:
+            faults.append(error.fault(name))
+    if faults:
+        raise InvalidInputs(fault.within("limits") for fault in faults)
+    return given
+
+
+def _by_hand(declared: Limit, raw: Any) -> GivenLimit:
+    typed = read_beside(raw, declared.unit)
+    if typed.tolerance is not None:
+        raise FaultyText("tolerance", "a limit is exact; give it without a tolerance")
+    return GivenLimit(typed.si)
+
+
+def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, GivenLimit]:
+    """Return every limit that a row has a value for."""
+    library = _libraries.get(name)
+    if library is None:
+        raise FaultyText("no_library", f"there is no library {name}; give the limits by hand")
+    if not isinstance(raw, str):
+        raise FaultyText("not_a_row", f"{excerpt(raw)} is not a row; give the id of a row of {name}")
+    try:
+        row = library.row(raw)
+    except KeyError:
+        raise FaultyText("unknown_name", unknown_name(raw, list(library.rows()), "row").detail) from None
+    wanted = {n: limit for n, limit in declared.items() if limit.library == name and n in row}
+    return {
+        n: GivenLimit(read_beside(row[n].quantity, limit.unit).si, row[n].source)
+        for n, limit in wanted.items()
+    }
+
+
+def fault_of(error: FaultyText, name: str) -> Fault:
+    """Return an error about a criterion as a fault that names it."""
+    return Fault(f"criteria.{name}", error.code, str(error))

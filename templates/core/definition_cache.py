@@ -1,0 +1,73 @@
+"""Units and grammars that were read from their definitions before, kept beside Python's bytecode.
+
+Python keeps the bytecode of a module in `__pycache__`, or below `sys.pycache_prefix`. Parsed definitions are
+kept there too. Their files say from what and by which versions they were made; others are made again. Where
+Python may not write bytecode, nothing is written either, and each start reads the definitions.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from importlib.util import cache_from_source
+from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
+
+_UNREADABLE = (
+    OSError, EOFError, ImportError, AttributeError, LookupError, TypeError, ValueError,
+    pickle.UnpicklingError,
+)  # fmt: skip
+"""What reading of pickles may raise that are damaged, or that others have written."""
+
+
+def place(name: str) -> Path:
+    """Return the path under which an object of this name is stored."""
+    return Path(cache_from_source(__file__)).parent / name
+
+
+def may_write() -> bool:
+    """Return whether Python would write bytecode there."""
+    return not sys.dont_write_bytecode and os.access(place(""), os.W_OK)
+
+
+def file(name: str) -> str | bool:
+    """Return the file for Lark's `cache`, which checks by itself what it finds there.
+
+    False if there can be none.
+    """
+    kept = place(name)
+    return str(kept) if may_write() or kept.is_file() else False
+
+
+def from_folder(name: str, make: Callable[[Path | None], T]) -> T:
+    """Make something with the help of a folder that holds its parts ready; without one, if there is none.
+
+    A folder is filled under another name and renamed, so that who finds it finds all of it.
+
+    Parameters
+    ----------
+    name
+        Names the folder, with the versions of all packages on which its files depend.
+    make
+        Makes it from files of the folder that it is given, and writes those that are missing.
+    """
+    kept = place(name)
+    if kept.is_dir():
+        with suppress(*_UNREADABLE):
+            return make(kept)
+        shutil.rmtree(kept, ignore_errors=True)  # the next start makes it again
+    elif may_write():
+        with suppress(*_UNREADABLE), tempfile.TemporaryDirectory(dir=kept.parent, prefix=name) as folder:
+            filled = Path(folder, "filled")
+            made = make(filled)
+            with suppress(OSError):  # another process was faster
+                filled.rename(kept)
+            return made
+    return make(None)
