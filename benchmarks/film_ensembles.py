@@ -169,12 +169,12 @@ ENSEMBLES = {
             {"contact_load": ("contact_load", "film_load")},
         ),
         Ensemble(
-            "thermal_film", ("one_temperature", "field"),
+            "thermal_film", ("one_temperature",),
             ("minimum_film_thickness", "relative_eccentricity", "maximum_pressure", "friction_torque",
              "friction_coefficient", "power_loss", "side_flow"),
-            (("S_0", "sommerfeld_number", (0.05, 8.0)), ("b", "width_ratio", (0.3, 1.1))),
-            ("fine_field", "the film with a temperature at every place on the finest mesh, level fine_field"),
-            70, 25, warm_journals, of_level("fine_field"),
+            (("S_0", "sommerfeld_number", (0.02, 20.0)), ("b", "width_ratio", (0.3, 1.1))),
+            ("field", "the film with a temperature at every place, level field"),
+            80, 30, warm_journals, of_level("field"),
         ),
     )
 }  # fmt: skip
@@ -235,7 +235,7 @@ def _part(ensemble: Ensemble, raw: Raw, truth: Mapping[str, Numbers]) -> Sample:
 def _scale(ensemble: Ensemble, truth: Mapping[str, Numbers], output: str) -> Numbers:
     """Return what the error of an output is relative to: its truth, or the largest of several."""
     sizes = [np.abs(truth[name]) for name in ensemble.relative_to.get(output, (output,))]
-    return np.maximum.reduce(sizes)
+    return np.asarray(np.maximum.reduce(sizes))
 
 
 def cells(ensemble: Ensemble, sample: Sample) -> list[list[NDArray[np.bool_]]]:

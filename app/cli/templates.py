@@ -25,7 +25,7 @@ from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
-from templates.core.paper.mathml import unit_symbol
+from templates.core.units.units import unit_symbol
 
 if TYPE_CHECKING:
     from app.catalogue.team import Snapshot

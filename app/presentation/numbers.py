@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
-from templates.core.paper.mathml import unit_symbol
+from templates.core.units.units import unit_symbol
 
 DIGITS = 5
 LARGEST_PLAIN = 1e6  # from here on with a power of ten

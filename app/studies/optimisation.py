@@ -19,7 +19,7 @@ SETTLED = {
     "unconfirmed": "all criteria that are held are met, but the error of the confirming levels is unknown",
     "undecided": "a limit lies within the error of the confirming levels",
     "infeasible": "no row that was looked at meets all criteria",
-    "not_settled": "promise and confirmed values did not come to agree",
+    "not_settled": "the search has not settled",
 }
 
 

@@ -20,7 +20,8 @@ from app.studies.criteria import JUDGED, SIDES, criterion_of, judged_of
 from app.studies.methods.answers import AllRefused, Answer, Columns, Held, Objective, Problem
 from app.studies.methods.confirmation import Round
 from app.studies.methods.front import Effort, pareto_front
-from app.studies.methods.optimise import optimise
+from app.studies.methods.optimise import Optimum, optimise
+from app.studies.methods.space import Interval
 from app.studies.methods.stages import Stage
 from app.studies.row_columns import CONFIRM, EXPLORE, OUTPUT
 from app.studies.task import Task, TaskState, prepared
@@ -31,6 +32,8 @@ from templates.core.errors import Fault, InvalidInputs
 SLICE_SECONDS = 0.5  # of new rows, estimated
 ALONE = Effort(generations=50, rounds=1)
 """Of the front that a level finds by itself: no more rows than a comparison is worth."""
+ACTIVE = 2e-3  # of a limit: an optimum nearer to it sits on it
+AT_BOUND = 1e-6  # of the width between two bounds
 CALL_SECONDS = 0.03  # that a call takes beside its rows
 
 
@@ -119,7 +122,41 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
     optimum = optimise(problem, explore, confirm, seed=seed)
     first = Prediction(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
     notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
+    notes = (*_differences(optimum), *notes, *_active(problem, optimum.best))
     return Outcome(optimum.state, (optimum.best.at,), *_compared(problem, search, book, seed, first, notes))
+
+
+def _differences(optimum: Optimum) -> tuple[str, ...]:
+    """Return why a search did not settle, in a sentence; nothing of one that did."""
+    last = optimum.rounds[-1]
+    if optimum.state != "not_settled":
+        return ()
+    if last.reason:
+        return (f"the confirming level refuses the best place: {last.reason}",)
+    if last.agrees or not np.isfinite(last.confirmed).all():
+        return (f"it ended after {len(optimum.rounds)} confirmations",)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.abs(last.promise - last.confirmed) / np.abs(last.confirmed)
+    largest = np.max(apart[np.isfinite(apart)], initial=0.0)
+    return (f"promise and confirmed value differ by {largest:.2g} of the value",)
+
+
+def _active(problem: Problem, best: Round) -> tuple[str, ...]:
+    """Return the limits and the bounds on which an optimum sits, as sentences."""
+    count, held = len(problem.objectives), len(problem.held)
+    limits = best.confirmed[count + held :]
+    near = np.abs(best.worst) <= ACTIVE * np.abs(limits)
+    sentences = [
+        f"the optimum sits on the limit of {one.name}"
+        for one, at in zip(problem.held, near, strict=True)
+        if at
+    ]
+    for one, value in zip(problem.space.variables, best.at.tolist(), strict=True):
+        place = float(one.place(np.array(value))) if isinstance(one, Interval) else 0.5
+        if min(place, 1 - place) <= AT_BOUND:
+            end = "lower" if place < 0.5 else "upper"
+            sentences.append(f"the optimum sits on the {end} bound of {one.name}")
+    return tuple(sentences)
 
 
 def _compared(

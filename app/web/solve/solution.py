@@ -58,6 +58,12 @@ class Drawing:
         """Return the level of all points, in words."""
         return (self.curve.level or "").replace("_", " ")
 
+    @property
+    def other_levels(self) -> str:
+        """Return the levels of the solutions in words; empty where all are that of the curve."""
+        levels = sorted({root.level for root in self.roots if root.level and root.confirmed})
+        return "" if levels in ([], [self.curve.level]) else ", ".join(levels).replace("_", " ")
+
     def svg(self) -> str:
         """Return the drawing as SVG."""
         curve = self.curve
@@ -65,10 +71,13 @@ class Drawing:
         y = [None if value is None else float(value) for value in _list(curve.y.value)]
         words = Reference.parse(self.target).own_name.replace("_", " ")
         across = [root.value for root in self.roots]
+        at, of_roots = (
+            f", level {level}" if self.other_levels else "" for level in (self.level, self.other_levels)
+        )
         series = [
-            Series(words, x, y),
+            Series(f"{words}{at}", x, y),
             Series("wanted", [x[0], x[-1]], [self.wanted, self.wanted], dashed=True),
-            Series("solutions", across, [self.wanted] * len(across), marked=True, joined=False),
+            Series(f"solutions{of_roots}", across, [self.wanted] * len(across), marked=True, joined=False),
         ]
         axis = f"{self.unknown} [{numbers.unit(curve.x.unit)}]", f"{words} [{numbers.unit(curve.y.unit)}]"
         return svg(Chart(*axis, [*series, *_jumps(self.jumps)]))

@@ -14,8 +14,13 @@ startCharts(document.querySelector("[data-charts]"));
 async function followJob(place) {
   if (place.hidden || !place.dataset.job) return;
   const bar = place.querySelector("progress"), words = place.querySelector("[data-progress-text]");
+  const badge = document.querySelector("[data-study-state]");
   await watched(place.dataset.job, (progress, text) => {
     bar.value = progress;
+    if (badge.dataset.studyState === "queued") {
+      badge.className = "tag running";
+      badge.dataset.studyState = badge.textContent = "running";
+    }
     if (text) words.textContent = text;
   });
   location.reload();

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
+from templates.core.criteria.sentences import Side, compared
+
+_NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,17 +107,17 @@ class Judgement:
 
 
 def sentence(judgement: Judgement) -> str:
-    """Return a verdict as a sentence: `film 1.53 um < permissible_film 2 um (131 %): not met`."""
-    sign = ">=" if ">=" in judgement.require else "<="
-    left, right = (side.strip() for side in judgement.require.split(sign))
-    opposite = {">=": "<", "<=": ">"}[sign] if judgement.misses else sign
-    sides = (
-        _with_value(left, judgement.value, judgement.unit),
-        _with_value(right, judgement.limit, judgement.unit),
-    )
-    used = f" ({judgement.utilisation * 100:.3g} %)" if judgement.utilisation is not None else ""
-    model = f", {judgement.truth}" if is_model(judgement.truth) else ""
-    return f"{sides[0]} {opposite} {sides[1]}{used}: {judgement.verdict.replace('_', ' ')}{model}"
+    """Return a verdict as a sentence: `film 1.53 µm is below permissible film 2 µm: not met`."""
+    verdict = judgement.verdict.replace("_", " ")
+    verdict += f", {judgement.truth}" if is_model(judgement.truth) else ""
+    unknown = "" if judgement.error_known or judgement.verdict == "not_checked" else "; error unknown"
+    value, limit = judgement.value, judgement.limit
+    left, right = map(_in_words, judgement.sides)
+    if value is None or limit is None:
+        return f"{left} {judgement.sign} {right}: {verdict}"
+    opposite = {">=": "<", "<=": ">"}[judgement.sign]
+    sign = opposite if judgement.misses else judgement.sign
+    return f"{compared(Side(left, value), sign, Side(right, limit), judgement.unit)}: {verdict}{unknown}"
 
 
 def is_model(truth: str | None) -> bool:
@@ -126,8 +130,9 @@ def not_judged(judgement: Judgement) -> str:
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
-def _with_value(text: str, value: float | None, unit: str) -> str:
-    """Return a side and its value; a number stands for itself."""
-    if value is None or text[0].isdigit():
-        return text
-    return f"{text} {value:.4g}{'' if unit == '1' else ' ' + unit}"
+def _in_words(text: str) -> str:
+    """Return a side in words; a number stands for itself, and is shown as the value."""
+    if text.removeprefix("-")[:1].isdigit():
+        return ""
+    words = _NAME.sub(lambda name: name[1].replace("_", " "), text)
+    return words if _NAME.fullmatch(text) else f"{words} ="

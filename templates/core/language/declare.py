@@ -143,7 +143,8 @@ def require(
     """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
 
     Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
-    With the code of a `warning` nothing is refused, and the answer carries the sentence.
+    With the code of a `warning` nothing is refused, and the answer carries a sentence that is made from the
+    comparisons that do not hold.
     """
     return lambda function: Requirement(function, names, remedy, missing, warning)
 

@@ -20,6 +20,7 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
+from templates.core.language.violations import violation
 from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
@@ -421,7 +422,8 @@ def remarks(self: Calculation) -> Iterator[Notice]:
     """Yield a warning for every rule that refuses nothing, where it does not hold, and for every remark."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
-            yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+            for name in rule.names:
+                yield Notice(rule.warning, name, f"{violation(self, rule, name)}; {rule.remedy}")
     for declared, remark in self._readings:
         if declared.attribute in vars(self) and declared.name not in self.ledger.typed:
             yield Notice("turns", declared.name, remark)

@@ -15,6 +15,7 @@ from templates.core.language.ledger import Notice
 from templates.core.language.scan import SampledCurve, Samples
 
 NAMED = 10  # solutions that a warning names
+AT_BOUND = 1e-9  # of the width of the search: nearer to a bound a solution lies on it
 MISSED = 1e-6  # relative miss of a solution beyond which a warning says so
 
 
@@ -85,7 +86,7 @@ def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, 
         [root for root in roots if root.touches],
         [_jump(scanned, leap) for leap in met.leaps],
         _traced(scanned, even),
-        _warnings(scanned, samples, met, roots, lowest),
+        [*_warnings(scanned, samples, met, roots, lowest), *_at_bounds(scanned, roots, bounds)],
     )
 
 
@@ -96,6 +97,18 @@ def _warnings(
         *_not_monotone(curve, samples.miss),
         *_others(curve, lowest, roots, met.more),
         *_unsettled(curve, roots),
+    ]
+
+
+def _at_bounds(curve: SampledCurve, roots: list[Root], bounds: tuple[float, float]) -> list[Notice]:
+    """Return a warning for each solution that lies on a bound of the search [SI]."""
+    near, scale = AT_BOUND * (bounds[1] - bounds[0]), curve.x.scale
+    ends = [(end, float(scale.to_si(root.value))) for root in roots for end in bounds]
+    detail = "{} lies on a bound of the search; there may be more beyond"
+    return [
+        Notice("at_bound", curve.x.name, detail.format(curve.x.with_unit(end)))
+        for end, si in ends
+        if abs(end - si) <= near
     ]
 
 

@@ -14,10 +14,10 @@ from templates.core.paper.mathml import (
     Written,
     named_symbol,
     tightness,
-    unit_symbol,
 )
 from templates.core.units.operations import Constant, Item, Name, Word
 from templates.core.units.relation import is_relation, parse
+from templates.core.units.units import unit_symbol
 from templates.core.units.walking import depth_of
 
 CONDITION = SUM - 1

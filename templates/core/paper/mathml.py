@@ -19,6 +19,7 @@ from templates.core.language.body import Body
 from templates.core.language.spec import Declaration, Formula
 from templates.core.language.syntax import returned, syntax
 from templates.core.language.template import Template
+from templates.core.units.units import unit_symbol
 
 SUM, PRODUCT, POWER, ATOM = range(4)
 Written = tuple[str, int]  # LaTeX, and how tightly its outermost operation binds
@@ -27,19 +28,6 @@ _GREEK = {
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "pi",
     "rho", "sigma", "tau", "phi", "psi", "omega",
 }  # fmt: skip
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_PRINTED = {
-    "deg": "°",
-    "degC": "°C",
-    "degF": "°F",
-    "delta_degC": "K",
-    "delta_degF": "Δ°F",
-    "um": "µm",
-    "ohm": "Ω",
-    "thou": "mil",
-    "inch": "in",
-    "ureyn": "µreyn",
-}
 _OPERATOR = re.compile(
     r"\\operatorname\{([^{}]*)\}"
 )  # which latex2mathml would set in italics, letter by letter
@@ -71,17 +59,6 @@ def number(value: float) -> str:
     """Return a number with five significant digits, as LaTeX."""
     mantissa, _, exponent = f"{value:.5g}".partition("e")
     return rf"{mantissa}\,\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
-
-
-def unit_symbol(text: str) -> str:
-    """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
-
-    Nothing for a pure number.
-    """
-    if text == "1":
-        return ""
-    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(_RAISED), text)
-    return re.sub(r"[A-Za-z_]+", lambda word: _PRINTED.get(word[0], word[0]), raised).replace("*", "·")
 
 
 def amount(value: float, unit: str) -> str:

@@ -7,7 +7,7 @@ template that exists has passed the rules that refuse; those that only warn may 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,14 +18,14 @@ from templates.core.language.comparisons import Comparison, Operand, outcome, wo
 from templates.core.language.meaning import Bounds, Meaning
 from templates.core.language.spec import Declaration, Requirement
 from templates.core.language.template import Template
-from templates.core.paper.mathml import Writer, amount, symbol, symbols, unit_symbol
+from templates.core.language.violations import violation
+from templates.core.paper.mathml import Writer, amount, symbol, symbols
 from templates.core.paper.report import shown
 from templates.core.units.units import Unit
 
 Kind = Literal["domain", "published", "rule", "warning"]
 
 _SIGNS = {"<": "<", "<=": r"\le ", ">": ">", ">=": r"\ge "}
-_WORDS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not below"}
 _SMALL = 1e-2  # of a number in a rule
 
 
@@ -130,7 +130,7 @@ def _of_rule(template: Template, rule: Requirement) -> Check | None:
         holds=bool(truth.all()),
         broken=int((~truth).sum()),
         points=truth.size,
-        violation="" if truth.all() else _violation(template, rule, decisive),
+        violation="" if truth.all() else violation(template, rule, rule.names[0]),
     )
 
 
@@ -139,30 +139,6 @@ def _lacks_an_input(template: Template, rule: Requirement) -> bool:
     inputs = (template.inputs[name] for name in rule.names if name in template.inputs)
     values = (vars(template).get(declared.attribute) for declared in inputs)
     return any(isinstance(value, (float, np.ndarray)) and bool(np.isnan(value).all()) for value in values)
-
-
-def _violation(template: Template, rule: Requirement, decisive: Iterable[Comparison]) -> str:
-    """Return the violation of a rule, in words; its sentence with a No where it cannot be written."""
-    broken = [comparison for comparison in decisive if comparison.actual != comparison.sign]
-    sides = [
-        (_in_words(template, one.left, one.right), one, _in_words(template, one.right, one.left))
-        for one in broken
-    ]
-    written = [f"{left} {_WORDS[one.actual]} {right}" for left, one, right in sides if left and right]
-    if written and len(written) == len(broken):
-        return "; ".join(written)
-    return f"this does not hold: {rule.sentence[:1].lower()}{rule.sentence[1:]}"
-
-
-def _in_words(template: Template, side: Operand, other: Operand) -> str:
-    """Return a side of a comparison as name and value; empty where it is calculated within the rule."""
-    declared = template.declarations.get(side.attribute or "")
-    scale = _scale(template, side if declared else other)
-    if scale is None or (declared is None and side.constant is None):
-        return ""
-    single = np.ndim(side.value) == 0
-    number = f"{float(scale.from_si(side.value)):.5g} {unit_symbol(scale.text)}".rstrip() if single else ""
-    return " ".join(filter(None, (declared.meaning.words if declared else "", number)))
 
 
 def _written(template: Template, comparison: Comparison) -> tuple[str, str]:

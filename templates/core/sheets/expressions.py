@@ -18,7 +18,7 @@ from templates.core.units.expressions import constant as checked_constant
 from templates.core.units.operations import Constant
 from templates.core.units.rules import as_difference, is_number
 from templates.core.units.sorts import Part, Sort
-from templates.core.units.units import unit
+from templates.core.units.units import require_same_kind, unit
 
 
 class Reader:
@@ -151,7 +151,7 @@ class Reader:
         if body.uses:
             raise statement.refuse("limit", f"{name} takes numbers, not names", tree, "write its value")
         if isinstance(node, Constant) and node.text:
-            return node.text
+            return self._as_typed(statement, node.text, tree, unit_text)
         with np.errstate(all="ignore"):
             value = np.asarray(body(None), dtype=float)
         if not np.isfinite(value).all():
@@ -159,6 +159,17 @@ class Reader:
             raise statement.refuse("limit", f"{name} is not finite", tree, remedy)
         shown = np.asarray(unit(unit_text).from_si(value))
         return {"value": shown.tolist(), "unit": unit_text}
+
+    def _as_typed(self, statement: ParsedStatement, text: str, tree: lark.Tree[Any], unit_text: str) -> str:
+        """Return a number with its unit, if a user might type it for something in the declared unit."""
+        if " " not in text and unit_text != "1":
+            return f"{text} {unit_text}"
+        try:
+            require_same_kind(text.partition(" ")[2] or "1", unit_text)
+        except FaultyText as error:
+            message, _, remedy = str(error).partition("; ")
+            raise statement.refuse("unit_mismatch", message, tree, remedy or _given_in(unit_text)) from None
+        return text
 
     def declared_unit(self, statement: ParsedStatement, text: lark.Token) -> str:
         """Return the unit between brackets.

@@ -79,7 +79,7 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
         raise FaultyText("unit_mismatch", f"{takes}, not a condition")
     if not compatible(got.kind, wanted):
         raise FaultyText("unit_mismatch", f"{takes}, not {in_words(got.kind)}")
-    if mismatch := misfit(got.kind, scale, getattr(node, "text", "") or "x"):
+    if mismatch := misfit(got.kind, scale, getattr(node, "text", "")):
         why = f"{parameter} is declared in {unit_text}, and {mismatch[0]}"
         remedy = "give a temperature, or declare the parameter in K" if scale.absolute else mismatch[1]
         raise FaultyText("unit_mismatch", f"{why}; {remedy}")

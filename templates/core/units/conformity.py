@@ -32,7 +32,7 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
     want
         The declared unit.
     text
-        The expression that gives the value, for the remedy.
+        The expression that gives the value, for the remedy; empty where it is not known.
     """
     if not compatible(kind, want):
         return f"this gives {in_words(kind)}", _remedy_of_rates(kind, want, text)
@@ -80,6 +80,8 @@ def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
 
 def _counted(text: str) -> str:
     """Return the ways to say what a rate in 1/s counts."""
+    if not text:
+        return "multiply it by 1 turn or by 1 rad"
     text, minutes = _without_minutes(text)
     if per := _PER.fullmatch(text.strip()):
         return f"{minutes}write 1 turn / {per[1]} or 1 rad / {per[1]}"

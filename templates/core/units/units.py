@@ -28,6 +28,19 @@ from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
 Value = float | Array
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PRINTED = {
+    "deg": "°",
+    "degC": "°C",
+    "degF": "°F",
+    "delta_degC": "K",
+    "delta_degF": "Δ°F",
+    "um": "µm",
+    "ohm": "Ω",
+    "thou": "mil",
+    "inch": "in",
+    "ureyn": "µreyn",
+}
 
 _PARSED = f"units-{pint.__version__}-{flexparser.__version__}-{flexcache.__version__}"
 """The folder that keeps Pint's definitions parsed; Pint names its files by what they were made from."""
@@ -303,3 +316,14 @@ def _measured(scale: Unit) -> str:
         return "an angular speed"
     same = (words for words, si in _KINDS.items() if registry.get_dimensionality(unit(si).base) == dimensions)
     return next(same, str(dimensions))
+
+
+def unit_symbol(text: str) -> str:
+    """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+
+    Nothing for a pure number.
+    """
+    if text == "1":
+        return ""
+    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(_RAISED), text)
+    return re.sub(r"[A-Za-z_]+", lambda word: _PRINTED.get(word[0], word[0]), raised).replace("*", "·")

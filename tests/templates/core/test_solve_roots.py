@@ -57,6 +57,14 @@ def found(result):
     return [root.value for root in result.roots]
 
 
+@pytest.mark.parametrize(("low", "bound"), [("2 m", "2 m"), ("1.999 m", None)])
+def test_a_solution_on_a_bound_of_the_search_is_called_that(low, bound):
+    """x (x - 2)^3 is 0 at 2 m, which is the lower bound or lies inside."""
+    result = solved("quartic", 0, low, "5 m", **zeros([0.0, 2.0, 2.0, 2.0]))
+    said = [warning.detail for warning in result.warnings if warning.code == "at_bound"]
+    assert said == ([f"{bound} lies on a bound of the search; there may be more beyond"] if bound else [])
+
+
 class TestRoots:
     def test_analytic_all_with_the_signs_of_their_slopes(self):
         result = solved("quartic", 0, **zeros([-7.0, -1.5, 0.25, 6.0]))
@@ -95,7 +103,7 @@ class TestRoots:
     def test_analytic_a_value_at_all_samples_is_one_solution(self):
         result = solved("flat", 1)
         assert [(root.value, root.slope) for root in result.roots] == [(-10.0, 0)]
-        assert result.warnings == []
+        assert [warning.code for warning in result.warnings] == ["at_bound"]
 
     def test_analytic_jumps_across_the_target(self):
         """The saw rises through 0.5 in the middle of each tooth and falls through it at each whole metre."""

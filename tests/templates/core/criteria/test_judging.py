@@ -336,7 +336,7 @@ def test_summary_is_worst_first_and_the_governing_one_is_checked():
 
 
 def test_a_sentence_is_about_the_case():
-    assert sentence(of_film(1.53)) == "film 1.53 um < 3 um (196 %): not met"
+    assert sentence(of_film(1.53)) == "film 1.53 µm is below 3 µm: not met"
 
 
 @pytest.mark.parametrize(

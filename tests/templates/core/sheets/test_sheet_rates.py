@@ -322,3 +322,42 @@ class TestSpelling:
         raw = {**cls.example, "speed": f"{speed!r} rad/s"}
         answer = evaluate(cls, raw, units={"x": shown}).outputs["x"]
         assert np.asarray(answer.value) * SPELLED[shown] == pytest.approx(speed, rel=1e-12)
+
+
+UNITS = [
+    "rpm",
+    "rps",
+    "rad/s",
+    "deg/s",
+    "Hz",
+    "1/s",
+    "1/min",
+    "rad",
+    "turn",
+    "1",
+    "K",
+    "degC",
+    "delta_degC",
+    "degF",
+]
+
+
+class TestEveryPair:
+    @pytest.mark.parametrize("declared", UNITS)
+    @pytest.mark.parametrize("typed", UNITS)
+    def test_property_a_default_is_taken_or_refused_as_a_typed_value_is(self, declared, typed):
+        """What the language accepts as a default, the service accepts as an input; nothing else happens."""
+        line = f'given z [{declared}] = 2 {typed} "z"\ny [{declared}] = z "y"'.replace("2 1 ", "2 ")
+        try:
+            cls = sheet(line)
+        except SheetRefused as refusal:
+            faults = refusal.faults
+        else:
+            faults = ()
+        if faults:
+            assert all(fault.code == "unit_mismatch" and fault.remedy for fault in faults)
+            return
+        plain = evaluate(cls, cls.example).outputs["y"].value
+        own = declared if typed == "1" else typed
+        again = evaluate(cls, {**cls.example, "z": "2" if own == "1" else f"2 {own}"})
+        assert again.outputs["y"].value == pytest.approx(plain, rel=1e-12)

@@ -1,0 +1,106 @@
+"""The sentence for a rule that does not hold: what the values are, made from the comparisons of the rule.
+
+The docstring of a rule says what ought to be. Where a rule is violated that would state the opposite of what
+is the case, so nothing here reads it.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+
+import numpy as np
+
+from templates.core.criteria.sentences import DIGITS, Side, compared
+from templates.core.language.calculation import Calculation
+from templates.core.language.comparisons import Comparison, Operand, outcome
+from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.units.units import Unit, unit, unit_symbol
+
+UNUSED = "unused_input"
+"""The code of a warning about an input that changes nothing."""
+_ATTRIBUTE = re.compile(r"\bself\.(\w+)")
+
+
+def violation(template: Calculation, rule: Requirement, name: str) -> str:
+    """Return a sentence on what violates a rule, for the warning about one of its names."""
+    with np.errstate(all="ignore"):
+        decisive = list(outcome(template, rule).decisive())
+    written = [_written(template, one) for one in decisive if one.actual != one.sign]
+    if written and all(written):
+        return "; ".join(written)
+    if rule.warning == UNUSED:
+        level = str(getattr(template, "level", ""))
+        at = f" at level {level.replace('_', ' ')}" if "level" in rule.function.__code__.co_names else ""
+        return f"{_given(template, name)} is not used{at}"
+    return "; ".join(_given(template, one) for one in rule.names)
+
+
+def _written(template: Calculation, comparison: Comparison) -> str:
+    """Return a comparison that does not hold, at its worst point; empty where it has no words."""
+    left, right = comparison.left, comparison.right
+    scale = _scale(template, left) or _scale(template, right) or _number_of(left, right)
+    if scale is None:
+        return ""
+    words = _words(template, left), _words(template, right)
+    if not all(text or side.constant is not None for text, side in zip(words, (left, right), strict=True)):
+        return ""
+    low, high, broken = np.broadcast_arrays(
+        np.asarray(left.value, dtype=float),
+        np.asarray(right.value, dtype=float),
+        ~np.asarray(comparison.holds, dtype=bool) & np.asarray(comparison.where, dtype=bool),
+    )
+    beyond = np.where(broken, np.nan_to_num(np.abs(low - high), nan=-1.0), -2.0)
+    worst = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
+    values = (float(scale.from_si(float(si[worst]))) for si in (low, high))
+    sides = [Side(*side) for side in zip(words, values, strict=True)]
+    if any(np.isnan(side.magnitude) for side in sides):
+        return ""
+    count = f" (worst of {int(broken.sum())} among {broken.size} values)" if broken.size > 1 else ""
+    return compared(sides[0], comparison.actual, sides[1], scale.text) + count
+
+
+def _scale(template: Calculation, side: Operand) -> Unit | None:
+    """Return the unit of a side that is an input or output."""
+    declared = template.declarations.get(side.attribute or "")
+    return declared.meaning.scale if declared else None
+
+
+def _number_of(left: Operand, right: Operand) -> Unit | None:
+    """Return the unit of two sides whose numbers need none: one of them is a constant that is not small."""
+    constants = [side.constant for side in (left, right) if side.constant is not None]
+    return unit("1") if any(abs(one) >= 1e-2 for one in constants) else None
+
+
+def _words(template: Calculation, side: Operand) -> str:
+    """Return a side in words; empty for a constant, and for what cannot be written."""
+    if side.node is None or side.constant is not None:
+        return ""
+    if side.attribute is not None:
+        return _called(template, side.attribute)
+    text = _ATTRIBUTE.sub(lambda name: _called(template, name[1]), ast.unparse(side.node))
+    return f"{text.replace('*', '·')} ="
+
+
+def _called(template: Calculation, attribute: str) -> str:
+    """Return the words of an input, an output, or an intermediate result."""
+    declared = template.declarations.get(attribute)
+    if declared is not None:
+        return declared.meaning.words
+    shared = getattr(type(template), attribute, None)
+    text = (inspect.getdoc(shared.function) or "").split(".")[0] if isinstance(shared, Shared) else ""
+    return text[:1].lower() + text[1:] if text else attribute
+
+
+def _given(template: Calculation, name: str) -> str:
+    """Return an input in words, with its value where that is a single one."""
+    declared: Declaration = template.inputs[name]
+    value = getattr(template, declared.attribute)
+    if isinstance(value, str):
+        return f"{name.replace('_', ' ')} {value.replace('_', ' ')}"
+    if isinstance(value, (float, int)) and not np.isnan(value):
+        scale = declared.meaning.scale
+        number = f"{float(scale.from_si(value)):.{DIGITS}g} {unit_symbol(scale.text)}"
+        return f"{declared.meaning.words} {number}".rstrip()
+    return declared.meaning.words
