@@ -234,7 +234,7 @@ def _is_meant(face: FaceReadback, one: ToleranceFaces) -> bool:
 
 
 def _at_end(faces: list[FaceReadback], one: ToleranceFaces) -> Iterator[FaceReadback]:
-    """Return the cylinders about an axis that begin first, or end last, along it."""
+    """Yield the cylinders about an axis that begin first, or end last, along it."""
     axis: Vector = AXES[one.where]
     reaches = {face.number: face.surface.turned(axis).reach for face in faces}
     if one.end == "low":

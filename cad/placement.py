@@ -7,8 +7,8 @@ A datum is `origin`, the axes of the whole; or a part and a place on it, such as
 - `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of the
   point in which they pass the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is that axis of the whole to which its z axis is most at right angles, of several the
-first.
+The x axis of a datum is the axis of the whole that is most nearly perpendicular to its z axis; of several
+such axes it is the first.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ def _place(row: CommentRow) -> str:
 
 
 def _require_name(row: RevisionRow, subject: str) -> None:
-    """Return if a revision has a name; raises InvalidInputs."""
+    """Check that a revision has a name; raises InvalidInputs."""
     names = set(_names(row))
     if subject in names:
         return

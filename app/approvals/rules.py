@@ -31,7 +31,7 @@ def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
 
 
 def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
-    """Return if it is the turn of a step.
+    """Check that it is the turn of a step.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
 
 
 def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Sequence[ApprovalRow]) -> None:
-    """Return if a principal may take a step.
+    """Check that a principal may take a step.
 
     Raises
     ------

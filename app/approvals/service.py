@@ -87,7 +87,7 @@ class ApprovalService:
         )
 
     def _require_good_files(self, id: str, number: int) -> None:
-        """Return if the STEP files of a revision are in the store with the right bytes; raises NotReady."""
+        """Check that the STEP files of a revision are in the store with the right bytes; raises NotReady."""
         with self.database.read() as session:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():

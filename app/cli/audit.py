@@ -103,7 +103,7 @@ def _url(settings: Settings) -> str:
 
 
 def _require_audit(session: Session) -> None:
-    """Return if the database has an audit that this program can read; raises CannotRun or StorageError."""
+    """Check that the database has an audit that this program can read; raises CannotRun or StorageError."""
     schema = schema_of(session.connection())
     if schema is None:
         raise CannotRun("The database holds no tables of Crankwright.")

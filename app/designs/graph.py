@@ -323,7 +323,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Return a cycle of nodes (its last is its first) in the names that its relations use."""
+    """Yield the nodes of a cycle (the last is the first) by the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name

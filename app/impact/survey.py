@@ -46,7 +46,7 @@ class ImpactQuestion:
 
 
 def check(asked: ImpactQuestion, database: Database, catalogues: Catalogues) -> None:
-    """Return if there is what is asked about.
+    """Check that the requested designs and versions exist.
 
     Raises
     ------

@@ -18,7 +18,7 @@ LONGEST = 60
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Return if an imported model may have this id.
+    """Check that an imported model may have this id.
 
     Raises
     ------

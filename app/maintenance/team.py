@@ -119,7 +119,7 @@ def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
 
 @contextmanager
 def _store(settings: Settings) -> Iterator[Artifacts]:
-    """Return the store of the settings; its local copies go into a folder of their own, not a server's."""
+    """Yield the store of the settings; its local copies go into a separate folder, not a server's."""
     if settings.artifacts_url is None:
         raise CannotRun(f"{NO_STORE}.")
     with TemporaryDirectory(prefix="crankwright-copies-") as name:

@@ -176,7 +176,7 @@ def _single(row: Row) -> tuple[Value, ...]:
 
 
 def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
-    """Return arrays side by side: name, unit, values; with several axes, one column for each place."""
+    """Write arrays side by side: name, unit, values; with several axes, one column for each index."""
     columns: list[Column] = []
     for row in arrays:
         assert isinstance(row.value, list), "an array"

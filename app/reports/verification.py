@@ -87,7 +87,7 @@ def verify(pdf: bytes, block: Block, approvals: Approvals, printed: bytes) -> It
 
 
 def _signature(step: BlockStep, row: Approval | None) -> Line:
-    """Return whether a signature of the block is one that the service has."""
+    """Report whether the service has a signature of the block."""
     if row is None:
         return Line(False, f"{step.step}: the service knows no such step of this revision")
     if step.digest != row.digest:
@@ -99,7 +99,7 @@ def _signature(step: BlockStep, row: Approval | None) -> Line:
 
 
 def _row(row: Approval, approvals: Approvals) -> Iterator[Line]:
-    """Return whether a row of the service says what its digest was made of, and the revision still does."""
+    """Report whether a row of the service and the revision still have the content that was signed."""
     content, present = row.content, approvals.present
     sound = hashed(content) == row.digest and (
         (content.step, content.name, content.at, content.principal)
@@ -119,7 +119,7 @@ def _row(row: Approval, approvals: Approvals) -> Iterator[Line]:
 
 
 def _chain(steps: Sequence[Approval]) -> Line:
-    """Return whether every step names the one before."""
+    """Report whether every step names the previous one."""
     linked = all(later.content.previous == earlier.digest for earlier, later in pairwise(steps))
     if not (linked and (not steps or steps[0].content.previous is None)):
         return Line(False, "the steps do not follow each other: one was replaced")
@@ -127,7 +127,7 @@ def _chain(steps: Sequence[Approval]) -> Line:
 
 
 def _state(block: Block, approvals: Approvals) -> Line:
-    """Return whether the revision is released."""
+    """Report whether the revision is released."""
     if approvals.state == "withdrawn":
         last = approvals.steps[-1]
         reason = last.content.reason or "no reason"
@@ -141,7 +141,7 @@ def _state(block: Block, approvals: Approvals) -> Line:
 
 
 def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
-    """Return whether the pages are those that the service prints."""
+    """Report whether the pages are those that the service prints."""
     if hashlib.sha256(pdf).digest() == hashlib.sha256(printed).digest():
         yield Line(True, "every byte is that of the report as the service prints it")
         return

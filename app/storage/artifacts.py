@@ -104,7 +104,7 @@ class Artifacts(Protocol):
         ...
 
     def probe(self) -> None:
-        """Return if the store answers; raises ArtifactsUnreachable."""
+        """Check that the store answers; raises ArtifactsUnreachable."""
         ...
 
 
@@ -248,7 +248,7 @@ class ArtifactStore:
         sync_folder(self.folder)
 
     def probe(self) -> None:
-        """Return if the folder is there; raises ArtifactsUnreachable."""
+        """Check that the folder is there; raises ArtifactsUnreachable."""
         try:
             self.folder.stat()
         except OSError as error:
@@ -314,7 +314,7 @@ class ArtifactStore:
 
 
 def require_name(sha: str) -> None:
-    """Return if this is a hash: names come from URLs, and any other could lead out of the store.
+    """Check that this is a hash: names come from URLs, and any other could lead out of the store.
 
     Raises
     ------

@@ -165,7 +165,7 @@ class BucketStore:
         self._bucket.replace(name, text.encode())
 
     def probe(self) -> None:
-        """Return if the bucket answers; raises ArtifactsUnreachable."""
+        """Check that the bucket answers; raises ArtifactsUnreachable."""
         self._bucket.probe()
 
     def _download(self, sha: str) -> bytes:

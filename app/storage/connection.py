@@ -39,7 +39,7 @@ def opened_database(
 
 
 def require_answer(settings: Settings) -> None:
-    """Return if the settings fit together and a shared database takes connections; a file needs neither.
+    """Check that the settings fit together and a shared database takes connections; a file needs neither.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def require_answer(settings: Settings) -> None:
 
 
 def require_connection(url: str) -> None:
-    """Return if a URL names a file, or a database that takes connections.
+    """Check that a URL names a file, or a database that takes connections.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def require_connection(url: str) -> None:
 
 
 def require_database(url: str) -> None:
-    """Return if a URL names a kind of database that there is; raises NotForTeams."""
+    """Check that a URL names a kind of database that there is; raises NotForTeams."""
     try:
         backend = make_url(url).drivername.partition("+")[0]
     except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted

@@ -45,13 +45,13 @@ class Watch:
         self.damage: DatabaseDamaged | None = None
 
     def refuse(self) -> None:
-        """Return if no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
+        """Check that no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
         if self.damage is not None:
             raise self._again(self.damage)
         self.require_file()
 
     def require_file(self) -> None:
-        """Return if the file is still that of the start: SQLite would make an empty one in its place."""
+        """Check that the file is still that of the start: SQLite would make an empty one in its place."""
         if self._path is None or self._file is None:
             return
         with suppress(OSError):
@@ -61,7 +61,7 @@ class Watch:
         raise self._named(DatabaseDamaged(str(self._path), [lost]))
 
     def raise_if_damage(self, error: BaseException | None) -> None:
-        """Return unless an error says that the database is damaged; raises DatabaseDamaged."""
+        """Raise DatabaseDamaged if an error says that the database is damaged."""
         if error is not None and is_damage(error):
             raise self._named(error) from error
 

@@ -27,7 +27,7 @@ _one_at_a_time = threading.Lock()
 
 
 def refuse_damage(url: str) -> None:
-    """Return if a database is whole, or new, or none of SQLite's.
+    """Check that a database is whole, or new, or none of SQLite's.
 
     The time is proportional to its size, some seconds for a gigabyte; an unchanged file is read once.
 

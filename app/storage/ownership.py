@@ -43,7 +43,7 @@ def claim(database: Database, store: Artifacts) -> None:
 
 
 def require_own_store(settings: Settings, folder: DataFolder) -> None:
-    """Return if the store of the settings answers and belongs to their database, which is migrated for that.
+    """Check that the store of the settings answers and belongs to their database, which is migrated for that.
 
     Raises
     ------

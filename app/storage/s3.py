@@ -126,7 +126,7 @@ class Bucket:
                 yield seen["path"], Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
 
     def probe(self) -> None:
-        """Return if the bucket is there and can be read: it says that it has no object of a certain name."""
+        """Check that the bucket is there and can be read: it says that it has no object of a certain name."""
         with self._asked("probe"):
             obstore.get(self._questions, _PROBE)
 

@@ -16,7 +16,7 @@ _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Return if a worksheet may have this id, as far as files are concerned.
+    """Check that a worksheet may have this id, as far as files are concerned.
 
     Raises
     ------

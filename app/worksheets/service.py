@@ -341,7 +341,7 @@ def _edited(draft: Row) -> dict[str, object]:
 
 
 def _require(row: Row, *allowed: str) -> None:
-    """Return if a version is in one of these states.
+    """Check that a version is in one of these states.
 
     Raises
     ------

@@ -86,7 +86,7 @@ def _only_solid(step: bytes) -> Any:
 
 
 def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
-    """Return the planes in which a solid mirrors itself, each with its half on the positive side."""
+    """Yield the mirror planes of a solid, each with its half on the positive side."""
     for axis in mirrors:
         unit = [float(other == axis) for other in _AXES]
         sides = [whole * HalfSpace(Pnt(0, 0, 0), Vec(*(sign * u for u in unit))) for sign in (-1, 1)]

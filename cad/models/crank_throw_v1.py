@@ -1,8 +1,8 @@
 """Crank throw: two webs, the crankpin between them, and half a main journal on each side.
 
 The part of a crankshaft from mid-journal to mid-journal, as stiffness formulas and finite elements take it.
-Without oil drilling it is its own mirror image in z = 0, and always in y = 0. What its words mean is said in
-the class below, which users read; parameters, rules and the solid are those of `cad.cranks`.
+Without oil drilling it is its own mirror image in z = 0, and always in y = 0. The class below, which users
+read, explains the parameters; parameters, rules and the solid are those of `cad.cranks`.
 """
 
 from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """Crankshaft of any number of throws, undivided or with split pins: journals, counterweights, nose, flange.
 
-The throw is that of `crank_throw`; what its words mean is said in the class below, which users read.
+The throw is that of `crank_throw`. The class below, which users read, explains the parameters.
 """
 
 from collections.abc import Mapping

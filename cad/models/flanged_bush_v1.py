@@ -1,6 +1,6 @@
 """Flanged bush of copper alloy: a cylinder with a flange, chamfers, an oil groove and an oil hole.
 
-What its words mean is said in the class below, which users read.
+The class below, which users read, explains the parameters.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
 
-What its words mean is said in the class below, which users read.
+The class below, which users read, explains the parameters.
 """
 
 from __future__ import annotations

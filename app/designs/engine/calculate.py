@@ -163,7 +163,7 @@ def _copy(before: Calculation) -> Calculation:
 
 
 def _unmeasured(*_: object) -> None:
-    """Return no measure: rows build no solids."""
+    """Measure nothing, because rows build no solids."""
 
 
 def calculate_nodes(
@@ -207,7 +207,7 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """Return the value of a cell if its sources have values; its block reports a faulty literal."""
+    """Calculate a cell if its sources have values; its block reports a faulty literal."""
     sources = result.graph.sources[cell]
     if cell.reference in result.given:
         column = Column(result.given[cell.reference], is_row=True)
@@ -249,7 +249,7 @@ def literal(cell: Cell) -> TypedQuantity:
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Return the value of relations, in a block in the unit that is declared there."""
+    """Calculate the value of relations, in a block in its declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)

@@ -134,7 +134,7 @@ class Climb:
         return self._climb(max(affordable, key=lambda move: move.gain), open_now)
 
     def _moves(self, open_now: Sequence[str]) -> Iterator[_Move]:
-        """Return the next levels of each uncertain output behind the open criteria, cheapest first."""
+        """Yield the next levels of each uncertain output of the open criteria, cheapest first."""
         verdicts = Verdicts(self.calculation)
         for reference in sorted({r for name in open_now for r in verdicts.uncertain(name)}, key=str):
             block = self.calculation.graph.blocks[reference.block]

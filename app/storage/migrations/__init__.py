@@ -51,7 +51,7 @@ def known_schemas() -> list[str]:
 
 
 def refuse_unknown(schema: str) -> None:
-    """Return if this program can bring a schema up to date.
+    """Check that this program can bring a schema up to date.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class Strays:
         self._lost = frozenset(key for key, since in self._since.items() if now - since > _ON_ITS_WAY)
 
     def check(self, key: str) -> None:
-        """Return if a task is on a machine, or may be on its way there.
+        """Check that a task is on a machine, or may be on its way there.
 
         Raises
         ------

@@ -116,7 +116,7 @@ def _stands(region: RegionRecord, present: set[str]) -> bool:
 
 
 def require_resolved(row: Row) -> None:
-    """Return if no region of the import of a version forbids its release.
+    """Check that no region of the import of a version forbids its release.
 
     Raises
     ------

@@ -196,7 +196,7 @@ def _counted_from_one(index: tuple[int, ...]) -> int | list[int]:
 
 
 def _counted(rows: Codes) -> Parts:
-    """Return the number of points of each verdict; nothing of a single one."""
+    """Return the number of points of each verdict; nothing for a single point."""
     if isinstance(rows, int):
         return {}
     numbers = np.bincount(rows.ravel(), minlength=len(VERDICTS))

@@ -60,7 +60,7 @@ def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Give
 
 
 def require_points(template: Template, level: str | None, tolerance: float | None) -> None:
-    """Return if the level that will be calculated takes as many points; raises InvalidInputs.
+    """Check that the level that will be calculated takes as many points; raises InvalidInputs.
 
     With a tolerance the level of each point follows from the calculation, so there is nothing to check.
     """

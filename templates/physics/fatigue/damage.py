@@ -206,6 +206,6 @@ def inverse_or_none(value: Array) -> Array:
 
 @units("1", returns="1")
 def life_in_words(damage: Array) -> Any:
-    """Return whether a life is finite or endless."""
+    """Return in words whether a life is finite or endless."""
     words = np.select([np.isnan(damage), damage > 0], ["", "finite"], "endless")
     return words if words.ndim else str(words)

@@ -122,6 +122,6 @@ def is_below(one: Array, other: Array) -> Any:
 
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
-    """Return whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
+    """Return in words whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
     words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
     return words if words.ndim else str(words)

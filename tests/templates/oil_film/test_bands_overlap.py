@@ -62,9 +62,9 @@ def of_level(cls, raw, level):
         if isinstance(formula, (Text, Profile)) or error is None or not np.isfinite(error).any():
             continue
         estimate = estimate_of(values, name)
-        if isinstance(estimate, Absent):
+        if isinstance(estimate, Absent) or np.isnan(estimate.error).all():
             continue
-        low, high = estimate.bounds()
+        low, high = (np.where(np.isnan(estimate.error), np.nan, end) for end in estimate.bounds())
         found[name] = np.broadcast_arrays(low, high, np.zeros(evaluation.template.shape_of_points()))[:2]
     return found
 
