@@ -41,7 +41,7 @@ def judged(cls, inputs, limits):
 
 
 def assert_honest(judgement):
-    """A verdict has what it needs, and `met` is true of the whole band, or of the value where no band is known."""
+    """A verdict has what it needs; `met` is true of the whole band, if one is known."""
     if judgement.verdict == "not_checked":
         assert judgement.give or judgement.reason
         return
