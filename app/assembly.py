@@ -16,6 +16,7 @@ from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
 from app.designs.decisions import DECISIONS
+from app.designs.explanation import EXPLANATIONS
 from app.designs.labels import LabelService
 from app.designs.preview import PREVIEWS
 from app.designs.questions import in_a_process
@@ -132,11 +133,13 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     evaluations = Questions(EVALUATION, *about)
     previews = Questions(PREVIEWS, *about)
     decisions = Questions(DECISIONS, *about)
+    explanations = Questions(EXPLANATIONS, *about)
     impacts = Questions(IMPACTS, *about)
     solving = Questions(in_a_process(SOLUTION, DesignSolution, solved), *about)
     tolerances = Questions(in_a_process(TOLERANCE, ToleranceAnalysis, analysed), *about)
     variant_details = Questions(VARIANT_DETAILS, *about)
-    for one in (evaluations, previews, decisions, impacts, solving, tolerances, variant_details):
+    questions = evaluations, previews, decisions, explanations, impacts, solving, tolerances, variant_details
+    for one in questions:
         jobs.register(one.kind.name, one, one.failed, lane=CALCULATION)
     designs = Designs(database, jobs, catalogues, calculation_cache)
     solids = SolidPool(database, builds, analysing, settings.workers)
@@ -168,6 +171,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         labelling=LabelService(database),
         previews=previews,
         decisions=decisions,
+        explanations=explanations,
         studies=studies,
         worksheets=worksheets,
         imports=imports,

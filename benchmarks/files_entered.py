@@ -4,9 +4,10 @@
 (without HTTP, queue and the kernel's process), and for a PATCH of one closed-form step and an evaluation,
 with HTTP. With `--list` it names the files.
 
-A file counts once one of its functions is called, in any thread of the service, while the request is
-answered. Each request is sent a few times before, so that every cache is warm, and each time with a new
-value.
+A file counts once one of its functions is called while the request is answered, in any thread of the service
+but those of `BACKGROUND`, which look for work from time to time. With HTTP it counts if each of three such
+requests enters it: the thread that writes to the database serves others as well. Each is sent a few times
+before, so that every cache is warm, and each time with a new value.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ import json
 import socket
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import CodeType
 from typing import Any
 
 import httpx
@@ -28,14 +30,15 @@ from benchmarks.function_calls import PACKAGES, WARM_UP, Bench, Calls
 
 ROOT = Path(__file__).parents[1]
 API = "/api/v1"
+COUNTS = 3  # requests of which each must enter a file
 QUIET = {"If-Match": "*", "Prefer": "wait=60"}
 
 
 class Files:
     """The files of each package that one request entered."""
 
-    def __init__(self, calls: Calls, root: Path) -> None:
-        names = {Path(code.co_filename).relative_to(root) for code in calls.counts}
+    def __init__(self, functions: Iterable[CodeType], root: Path) -> None:
+        names = {Path(code.co_filename).relative_to(root) for code in functions}
         self.by_package = {
             package: sorted(str(name) for name in names if name.parts[0] == package) for package in PACKAGES
         }
@@ -64,7 +67,7 @@ def change_to_step(root: Path = ROOT) -> Files:
             bench.patch(design, scale(WARM_UP))
         if not bench.is_current(design):
             raise RuntimeError("the change that was counted did not lead to a solid")
-        return Files(calls, root)
+        return Files(calls.counts, root)
 
 
 def scale(turn: int) -> dict[str, Any]:
@@ -114,11 +117,14 @@ LIMITS = dict(zip(COUNTED, (50, 45, 20), strict=True))
 def _counted(calls: Calls, root: Path, ask: Callable[[int], httpx.Response]) -> Files:
     for turn in range(WARM_UP):
         ask(turn).raise_for_status()
-    with calls.counting():
-        answer = ask(WARM_UP).raise_for_status()
-    if not json.loads(answer.content):
-        raise RuntimeError("the request that was counted has no answer")
-    return Files(calls, root)
+    entered = list[set[CodeType]]()
+    for turn in range(WARM_UP, WARM_UP + COUNTS):
+        with calls.counting():
+            answer = ask(turn).raise_for_status()
+        if not json.loads(answer.content):
+            raise RuntimeError("the request that was counted has no answer")
+        entered.append(set(calls.counts))
+    return Files(set.intersection(*entered), root)
 
 
 @contextmanager
@@ -158,8 +164,8 @@ def main() -> None:
     for name, count in COUNTED.items():
         files = count()
         print(f"{name}: {files.app} files of app (limit {LIMITS[name]}), {files.templates} of templates")
-        for file in files.by_package["app"] if "--list" in sys.argv else ():
-            print(f"  {file}")
+        for package in ("app", "templates") if "--list" in sys.argv else ():
+            print("\n".join(f"  {file}" for file in files.by_package[package]))
 
 
 if __name__ == "__main__":

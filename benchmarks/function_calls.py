@@ -27,6 +27,11 @@ from typing import Any
 
 PACKAGES = ("app", "cad", "templates")
 WARM_UP = 3  # changes before the one that is counted
+BACKGROUND = (
+    *("jobs-", "leases", "progress", "operation-clock"),
+    *("audit-sealer", "retention", "worksheets", "imported models"),
+)
+"""How the names of threads begin that serve no request, and look from time to time whether there is work."""
 BEGINS, LOCATION = 0, 3  # the argument of RESUME where a function begins, and the bits that say where it is
 
 
@@ -41,7 +46,8 @@ class Calls:
     def __call__(self, frame: FrameType, event: str, _: Any) -> None:
         """Count the call, if it is one of ours."""
         code = frame.f_code
-        if self._is_on and event == "call" and code.co_filename.startswith(self._folders):
+        is_ours = self._is_on and event == "call" and code.co_filename.startswith(self._folders)
+        if is_ours and not threading.current_thread().name.startswith(BACKGROUND):
             is_new = code.co_code[frame.f_lasti + 1] & LOCATION == BEGINS
             self.counts[code] += is_new
 

@@ -18,11 +18,12 @@ from app.approvals.service import ApprovalService
 from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
+from app.designs.explanation import ExplanationQuestion
 from app.designs.labels import LabelService
 from app.designs.preview import PreviewRequest
 from app.designs.questions import DesignQuestion
 from app.designs.schemas.decision import Decision
-from app.designs.schemas.designs import Preview
+from app.designs.schemas.designs import Explanation, Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
@@ -84,6 +85,7 @@ TheImports = Annotated[Imports, Depends(_part("imports"))]
 TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
 ThePreviews = Annotated[Questions[PreviewRequest, Preview], Depends(_part("previews"))]
 TheDecisions = Annotated[Questions[decisions.DecisionQuestion, Decision], Depends(_part("decisions"))]
+TheExplanations = Annotated[Questions[ExplanationQuestion, Explanation], Depends(_part("explanations"))]
 TheSolving = Annotated[Questions[DesignQuestion, DesignSolution], Depends(_part("solving"))]
 TheTolerances = Annotated[Questions[DesignQuestion, ToleranceAnalysis], Depends(_part("tolerances"))]
 TheVariantDetails = Annotated[Questions[WantedVariant, VariantDetail], Depends(_part("variant_details"))]

@@ -10,11 +10,12 @@ from app.approvals.service import ApprovalService
 from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions as decisions_of
+from app.designs.explanation import ExplanationQuestion
 from app.designs.labels import LabelService
 from app.designs.preview import PreviewRequest
 from app.designs.questions import DesignQuestion
 from app.designs.schemas.decision import Decision
-from app.designs.schemas.designs import Preview
+from app.designs.schemas.designs import Explanation, Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
@@ -62,6 +63,7 @@ class Services:
     labelling: LabelService
     previews: Questions[PreviewRequest, Preview]
     decisions: Questions[decisions_of.DecisionQuestion, Decision]
+    explanations: Questions[ExplanationQuestion, Explanation]
     studies: Studies
     worksheets: Worksheets
     imports: Imports

@@ -173,12 +173,14 @@ def auto_map(id: str) -> Exchange[list[Proposal]]:
     return (yield from answered(Proposals, request)).proposals
 
 
-def explain(id: str, name: str, *, units: System = "si") -> Exchange[Explanation]:
+def explain(
+    id: str, name: str, *, units: System = "si", on_progress: Progress | None = None
+) -> Exchange[Explanation]:
     """Explain where a model parameter, such as `model.inner_diameter`, or a criterion's verdict comes from.
 
     The quantities of the answer are in `units`, "si" or "us".
     """
-    return answered(Explanation, get(f"/designs/{id}/explain/{name}", (("units", units),)))
+    return calculated(Explanation, get(f"/designs/{id}/explain/{name}", (("units", units),)), on_progress)
 
 
 def network(id: str) -> Exchange[DesignNetwork]:

@@ -6,22 +6,17 @@ from dataclasses import dataclass, replace
 
 from app.calculations.json_values import rendered
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
-from app.designs.document import Document
-from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.errors import DesignError
-from app.designs.graph import build_graph, raise_if, settled, starts
-from app.designs.questions import settled as settled_question
+from app.designs.graph import raise_if
+from app.designs.questions import calculated_revision, settled
 from app.designs.schemas.decision import Decision, LevelTrial
 from app.plain import JsonObject, Raw
 from app.pool.questions import DECISION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Quantity
-from app.solids.analysis_rows import analysed
-from app.solids.rows import built
 from app.storage.database import Database
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
@@ -71,7 +66,9 @@ def decided(
     InvalidInputs
         If a criterion is named that the design does not have.
     """
-    number, calculation = _calculated(asked, database, catalogues)
+    row, _, calculation = calculated_revision(asked, database, catalogues)
+    raise_if(calculation.faults)
+    number = row.number
     names = Verdicts(calculation).names()
     unknown = (name for name in asked.criteria or () if name not in names)
     raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
@@ -81,25 +78,6 @@ def decided(
         decision = _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
     is_whole = decision.stopped != "pending"
     return Reply(decision, None if is_whole else replace(asked, revision=number))
-
-
-def _calculated(
-    asked: DecisionQuestion, database: Database, catalogues: Catalogues
-) -> tuple[int, Calculation]:
-    """Return the revision, the newest if none is named, as it was calculated."""
-    with database.read() as session:
-        row = (
-            repository.head(session, asked.design)
-            if asked.revision is None
-            else repository.revision(session, asked.design, asked.revision)
-        )
-    document = Document.model_validate(row.document)
-    graph, faults = build_graph(document, catalogues)
-    raise_if(faults)
-    assumed = {**starts(document), **settled(row.results)}
-    calculation = calculate(graph, built(database), analysed(database), assumed)
-    raise_if(calculation.faults)
-    return row.number, calculation
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
@@ -141,6 +119,6 @@ DECISIONS = Kind(
     json_answer(Decision),
     decided,
     failures=(DesignError,),
-    settle=settled_question,
+    settle=settled,
     has_parts=True,
 )

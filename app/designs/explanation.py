@@ -2,14 +2,49 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 from app.catalogue.catalogues import Catalogues
 from app.designs.criterion_explanation import explain_any
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
+from app.designs.errors import DesignError
+from app.designs.questions import calculated_revision, settled
 from app.designs.schemas.designs import Explanation
 from app.designs.sensitivities import SensitivityQuestion, sensitivities
+from app.pool.questions import EXPLANATION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
+from app.storage.database import Database
+
+
+@dataclass(frozen=True)
+class ExplanationQuestion:
+    """The name in a design that is to be explained; quantities and slopes are in `units`.
+
+    `revision` is the newest, if it is None.
+    """
+
+    design: str
+    name: str
+    units: System = "si"
+    revision: int | None = None
+
+
+def explanation(
+    asked: ExplanationQuestion, database: Database, catalogues: Catalogues
+) -> Reply[ExplanationQuestion, Explanation]:
+    """Return the explanation, unless its caller does not wait for the steps of the design.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design, or nothing in it is called so.
+    """
+    row, document, calculation = calculated_revision(asked, database, catalogues)
+    if calculation.deferred:
+        return Reply(None, replace(asked, revision=row.number))
+    return Reply(explained(document, calculation, catalogues, asked.name, asked.units))
 
 
 def explained(
@@ -31,3 +66,13 @@ def explained(
     )
     reason = {} if slopes.reason is None else {"reason": slopes.reason}
     return chain.in_units(system).model_copy(update={"sensitivities": list(slopes.items), **reason})
+
+
+EXPLANATIONS = Kind(
+    EXPLANATION,
+    json_form(ExplanationQuestion),
+    json_answer(Explanation),
+    explanation,
+    failures=(DesignError,),
+    settle=settled,
+)

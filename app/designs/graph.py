@@ -38,7 +38,6 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTempl
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
-from templates.core.units.conformity import misfit, turns_remark
 from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import Value, read, read_any
 from templates.core.units.relation import Relation, is_relation, parse
@@ -363,27 +362,20 @@ def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
         name: kinds[name] if name in network.parameters else network.kind_of(reference)
         for name, reference in cell.uses.items()
     }
-    own = [relation.kind(used) for relation in cell.relations]
     if cell.declared is not None:
-        for kind, relation in zip(own, cell.relations, strict=True):
-            _check_target(cell, relation, kind)
-    return replace(own[0], literal=False, pi=0, twos=frozenset())
+        for relation in cell.relations:
+            _check_target(cell, relation, used)
+    return replace(cell.relations[0].kind(used), literal=False, pi=0, twos=frozenset())
 
 
-def _check_target(cell: Cell, relation: Relation, kind: Kind) -> None:
+def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> None:
     declared = cell.declared
     assert declared is not None
     if isinstance(declared, Choice):
         message = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
         raise FaultyText("unit_mismatch", message)
-    want = unit(declared.meaning.accepted)
-    text = relation.text.removeprefix("=").strip()
-    if mismatch := misfit(kind, want, text):
-        why, remedy = mismatch
-        hint = f"; {remedy}" if remedy else ""
-        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}, but {why}{hint}")
-    if remark := turns_remark(kind, want, text):
-        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}: {remark}")
+    if why := relation.misfit(used, declared.meaning.accepted):
+        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}{why}")
 
 
 LONGEST_PLACE = 200  # characters of where in a document something is wrong

@@ -9,14 +9,21 @@ from typing import ClassVar, Protocol, TypeVar
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
 from app.designs.errors import DesignError
+from app.designs.graph import build_graph, raise_if, starts
+from app.designs.graph import settled as iterated
 from app.designs.tasks import DesignTask
 from app.pool.errors import StepDeferred
 from app.pool.questions import Kind, Reply, json_answer, json_form
 from app.pool.steps import in_the_pool
 from app.presentation.units import System
 from app.schemas.answers import Answer
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built
 from app.storage.database import Database
+from app.storage.tables import RevisionRow
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
@@ -106,6 +113,31 @@ def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, It
     models = [(model.id, model.version) for model in document.models.values()]
     used = [*_digests(catalogues.templates, steps), *_digests(catalogues.models, models)]
     return replace(asked, revision=number), (str(event), *used)
+
+
+def calculated_revision(
+    asked: AboutRevision, database: Database, catalogues: Catalogues
+) -> tuple[RevisionRow, Document, Calculation]:
+    """Return the revision of a question, the newest if it names none, and its document as calculated.
+
+    Iterations stand where they ended. Faults are left in the calculation.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design or revision.
+    """
+    with database.read() as session:
+        row = (
+            repository.head(session, asked.design)
+            if asked.revision is None
+            else repository.revision(session, asked.design, asked.revision)
+        )
+    document = Document.model_validate(row.document)
+    graph, faults = build_graph(document, catalogues)
+    raise_if(faults)
+    assumed = {**starts(document), **iterated(row.results)}
+    return row, document, calculate(graph, built(database), analysed(database), assumed)
 
 
 def _digests(catalogue: Catalogue[T], versions: Iterable[tuple[str, object]]) -> Iterator[str]:

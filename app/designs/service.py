@@ -18,18 +18,16 @@ from app.designs.drives import network
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
-from app.designs.explanation import explained
 from app.designs.graph import Graph, build_graph, raise_if, read_document, resolved, starts
 from app.designs.repository import Newest, StoredRevision, note_revision
 from app.designs.results import ModelState, Outcome
-from app.designs.schemas.designs import Design, Explanation, Proposal
+from app.designs.schemas.designs import Design, Proposal
 from app.designs.schemas.network import DesignNetwork
 from app.designs.variants.checks import checked
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import Json, JsonObject, Raw
 from app.pool.steps import PendingCalculations, begun_steps
-from app.presentation.units import System
 from app.reference import Reference
 from app.solids.analysis_rows import analysed
 from app.solids.rows import built, renew
@@ -146,18 +144,6 @@ class Designs:
         with self.database.read() as session:
             document = repository.newest(session, id).document
         return network(document, self.catalogues)
-
-    def explanation(self, id: str, name: str, system: System) -> Explanation:
-        """Return the explanation of a model parameter or of a criterion's verdict.
-
-        Raises
-        ------
-        NotFound
-            If there is no such design, or nothing in it is called so.
-        """
-        with self.database.read() as session:
-            row = repository.head(session, id).document
-        return explained(*self.prepare(row), self.catalogues, name, system)
 
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"

@@ -1,9 +1,10 @@
 """A question is answered at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
-solutions, analyses of tolerances, single variants and the impact of versions. If a client stops waiting, a
-job takes over the running calculation and stores the answer as an artifact, which the client fetches later. A
-job is known by the key of its question, so an equal question finds its job, or the answer itself.
+solutions, explanations with sensitivities, analyses of tolerances, single variants and the impact of
+versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
+artifact, which the client fetches later. A job is known by the key of its question, so an equal question
+finds its job, or the answer itself.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ from templates.core.errors import TemplateError
 
 CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
 TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "variant"
-ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT)
+EXPLANATION = "explanation"
+ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT, EXPLANATION)
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
 FAILURES = (TemplateError, NotFound, CannotRebuild, DeadlineExceeded, MemoryExceeded)
@@ -128,7 +130,10 @@ class Kind(Generic[Q, A]):
 
 
 class Questions(Generic[Q, A]):
-    """Answers questions of one kind, makes jobs where that takes long, and is the handler of such jobs."""
+    """Answers questions of one kind, makes jobs where that takes long, and is the handler of such jobs.
+
+    A save is no question: its job is committed with a revision and completes it, and keeps no answer.
+    """
 
     def __init__(
         self,

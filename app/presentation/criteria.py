@@ -14,6 +14,7 @@ from typing import Protocol
 from app.presentation import numbers
 from app.reference import Reference
 from templates.core.criteria.judgement import is_model
+from templates.core.criteria.sentences import told_apart
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
@@ -197,7 +198,12 @@ def compared(criterion: JudgedCriterion) -> str:
         return ""
     right = sides(criterion.require)[2]
     called = f"{plain_name(right)} " if _ONE_NAME.fullmatch(right) else ""
-    return f"{numbers.in_line(value)} {_sign(criterion, value, limit)} {called}{numbers.in_line(limit)}"
+    one, other = numbers.in_line(value), numbers.in_line(limit)
+    if one == other and value.value != limit.value:
+        one, other = (
+            f"{text} {numbers.unit(value.unit)}".strip() for text in told_apart(value.value, limit.value)
+        )
+    return f"{one} {_sign(criterion, value, limit)} {called}{other}"
 
 
 def _sign(criterion: JudgedCriterion, value: Amount, limit: Amount) -> str:

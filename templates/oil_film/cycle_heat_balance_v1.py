@@ -26,6 +26,7 @@ from templates.physics.heat.cycle_heat import (
     CycleBearing,
     CycleHeat,
     CycleOil,
+    all_flow,
     feed_flow_of,
     left_by_HTHS,
     loss_of,
@@ -321,6 +322,11 @@ class CycleHeatBalance(Oil, FedBearing):
     def Q_p(self) -> Array:
         """Flow from the groove over its lands due to supply pressure, with the gap along the groove."""
         return feed_flow_of(self.heat, self.eta_e)
+
+    @formula("l/min", "total oil flow", symbol="Q_{t}", latex="Q+Q_{p}")
+    def Q_t(self) -> Array:
+        """What the supply has to deliver: all that leaves by the ends."""
+        return all_flow(self.Q, self.Q_p)
 
     @shared
     def fed(self) -> FedDuty:

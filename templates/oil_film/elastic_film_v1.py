@@ -343,3 +343,8 @@ class ElasticFilm(Oil, Journal):
     @formula("l/min", "side flow", symbol="Q", source=ISO)
     def Q(self) -> Array:
         return self.film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_h
+
+    @formula("l/min", "total oil flow", symbol="Q_{t}")
+    def Q_t(self) -> Array:
+        """What the supply has to deliver: all that leaves by the ends."""
+        return self.Q

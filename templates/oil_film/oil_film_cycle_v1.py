@@ -407,6 +407,11 @@ class OilFilmCycle(FedBearing):
         """Flow from both ends with the supplied oil, mean over the cycle; bars mark dimensionless values."""
         return (self.film.side_flow + self.film.feed_flow) * self.W * self.D * self.c * self.Omega / 2
 
+    @formula("l/min", "total oil flow", symbol="Q_{t}", absent=STARVED)
+    def Q_t(self) -> Array:
+        """What the supply has to deliver: all that leaves by the ends."""
+        return self.Q
+
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
              latex=r"\text{from three rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
     def numerical_error(self) -> Array:

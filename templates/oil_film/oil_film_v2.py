@@ -388,6 +388,11 @@ class OilFilm(WarmOil, Journal):
     def Q(self) -> Array:
         return self.film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_h
 
+    @formula("l/min", "total oil flow", symbol="Q_{t}")
+    def Q_t(self) -> Array:
+        """What the supply has to deliver: all that leaves by the ends."""
+        return self.Q
+
     @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=ISO)
     def Re(self) -> Array:
         return self.rho * abs(self.omega_s) * self.D * self.c / (4 * self.eta)

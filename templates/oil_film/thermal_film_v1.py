@@ -314,6 +314,11 @@ class ThermalFilm(Oil, Template):
     def Q(self) -> Array:
         return self.film.side * self.q_0
 
+    @formula("l/min", "total oil flow", symbol="Q_{t}")
+    def Q_t(self) -> Array:
+        """What the supply has to deliver: all that leaves by the ends."""
+        return self.Q
+
     @formula("W", "heat generated", symbol=r"\Phi")
     def Phi(self) -> Array:
         """Power loss, and the work of the supply's pressure."""

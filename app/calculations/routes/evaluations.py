@@ -12,7 +12,7 @@ from app.api.file_answers import UNAVAILABLE
 from app.api.responses import LATER
 from app.calculations.schemas.evaluations import AnyCalculation
 from app.designs.schemas.decision import Decision
-from app.designs.schemas.designs import Preview
+from app.designs.schemas.designs import Explanation, Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.http.access import TheClient
@@ -32,7 +32,8 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"], route_class
     | DesignSolution
     | ToleranceAnalysis
     | Impact
-    | VariantDetail,
+    | VariantDetail
+    | Explanation,
     responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(

@@ -18,6 +18,7 @@ from app.api.dependencies import (
     IdempotencyKey,
     TheDatabase,
     TheDesigns,
+    TheExplanations,
     TheJobs,
     TheOnce,
     ThePreviews,
@@ -27,9 +28,10 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.responses import LONGEST, finished, later, patience, written
+from app.api.responses import LATER, LONGEST, finished, later, patience, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
+from app.designs.explanation import ExplanationQuestion
 from app.designs.filters import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.preview import PreviewRequest
@@ -295,22 +297,26 @@ def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dic
         return {name: model.in_units(units) for name, model in measured.items()}
 
 
-@router.get("/{id}/explain/{name}", responses=refusals(404))
+@router.get(
+    "/{id}/explain/{name}", response_model=Explanation, responses={**LATER, **refusals(404, 422, 429)}
+)
 async def explain_name(
     id: Id,
     name: Explained,
-    designs: TheDesigns,
-    threads: TheThreads,
+    explanations: TheExplanations,
+    client: TheClient,
     request: Request,
     units: Units = "si",
-) -> Explanation:
+    prefer: Prefer = None,
+) -> Response:
     """Where a model parameter or the verdict of a criterion comes from.
 
     Of a parameter: dimension ← relation ← output ← formula ← inputs. Of a criterion such as `film.film`:
     verdict ← value ← formula ← inputs, and limit ← who gave it. `sensitivities` are local slopes to the
     quantities as typed.
     """
-    return await threads.run_for(request, designs.explanation, id, name, units)
+    asked = ExplanationQuestion(id, name, units)
+    return await answered(explanations, asked, request, client, patience(prefer, explanations.steps.deadline))
 
 
 def document_of(body: DesignIn) -> tuple[JsonObject, str | None]:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
 
+from app.designs.explanation import ExplanationQuestion
 from app.presentation.criteria import line
 from app.web.explanation.sensitivities import sensitivity_lines
 from app.web.shared.paths import Id
@@ -21,9 +22,10 @@ async def explanation(
     id: Id, name: Annotated[str, Path(max_length=140)], request: Request, services: ThePageServices
 ) -> Response:
     """Show where a model parameter, or the verdict of a criterion, comes from."""
+    asked = ExplanationQuestion(id, name, units_of(request))
     design, chain = await asyncio.gather(
         services.run(services.designs.show, id),
-        services.calculate(None, services.designs.explanation, id, name, units_of(request)),
+        services.calculate(None, services.explanations.at_once, asked),
     )
     judged = line(chain.criterion) if chain.criterion else None
     slopes = sensitivity_lines(chain.sensitivities or [])

@@ -1,5 +1,5 @@
 // Criteria in words, as app/presentation/criteria.py writes them.
-import { percent, plain, quantityText } from "../shared/numbers.js";
+import { percent, plain, quantityText, unit } from "../shared/numbers.js";
 
 export const WORDS = { met: "met", not_met: "not met", undecided: "undecided", not_checked: "not checked" };
 const UNKNOWN = "error unknown";
@@ -39,7 +39,16 @@ export function compared({ value, limit, require }) {
   const [, sign, right] = sides(require);
   const called = isName(right) ? `${plainName(right)} ` : "";
   const atLeast = sign === ">=" ? (value.value >= limit.value ? "≥" : "<") : value.value <= limit.value ? "≤" : ">";
-  return `${quantityText(value)} ${atLeast} ${called}${quantityText(limit)}`;
+  const [one, other] = toldApart(value, limit);
+  return `${one} ${atLeast} ${called}${other}`;
+}
+
+// Two quantities in so many digits that they differ, unless they are equal.
+function toldApart(value, limit) {
+  const texts = [quantityText(value), quantityText(limit)];
+  for (let digits = 4; texts[0] === texts[1] && value.value !== limit.value && digits <= 17; digits += 1)
+    [value, limit].forEach((one, place) => (texts[place] = `${Number(one.value.toPrecision(digits))} ${unit(one.unit)}`.trim()));
+  return texts;
 }
 
 export function margin({ margin: left, band, limit, require }) {

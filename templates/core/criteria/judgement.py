@@ -132,4 +132,7 @@ def not_judged(judgement: Judgement) -> str:
 
 def _in_words(text: str) -> str:
     """Return a side in words; a number stands for itself, and is shown as the value."""
-    return "" if text.removeprefix("-")[:1].isdigit() else _NAME.sub(lambda n: n[1].replace("_", " "), text)
+    if text.removeprefix("-")[:1].isdigit():
+        return ""
+    words = _NAME.sub(lambda name: name[1].replace("_", " "), text)
+    return words if _NAME.fullmatch(text) else f"{words} ="

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import pint
 
-from templates.core.units.units import Unit, base_text, radians, registry, unit
+from templates.core.units.units import base_text, radians, registry, unit
 
 ONE = registry.Unit("")
 Temperatures = frozenset[float] | None
@@ -64,6 +65,7 @@ class Kind:
         return bool(self.base == registry.kelvin)
 
 
+@lru_cache(maxsize=4096)
 def kind_of(text: str, name: str | None = None) -> Kind:
     """Return the kind of a value that is given or declared in a unit.
 
@@ -79,16 +81,13 @@ def kind_of(text: str, name: str | None = None) -> Kind:
     FaultyText
         With code `unknown_unit`.
     """
-    return _kind_in(unit(text), name or text)
-
-
-def _kind_in(scale: Unit, name: str) -> Kind:
+    scale = unit(text)
     either = scale.base == registry.kelvin and not scale.difference
     return Kind(
         scale.base,
         scale.cycles,
         TEMPERATURE if scale.absolute else EITHER if either else DIFFERENCE,
-        turned=frozenset((name,)) if scale.turns and radians(scale.base) else frozenset(),
+        turned=frozenset((name or text,)) if scale.turns and radians(scale.base) else frozenset(),
     )
 
 

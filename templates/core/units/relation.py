@@ -20,11 +20,12 @@ import numpy as np
 from templates.core import definition_cache
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.conditions import CONDITIONS, IS
+from templates.core.units.conformity import misfit, turns_remark
 from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
 from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
 from templates.core.units.sorts import sorted_by
-from templates.core.units.units import Value, forget_units
+from templates.core.units.units import Value, forget_units, unit
 from templates.core.units.walking import LISTWISE, applied_in, nodes_of, value_of
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
@@ -98,7 +99,22 @@ class Relation:
             With code `unit_mismatch`, where units do not go together; `no_truth`, where conditions and
             quantities do not.
         """
-        return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names - self.choices)))
+        return _checked(self.text, self._kinds(kinds))
+
+    def misfit(self, kinds: Mapping[str, Kind], declared: str) -> str:
+        """Return why the value cannot stand where a unit is declared, and a remedy; empty if it can.
+
+        The text follows the name of what is declared and its unit: `, but this gives a length`.
+
+        Raises
+        ------
+        FaultyText
+            As `kind`.
+        """
+        return _misfit(self.text, self._kinds(kinds), declared)
+
+    def _kinds(self, kinds: Mapping[str, Kind]) -> tuple[tuple[str, Kind], ...]:
+        return tuple((name, kinds[name]) for name in sorted(self.names - self.choices))
 
     def value(self, values: Mapping[str, Value]) -> Value:
         """Return the value in SI, from the SI values of its names; not finite where the arithmetic is not.
@@ -187,6 +203,17 @@ def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
         detail = f"{excerpt(text)} is a condition and no value; write if … then … else …"
         raise FaultyText("no_truth", detail)
     return sort.kind
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _misfit(text: str, kinds: tuple[tuple[str, Kind], ...], declared: str) -> str:
+    """Return what `Relation.misfit` does."""
+    kind, want, written = _checked(text, kinds), unit(declared), text.removeprefix("=").strip()
+    if mismatch := misfit(kind, want, written):
+        why, remedy = mismatch
+        return f", but {why}; {remedy}" if remedy else f", but {why}"
+    remark = turns_remark(kind, want, written)
+    return f": {remark}" if remark else ""
 
 
 def _sort(node: Any, kinds: Mapping[str, Kind]) -> Sort:

@@ -148,8 +148,8 @@ class Balance:
 
     @property
     def flow_error(self) -> float:
-        """Return how far the side flow may be off, relative [-]."""
-        return self._error(lambda refined: refined.film.side_flow, 1)
+        """Return how far the side flow, which converges irregularly, may be off, relative [-]."""
+        return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[Refined], float], order: int) -> float:
         """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""

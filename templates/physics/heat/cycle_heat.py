@@ -281,6 +281,12 @@ def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
     return _where_known(eta, heat.feed_flow)
 
 
+@units("m**3/s", "m**3/s", returns="m**3/s", latex="{0}+{1}")
+def all_flow(side: Array, feed: Array) -> Array:
+    """Return what leaves by the ends [m³/s]; where the side flow has all of it there is no feed flow."""
+    return side + np.nan_to_num(feed)
+
+
 @units(None, "1", "1", "Pa*s", "K", "K", None, "kg/m**3", "K", returns="Pa*s")
 def viscosity_at_150(
     law: str, A: Array, B: Array, a: Array, b: Array, offset: Array, eta: Array, rho_ref: Array, T_ref: Array

@@ -67,6 +67,8 @@ class TestIterations:
         assert rounds[-1]["measured"] == pytest.approx(rounds[-1]["assumed"], rel=1e-6)
         size = 20 + 0.5 * rounds[-1]["assumed"]
         assert rounds[-1]["measured"] == pytest.approx(7850e-9 * size**3, rel=1e-9)
+        explained = http.get(f"{DESIGNS}/{design['id']}/explain/model.size").json()
+        assert explained["value"]["value"] == pytest.approx(size, rel=1e-9)  # not that of the start, 20.05 mm
 
     def test_one_that_does_not_says_so(self, http):
         design = created(http, feedback("5 mm/kg", limit=3, tolerance=1e-9))

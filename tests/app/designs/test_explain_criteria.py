@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from patience import until
 from serving import API, created, problem
 from test_design_criteria import FILM
 
@@ -154,3 +155,23 @@ def test_the_client_explains_a_criterion(client, design):
     assert chain.criterion.verdict == "met"
     assert chain.because[-1].kind == "written"
     assert "film.radial_load" in {one.name for one in chain.sensitivities}
+
+
+def test_an_explanation_that_takes_long_goes_on_as_a_job(http):
+    step = {
+        "template": "oil_film",
+        "version": 2,
+        "level": "reynolds",
+        "inputs": {**FILM, "speed": "2345 rpm"},
+    }
+    own = {"own": {"require": "film.minimum_film_thickness >= 2 um"}}
+    later, document = {"Prefer": "respond-async"}, {"name": "long", "steps": {"film": step}, "criteria": own}
+    id = http.post(DESIGNS, json=document, headers=later).json()["id"]
+    answer = http.get(f"{DESIGNS}/{id}/explain/own", headers=later)
+    assert answer.status_code == 202, answer.text
+    job = answer.headers["Location"]
+    until(lambda: http.get(job).json()["state"] == "done")
+    chain = http.get(http.get(job).json()["result"]).json()
+    assert chain == explained(http, id, "own")
+    assert sides(chain)["value"]["name"] == "film.minimum_film_thickness"
+    assert "nothing" in problem(http.get(f"{DESIGNS}/{id}/explain/nothing"), 404, "not-found")["detail"]

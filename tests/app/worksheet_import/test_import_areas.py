@@ -99,6 +99,7 @@ class TestCompressed:
             (gzip.compress(gzip.compress(MIN)), "xml"),
             (gzip.compress(b"<!DOCTYPE a><a/>"), "entities"),
         ],
+        ids=["cut", "damaged", "head alone", "empty", "bomb", "twice", "document type"],
     )  # fmt: skip
     def test_damaged_and_hostile_ones_are_refused_by_name(self, content, code):
         with pytest.raises(SheetNotRead) as refusal:

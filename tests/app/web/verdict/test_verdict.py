@@ -79,6 +79,11 @@ def test_a_violated_limit_is_worded_as_violated():
     assert title(above) == "film temperature"
 
 
+def test_a_value_just_below_its_limit_is_not_shown_equal_to_it():
+    near = {"value": 2.0 - 1e-7, "unit": "um"}
+    assert compared(criterion(WORST, value=near)) == "1.9999999 µm < smallest permissible film 2 µm"
+
+
 def test_two_criteria_of_one_value_are_told_apart():
     exists = criterion(WORST, name="film.film_exists", require="minimum_film_thickness >= 0.05 um")
     assert title(criterion(WORST)) == "minimum film thickness"
