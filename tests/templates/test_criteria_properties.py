@@ -41,13 +41,13 @@ def judged(cls, inputs, limits):
 
 
 def assert_honest(judgement):
-    """A verdict has what it needs, and `met` is true of the whole band."""
+    """A verdict has what it needs; `met` is true of the whole band, if one is known."""
     if judgement.verdict == "not_checked":
         assert judgement.give or judgement.reason
         return
     assert math.isfinite(judgement.value)
     assert math.isfinite(judgement.limit)
-    if judgement.verdict == "met":
+    if judgement.verdict == "met" and (judgement.error_known or judgement.band is not None):
         low, high = judgement.band
         assert (low if ">=" in judgement.require else -high) > -math.inf
     if judgement.verdict in ("met", "not_met"):
