@@ -16,10 +16,10 @@ GROWING = {
     "Calculation",
     "Caller",
     "Graph",
-    "Findings",
+    "Faults",
     "Contents",
-    "Restored",
-    "Meetings",
+    "RestoreResult",
+    "Crossings",
     "_Rows",
     "Climb",
     "StepRows",
@@ -35,7 +35,8 @@ GROWING = {
     "_Topic",
     "_Reader",
     "Node",
-    "Resolved",
+    "RowsWithSolids",
+    "_Marks",
     "StudySolids",
     "Function",
     "Writer",
@@ -48,7 +49,7 @@ GROWING = {
 }
 """Records that one function fills step by step before it returns them."""
 
-MANY = {"Answer", "Compared", "Estimate", "Judgement", "UsedInput", "Worst"}
+MANY = {"Answer", "Comparison", "Estimate", "Judgement", "UsedInput", "Worst"}
 """Records of which each calculation makes hundreds: frozen, one would cost four times as much or more."""
 
 

@@ -6,6 +6,8 @@ lobes, bell mouths and a tilted journal; each answer says by which level, and ho
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 import numpy as np
 
 from templates.core.language.declare import limits
@@ -61,14 +63,14 @@ UNBORNE = (
     "touches: move that groove away, or raise the supply pressure until it lifts the journal"
 )
 MESH_ERRORS = {
-    "minimum_film_thickness": "mesh_error",
-    "film_parameter": "mesh_error",
-    "relative_eccentricity": "place_error",
-    "attitude_angle": "place_error",
-    "maximum_pressure": "pressure_error",
-    "side_flow": "flow_error",
+    "minimum_film_thickness": attrgetter("mesh_error"),
+    "film_parameter": attrgetter("mesh_error"),
+    "relative_eccentricity": attrgetter("place_error"),
+    "attitude_angle": attrgetter("place_error"),
+    "maximum_pressure": attrgetter("pressure_error"),
+    "side_flow": attrgetter("flow_error"),
 }
-"""Outputs of which a bearing that is not plain states the error by its meshes, and the film's name for it."""
+"""Outputs whose mesh error a bearing that is not plain states, and where the film holds that error."""
 TAKE_A_SOLUTION = "lobes, bell mouth and tilt need level reynolds or mass_conserving"
 
 
@@ -245,9 +247,9 @@ class OilFilm(WarmOil, Journal):
 
     def own_error(self, output: str) -> Array:
         """The error by its meshes that a lobed or grooved bearing states, of which none was measured."""
-        field = MESH_ERRORS.get(output)
+        error_of = MESH_ERRORS.get(output)
         bent = (self.shape.mouth > 0) | (self.shape.tilt_x != 0) | (self.shape.tilt_y != 0)
-        stated = np.nan if field is None else getattr(self.film, field)
+        stated = np.nan if error_of is None else error_of(self.film)
         error = np.where(bent | (self.p_s > 0), np.nan, stated)[()]
         return np.asarray(error / (np.pi / 2) if output == "attitude_angle" else error)
 

@@ -264,7 +264,6 @@ class StressLife(Template):
     def n_a(self) -> Array:
         return ratio_or_none(self.S, self.sigma_ar)
 
-    @formula("1", "yield safety factor", symbol="n_y", published=(1, None), source=SHIGLEY,
-             absent="there is no stress", remedy="the part yields in its first cycle")  # fmt: skip
+    @formula("1", "yield safety factor", symbol="n_y", source=SHIGLEY, absent="there is no stress")
     def n_y(self) -> Array:
         return ratio_or_none(self.sigma_y, self.sigma_a + abs(self.sigma_m))

@@ -13,8 +13,8 @@ from typing import Any
 
 from templates.core.criteria.criterion import Criterion, Limit
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name, unknown_names
-from templates.core.units.quantity import read_beside
-from templates.core.units.units import Value
+from templates.core.units.quantity import read, read_beside
+from templates.core.units.units import Value, compatible, unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +109,14 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
     except KeyError:
         raise FaultyText("unknown_name", unknown_name(raw, list(library.rows()), "row").detail) from None
     wanted = {n: limit for n, limit in declared.items() if limit.library == name and n in row}
-    return {
-        n: GivenLimit(read_beside(row[n].quantity, limit.unit).si, row[n].source)
-        for n, limit in wanted.items()
-    }
+    return {n: GivenLimit(_of_row(row[n].quantity, limit.unit), row[n].source) for n, limit in wanted.items()}
+
+
+def _of_row(text: str, declared: str) -> Value:
+    """Return a value of a row in SI; its own unit tells a temperature from a difference, which K does not."""
+    own, want = unit(text.partition(" ")[2]), unit(declared)
+    is_temperature = own.offset and compatible(own, want) and not want.difference
+    return read(text, own.text if is_temperature else declared).si
 
 
 def fault_of(error: FaultyText, name: str) -> Fault:

@@ -111,7 +111,7 @@ ODD = [
     ("NaN", "1", "not_a_quantity"),
     ("NaN mm", "mm", "not_a_quantity"),
     ("inf mm", "mm", "not_a_quantity"),
-    ("1,5 mm", "mm", "unknown_unit"),
+    ("1,5 mm", "mm", "decimal_comma"),
     ("٣ mm", "mm", "not_a_quantity"),  # Arabic digits
     ("３ mm", "mm", "not_a_quantity"),  # full-width digits
     ("1_000 mm", "mm", "unknown_unit"),

@@ -112,7 +112,9 @@ class TestShapes:
     @pytest.mark.parametrize(("shape", "count"), [({"bore_shape": "lemon"}, 1), ({}, 0)])
     def test_property_lobes_without_preload_are_remarked(self, shape, count):
         warnings = evaluate(OilFilm, bearing(1.0, 0.5, **shape)).warnings
-        assert sum("without preload" in warning.detail for warning in warnings) == count
+        assert [w.detail for w in warnings if w.name == "preload"] == [
+            "preload 0 is not above 0; give preload, such as 0.5, or bore_shape plain"
+        ] * count
 
     def test_property_the_error_stated_is_that_of_the_mesh(self):
         lemon = evaluate(OilFilm, bearing(1.0, 0.5, bore_shape="lemon", preload=0.4))

@@ -188,8 +188,8 @@ class TestWarnings:
     def test_property_yield_is_warned_of(self, mean):
         raw = {"mean_stress_correction": "morrow", "yield_strength": "449 MPa"}
         (warning,) = answers({**local(300, mean), **raw}).warnings
-        assert warning.name == "yield_safety_factor"
-        assert "yields in its first cycle" in warning.detail
+        assert warning.code == "yields"
+        assert "= 450 MPa is above yield strength 449 MPa" in warning.detail
         assert answers({**local(300, mean), **raw, "yield_strength": "451 MPa"}).warnings == []
 
     def test_property_few_cycles_are_warned_of(self):
