@@ -34,8 +34,6 @@ PER_POINT = 2e-7  # each number of an output of an array call, before it is writ
 PER_VALUE = 1e-6  # each number of an answer, calculated and written as JSON [s]
 PER_NUMBER = 5e-7  # each number of a request, read and checked [s]
 PER_FORMULA = 3e-4  # written out in a worksheet [s]
-ALLOWANCE = 3.0
-"""The tables of the levels leave out stiffness and damping, which take twice as long as all the rest."""
 SCANS, CLOSINGS = 8, 120
 """Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
 SOLUTIONS = 2  # that are likely to be calculated again at the level requested
@@ -70,10 +68,8 @@ def array_seconds(
     plain += _bodies_seconds(cls, points * places) if calls else 0.0
     if level is None or not any("level" in cls.ancestors(cls.formulas[n].attribute) for n in wanted):
         return plain
-    measured = accuracy(cls)
-    cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
-    single = float(cost.get("single", 0.0))
-    return plain + ALLOWANCE * (calls * single + points * float(cost.get("vectorised", single)))
+    single, vectorised = _level_costs(cls, level)
+    return plain + calls * single + points * vectorised
 
 
 def solving_seconds(
@@ -199,15 +195,21 @@ def _evaluating(
     fine = (n for n in wanted if not cls.levels or "level" in cls.ancestors(cls.formulas[n].attribute))
     if next(fine, None) is None:
         return plain
-    return plain + ALLOWANCE * sum(_level_seconds(cls, level, points) for level in levels)
+    costs = (_level_costs(cls, level) for level in levels)
+    return plain + sum(single if points <= 1 else single + points * each for single, each in costs)
 
 
-def _level_seconds(cls: type[Template], level: str, points: int) -> float:
-    """Return the measured time of a level for a number of points [s]; None if it was not measured."""
+def _level_costs(cls: type[Template], level: str) -> tuple[float, float]:
+    """Return the measured time of all outputs of a level at one point, and at each of many [s]; 0 if unknown.
+
+    A table that was measured without some outputs states in `cost_of_all` how many times as long all take.
+    """
     measured = accuracy(cls)
-    cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
-    single = float(cost.get("single", 0.0))
-    return single if points <= 1 else single + points * float(cost.get("vectorised", single))
+    if measured is None:
+        return 0.0, 0.0
+    cost = measured.content["levels"].get(level, {}).get("cost", {})
+    single, whole = float(cost.get("single", 0.0)), float(measured.content.get("cost_of_all", 1.0))
+    return whole * single, whole * float(cost.get("vectorised", single))
 
 
 Shape = tuple[int, ...]
