@@ -100,7 +100,7 @@ def is_quick(cls: type[Template]) -> bool:
     """Return whether a few points take, at every level, no longer than a thread needs to begin."""
     if cls not in _quick:
         levels = cls.levels or (SINGLE,)
-        seconds = [_level_seconds(cls, level, 1) for level in levels] + [_bodies_seconds(cls, 1)]
+        seconds = [_level_costs(cls, level)[0] for level in levels] + [_bodies_seconds(cls, 1)]
         _quick[cls] = not cls.most_points and max(seconds) <= QUICK
     return _quick[cls]
 
