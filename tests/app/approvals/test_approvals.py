@@ -97,7 +97,7 @@ def test_roles_are_needed(room, design):
 def test_steps_come_one_after_another(room, design, step):
     reason = {"reason": "wrong"} if step == "withdrawn" else {}
     refused = problem(sign(room.checker, design, step, **reason), 409, "step-out-of-order")
-    assert "is to be calculated before" in refused["detail"]
+    assert "must be calculated before" in refused["detail"]
 
 
 def test_a_step_is_taken_once(room, design):

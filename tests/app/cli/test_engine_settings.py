@@ -73,7 +73,7 @@ def test_a_worker_needs_places_of_lanes_that_there_are(lanes, monkeypatch):
         (
             ["worker", "--scheduler", "tcp://10.0.0.1:1"],
             {},
-            "CRANKWRIGHT_ENGINE: tcp://10.0.0.1:1 would carry",
+            "CRANKWRIGHT_ENGINE: tcp://10.0.0.1:1 would send jobs",
         ),
         (["worker", "--scheduler", "tcp://127.0.0.1:1", "--lanes", "{}"], {}, "CRANKWRIGHT_LANES"),
         (["scheduler", "--host", "0.0.0.0"], {}, "refusing to listen on 0.0.0.0 without TLS"),

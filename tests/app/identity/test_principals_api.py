@@ -127,7 +127,7 @@ def test_the_limit_of_calculation_ends_at_midnight():
 
 
 def test_storage_does_not_come_back_so_no_time_is_named():
-    with pytest.raises(LimitReached, match="2 MiB of 2 MiB of storage, which neither") as caught:
+    with pytest.raises(LimitReached, match="2 MiB of 2 MiB of storage; neither") as caught:
         check(Limits(60, 2, 10, 5), PrincipalUsage(0, 0, 0, 2**21), "Ada")
     assert caught.value.headers == {}
 
