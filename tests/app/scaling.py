@@ -1,5 +1,6 @@
 """How the time of a function grows with its input: the thread's processor time, the least of several runs."""
 
+import gc
 from time import thread_time
 
 SIZES = (1, 2, 4)
@@ -21,9 +22,18 @@ def seconds(action, given):
 
 
 def times(action, make, size):
-    """The least times at one, two and four times the size; in turns, so that a disturbance meets all."""
+    """The least times at one, two and four times the size; in turns, so that a disturbance meets all.
+
+    The collector of garbage would walk through all objects of the test process, which are not the function's.
+    """
     inputs = [make(factor * size) for factor in SIZES]
-    runs = [[seconds(action, given) for given in inputs] for _ in range(REPEATS)]
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        runs = [[seconds(action, given) for given in inputs] for _ in range(REPEATS)]
+    finally:
+        if was_enabled:
+            gc.enable()
     return [min(run) for run in zip(*runs, strict=True)]
 
 
