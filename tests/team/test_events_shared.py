@@ -23,7 +23,7 @@ WRITER = """
 import sys
 sys.path.append(sys.argv[1])
 from listening import side
-from app.jobs.events import Event
+from app.jobs.events import Event, newest_numbers
 from app.storage.database import repeatable
 from app.storage.errors import StorageError
 
