@@ -5,6 +5,6 @@ import schemathesis
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 
 
-@schemathesis.serializer("model/step", "application/zip", XLSX)
+@schemathesis.serializer("model/step", "application/zip", "application/gzip", XLSX)
 def as_bytes(context, value):
     return value if isinstance(value, bytes) else str(value).encode("utf-8", "replace")

@@ -70,7 +70,7 @@ def test_a_design_is_renamed_and_found_by_its_new_name(watched, http, design, wo
     card(page, word).get_by_role("button", name="Rename").click()
     expect(card(page, word).get_by_role("link", name=f"{word} renamed <b>&")).to_be_visible()
     page.get_by_label("Part of a name").fill(f"{word} REN")
-    page.get_by_role("button", name="Search").click()
+    page.get_by_role("button", name="Search designs").click()
     expect(page.locator("tbody tr")).to_have_count(1)
     assert http.get(f"{API}/designs/{design['id']}").json()["revision"] == 2
     assert watched.faults() == []
