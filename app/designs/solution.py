@@ -1,4 +1,4 @@
-"""The answer to a question of solving: read, calculated in a process, and written for the interface."""
+"""Answer a question of `solve`: read it, calculate it in a process, and return its answer."""
 
 from __future__ import annotations
 

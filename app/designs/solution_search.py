@@ -1,7 +1,7 @@
-"""Solve a design: every value of one parameter or input between two bounds that gives a wanted output.
+"""Solve a design: find every value of an input between two bounds that gives a wanted output.
 
-The curve between the bounds is a few array calls of the whole design, every step at one level. Each crossing
-is confirmed at the levels of the design, or at those that a tolerance requires.
+The curve between the bounds takes a few array calls of the whole design, with each step at one level. Each
+crossing is then confirmed at the levels of the design, or at those that a tolerance requires.
 """
 
 from __future__ import annotations

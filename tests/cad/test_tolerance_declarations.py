@@ -85,7 +85,7 @@ def test_every_model_carries_its_diameters(model):
         ({"size": {"planes": "z", "colour": "red"}}, "valid keys are"),
         ({"size": {"planes": "z", "perpendicularity": 1}}, "need `to`"),
         ({"size": {"planes": "z", "perpendicularity": 1, "to": "A"}}, "no dimension declares the datum 'A'"),
-        ({"size": {"cylinders": "z", "cylindricity": 2}}, "share above 0 and up to 1"),
+        ({"size": {"cylinders": "z", "cylindricity": 2}}, "share, above 0 and at most 1"),
         ({"size": {"between": ["one", "other"]}}, "must name two other dimensions"),
         ({"size": {"shoulders": "pin"}}, "shoulders must name other dimensions"),
         ({"size": {"discs": ["pin"]}}, "discs must name other dimensions"),

@@ -1,4 +1,4 @@
-"""The page of a model import: the form, progress, refusal, and the available programs."""
+"""The page of a model import: the form, its progress, a refusal, and the available programs."""
 
 from __future__ import annotations
 

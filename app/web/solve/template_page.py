@@ -1,4 +1,4 @@
-"""The page that solves a template: which values of one input give a wanted output, with the curve."""
+"""The page that solves a template: values of one input that give a wanted output, and the curve."""
 
 from __future__ import annotations
 
