@@ -126,7 +126,9 @@ def _endpoint(endpoint: str | None) -> str | None:
         return None
     if not _ENDPOINT.fullmatch(endpoint):  # perhaps it holds keys: the text does not quote it
         address = "write an address such as https://s3.example.com:9000"
-        raise StoreRefused(f"CRANKWRIGHT_S3_ENDPOINT: {address}, and set keys in the environment variables of AWS.")
+        raise StoreRefused(
+            f"CRANKWRIGHT_S3_ENDPOINT: {address}, and set keys in the environment variables of AWS."
+        )
     return endpoint.rstrip("/")
 
 
