@@ -83,7 +83,7 @@ def test_every_model_carries_its_diameters(model):
         ({"size": {}}, "exactly one kind of faces"),
         ({"size": {"planes": "z", "cylinders": "z"}}, "exactly one kind of faces"),
         ({"size": {"planes": "z", "colour": "red"}}, "valid keys are"),
-        ({"size": {"planes": "z", "perpendicularity": 1}}, "need `to`"),
+        ({"size": {"planes": "z", "perpendicularity": 1}}, "`to`, a datum, is required"),
         ({"size": {"planes": "z", "perpendicularity": 1, "to": "A"}}, "no dimension declares the datum 'A'"),
         ({"size": {"cylinders": "z", "cylindricity": 2}}, "share, above 0 and at most 1"),
         ({"size": {"between": ["one", "other"]}}, "must name two other dimensions"),
