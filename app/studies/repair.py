@@ -105,9 +105,7 @@ class ChunkRepair:
                 return refused
         payload: JsonObject = {"study": id}
         jobs = self._services.jobs
-        job = self._services.database.write(lambda session: jobs.request(session, AGAIN, payload))
-        jobs.wake(AGAIN)
-        return RowsLost(id, job)
+        return RowsLost(id, jobs.commit(lambda session: jobs.request(session, AGAIN, payload), AGAIN))
 
     def _refuse(self, id: str, error: Exception) -> None:
         """Remember why rows cannot be calculated again: nothing but a new start of the service helps."""

@@ -70,6 +70,11 @@ class Refused(Exception):
         """Return the faults by the name of the input, with the other inputs that they concern."""
         return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
 
+    @property
+    def sentence(self) -> str:
+        """Return the reasons as one text."""
+        return "; ".join(self.faults.values()) or self.problem.detail
+
 
 def tag_of(revision: str) -> str:
     """Return the ETag of the revision in a form; of an invalid number, an ETag that matches nothing."""
