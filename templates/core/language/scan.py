@@ -121,6 +121,10 @@ class SampledCurve(ABC):
     def chooses(self) -> bool:
         """Return whether a tolerance chooses the level at each sample."""
 
+    @abstractmethod
+    def is_at_levels_of(self, other: Self) -> bool:
+        """Return whether another curve of the same output is calculated at the same levels."""
+
     @property
     def rows(self) -> int:
         """Number of samples that one call takes."""
@@ -213,6 +217,10 @@ class TargetCurve(SampledCurve):
     def at_level(self, level: str) -> TargetCurve:
         """Return the same curve, all of it at one level."""
         return replace(self, fidelity={"level": level})
+
+    def is_at_levels_of(self, other: Self) -> bool:
+        """Return whether another curve of the same output is calculated at the same level."""
+        return self.level == other.level
 
     def evaluation(self, values: Any) -> Evaluation:
         """Return the output at values of the unknown [SI]."""

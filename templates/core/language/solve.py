@@ -30,7 +30,8 @@ class Solution:
     """The lowest value of the unknown that gives the target [its declared unit], and the evaluation there.
 
     `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
-    jumps and curve have the output in `target_unit`.
+    jumps and curves have the output in `target_unit`. `finer` are the curves of the levels that solutions
+    were confirmed at, where these are not that of `curve`.
     """
 
     unknown: float
@@ -41,6 +42,7 @@ class Solution:
     touching: list[Root]
     jumps: list[Jump]
     curve: TracedCurve
+    finer: list[TracedCurve]
     target_unit: str
 
 
@@ -80,6 +82,7 @@ def solve(
         roots.touching,
         roots.jumps,
         roots.curve,
+        roots.finer,
         formula.meaning.unit,
     )
 
