@@ -1,4 +1,4 @@
-"""Create the parts of the service from its settings; an exit stack ends them in reverse order."""
+"""Create the parts of the service from its settings; an exit stack closes them in reverse order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Imports of models as jobs: the file is kept by its hash, examined, and becomes a version of a model."""
+"""Import models as jobs: store the file by its hash, examine it, and make it a version of a model."""
 
 from __future__ import annotations
 

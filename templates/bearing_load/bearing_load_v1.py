@@ -1,7 +1,7 @@
 """Loads of crankpin, main and wristpin bearing, wall and crank over the cycle of one cylinder (DYREMI).
 
-From gas pressure and the motion of crank, rod and piston at constant speed; each load as a curve whose x
-and y draw the polar diagram.
+The loads follow from the gas pressure and the motion of crank, rod and piston at constant speed. Each load is
+a curve whose x and y draw the polar diagram.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+"""A whole engine of any layout: pins and firing, balance by orders, torque, and loads of every bearing.
 
 In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
 that need not be equal; mains with play.

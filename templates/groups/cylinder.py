@@ -1,4 +1,4 @@
-"""Group: a cylinder with its crank mechanism and its gas, as `bearing_load` and `engine` share it."""
+"""Group: a cylinder with its crank mechanism and its gas, shared by `bearing_load` and `engine`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Group: the cylinders of an engine that need not be equal, their mechanisms and their gas."""
+"""Group: the cylinders of an engine, which may differ, with their mechanisms and their gas."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Designs to start from: an in-line four and a V8, from the bore of their cylinders to verdicts.
+"""Example designs: an in-line four and a V8, from the bore of their cylinders to verdicts.
 
-Loads, a film in each bearing, shells, crankshaft, finite elements of its throws, torsion of the train, life
-of the shaft's fillets.
+Each calculates loads, the film in each bearing, shells, the crankshaft, finite elements of its throws,
+torsion of the train, and the life of the shaft's fillets.
 """
 
 from __future__ import annotations

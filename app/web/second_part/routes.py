@@ -1,4 +1,4 @@
-"""The page that adds a bought part to a model of a design; it writes the manifest of the assembly.
+"""The page that adds a bought part to a model of a design, by writing the manifest of an assembly.
 
 The assembly is imported like any other model, and then replaces the model in the design.
 """

@@ -1,4 +1,4 @@
-"""The pages of an import from Mathcad: the form, the wait, and what became of every region."""
+"""The pages of an import from Mathcad: the form, its progress, and the outcome of every region."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Check the data of a gas cycle for completeness and order, for rules of templates."""
+"""Check the data of a gas cycle for completeness and order, for use in rules of templates."""
 
 from __future__ import annotations
 
