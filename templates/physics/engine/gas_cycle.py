@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Array
+from templates.core.arrays import Array, Truth
 from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
@@ -70,6 +70,10 @@ class Polytropic(GasCycle):
     inlet_closes: Array
     exhaust_opens: Array
     emptied: float
+
+    def in_every_cylinder(self, holds: Truth) -> Truth:
+        """Return whether something holds in every cylinder; here there is one."""
+        return holds
 
     def pressure(self, theta: Array, travel: Array) -> Array:
         """Return the pressure by the event in which each angle lies."""
