@@ -26,7 +26,7 @@ from cadquery import Edge, Face, Location, Solid, Vector
 from cadquery.func import face, segment, sphere, wire
 
 from cad.model import BRIGHT_STEEL, Box, CadModel, Part, mm
-from cad.surfaces import PartSurfaces, Z
+from cad.surfaces import PartSurfaces, Size, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 SIZES = np.genfromtxt(
@@ -125,10 +125,10 @@ class BallBearing(CadModel):
 
     example = {"inner_diameter": "50 mm"}
     toleranced = {
-        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
-        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "ball_diameter": {"of": "ball", "spheres": True},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"cylindricity": 0.5},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "ball_diameter": {},
     }
 
     d: Array = given(
@@ -240,7 +240,7 @@ class BallBearing(CadModel):
         return {
             "inner_diameter": inner.diameters(Z)[0],
             "outer_diameter": outer.diameters(Z)[-1],
-            "width": outer.length(Z),
+            "width": inner.length(Z),
             "balls": ball.count,
-            "ball_diameter": ball.spheres[0],
+            "ball_diameter": Size.sphere(ball.spheres),
         }
