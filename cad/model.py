@@ -1,14 +1,15 @@
 """CadModel: a template with a shape.
 
 A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template. It
-also has four members, of which only the first draws. A fifth, `toleranced`, says which faces carry which
-dimension, so that the STEP file can state tolerances (`cad.tolerances`):
+also has four members, of which only the first draws. A fifth, `toleranced`, says which dimensions may have
+limits in the STEP file, and with which geometric tolerances (`cad.tolerances`):
 
 - `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
   nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
   than its groove took 12 % off a bearing shell); the volume shows it.
 - `bounding_box()`: the box that the parts together must fill.
-- `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file.
+- `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file. The
+  faces from which a `cad.surfaces.Size` is read carry that parameter, in the STEP file and on the drawing.
 - `example`: a valid set of parameters.
 
 A parameter is one number, or a list where it is declared as a `curve`; never an array of points.
