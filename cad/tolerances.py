@@ -117,9 +117,17 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
         raise _wrong(cls, name, f"the valid keys are {words}")
     forms = {form: float(said[form]) for form in FORMS if form in said}
     if any(not 0 < share <= 1 for share in forms.values()):
-        raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
+        raise _wrong(
+            cls,
+            name,
+            "a geometric tolerance is a share, above 0 and at most 1, of the dimension's own tolerance",
+        )
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
-        raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
+        raise _wrong(
+            cls,
+            name,
+            "`to`, a datum, is required for perpendicularity and parallelism, and not allowed otherwise",
+        )
     return FormTolerances(name, said.get("datum", ""), forms, said.get("to", ""))
 
 
