@@ -62,7 +62,7 @@ def matched(
     matches: list[Dimension] = []
     unseen: list[str] = []
     for name, text in parameters.items():
-        size = _size(text)
+        size = size_of(text)
         if size is None or size[0] == 0:
             continue  # a word, a count, or what is not there
         if fitting := _fitting(sizes[name], measures) if name in sizes else []:
@@ -134,13 +134,13 @@ def length_of(text: str) -> float:
     ValueError
         If the text is none.
     """
-    size = _size(text)
+    size = size_of(text)
     if size is None or size[1]:
         raise ValueError(f"{text!r} is no length")
     return size[0]
 
 
-def _size(text: str) -> tuple[float, bool] | None:
+def size_of(text: str) -> tuple[float, bool] | None:
     """Return a length in millimetres or an angle in degrees, and which of them it is."""
     match = _AMOUNT.fullmatch(text)
     if match is None:
