@@ -209,7 +209,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 
 def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
-    """Create a design with its first revision, `at` the given time or now; return its id and revision number."""
+    """Create a design with its first revision, `at` a time or now; return its id and revision number."""
     id, created = new_id(session), at or now()
     statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)

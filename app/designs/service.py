@@ -366,7 +366,7 @@ class Designs:
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
     ) -> SaveResult:
-        """Return the job of a revision, if it needs one, and the record of the request, in one transaction."""
+        """Return the job of a revision, if it needs one, and the record of the request, atomically."""
         job, answer, written = None, None, draft.written
         if written.state == "regenerating":
             job = self.jobs.enqueue(
