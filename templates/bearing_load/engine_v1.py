@@ -54,7 +54,7 @@ from templates.physics.crankshaft.shaft_loads import (
 
 MAINS = "mains"
 UNEQUAL = (
-    "sections of journals, pins and webs whose stiffnesses differ 1e12-fold cannot be solved: check their units"
+    "sections of journals, pins and webs whose stiffnesses differ 1e12-fold cannot be solved: check the units"
 )
 UNLOADED = "no load, or no mains, or no crank"
 

@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 from extreme_inputs import (
     as_time_allows,
+    common,
     curve_changes,
     decades,
+    example_at,
     numeric,
     option_changes,
     parts,
@@ -22,9 +24,10 @@ from extreme_inputs import (
     rounded,
 )
 from seeds import seeded
-from test_catalogue_properties import is_single, starting, typed
+from test_catalogue_properties import is_single, typed
 
 import templates
+from templates import get
 from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -57,6 +60,28 @@ JUMP = 0.02
 """Change of a value, relative, at an input that changes by 1e-8 of itself, that may be a jump."""
 LEFT = 0.1
 """Share of its change over a tenth of a decade that a jump makes there, unlike a value through zero."""
+FILM, PRESSURE = "minimum_film_thickness", "maximum_pressure"
+SENSES = [
+    ("oil_film", "short_bearing", "radial_load", {FILM: -1, PRESSURE: 1}),
+    ("oil_film", "fit", "radial_load", {FILM: -1}),
+    ("oil_film", "map", "radial_load", {FILM: -1, "relative_eccentricity": 1, PRESSURE: 1}),
+    ("elastic_film", "rigid", "radial_load", {FILM: -1, PRESSURE: 1}),
+    ("thermal_film", "one_temperature", "radial_load", {FILM: -1}),
+    ("thermal_film", "one_temperature", "supply_temperature", {FILM: -1}),
+    ("mixed_friction", "map", "radial_load", {FILM: -1, "contact_load": 1}),
+    ("mixed_friction", "map", "speed", {FILM: 1}),
+    ("thrust_bearing", None, "load", {FILM: -1}),
+    ("hydrostatic_pad", None, "load", {"film_thickness": -1}),
+    ("hydrostatic_pad", None, "supply_pressure", {"film_thickness": 1}),
+    ("slider_bearing", "infinite", "dynamic_viscosity", {"load": 1}),
+    ("oil_film_cycle", "mobility", "dynamic_viscosity", {FILM: 1, "maximum_eccentricity": -1}),
+    ("oil_film_cycle", "mobility_grooved", "bearing_width", {FILM: 1}),
+    ("cycle_heat_balance", "mobility", "supply_temperature", {FILM: -1}),
+    ("cycle_heat_balance", "mobility_grooved", "heat_share", {"effective_viscosity": -1}),
+    ("journal_friction", None, "speed", {"power_loss": 1}),
+    ("thermal_clearance", None, "housing_temperature", {"diametral_clearance": 1}),
+]
+"""Template, level, input, and the outputs that rise (1) or fall (-1) with it."""
 BUILT_IN = find([Path(templates.__file__).parent], Template)
 LEVELS = [
     pytest.param(cls, level, id=f"{cls.id}-{cls.version}-{level or 'only'}")
@@ -114,7 +139,10 @@ def sweep(cls, level, changes, rng):
 
     Where an optional input of the example says the same in another way, it goes without that.
     """
-    start, required = starting(cls), {name for name, declared in cls.inputs.items() if declared.required}
+    start, required = (
+        example_at(cls, level),
+        {name for name, declared in cls.inputs.items() if declared.required},
+    )
     for change in as_time_allows(changes, rng):
         evaluation, names = tried(cls, level, {**start, **change})
         others = {name for name in names & start.keys() if name not in required | change.keys()}
@@ -157,7 +185,7 @@ def test_property_curves_of_other_sizes_and_forms(cls, level):
 def test_property_every_input_may_be_an_array(cls, level):
     """Two values of one input are two answers, each that of its value alone."""
     rng = np.random.default_rng(seeded(63))
-    start = starting(cls)
+    start = example_at(cls, level)
     names = [name for name in numeric(cls) if name in start and not is_single(cls.inputs[name])]
     if cls.most_points.get(level, 2) < 2:
         return
@@ -181,6 +209,21 @@ def test_property_every_input_may_be_an_array(cls, level):
                 assert value == pytest.approx(np.nan if own is None else own, rel=1e-6, nan_ok=True), output
 
 
+@pytest.mark.parametrize(("name", "level", "changed", "follows"), SENSES)
+def test_property_each_follows_in_the_sense_that_mechanics_has(name, level, changed, follows):
+    """Over eight decades, or from -10 to 200 °C, wherever there is an answer."""
+    cls = get(name, 1).template if name != "oil_film" else get(name, 2).template
+    start = example_at(cls, level)
+    warmer = cls.inputs[changed].meaning.unit == "degC"
+    grid = np.linspace(263.15, 473.15, 106) if warmer else start[changed] * 10 ** np.linspace(-4, 4, 161)
+    found = evaluate(cls, typed(cls, {**start, changed: grid}), outputs=[*follows], level=level).outputs
+    for output, sense in follows.items():
+        values = np.asarray(found[output].value, float)
+        values = sense * values[np.isfinite(values)]
+        assert values.size > 20, output
+        assert (np.diff(values) >= -1e-9 * np.abs(values[1:])).all(), output
+
+
 def quick(cls, level):
     """Whether a point takes milliseconds, as far as the most points at once tell."""
     return cls.most_points.get(level, 10_000) >= 2000
@@ -191,12 +234,12 @@ JUMPY = [one for one in LEVELS if quick(*one.values)]
 
 @pytest.mark.parametrize(("cls", "level"), JUMPY)
 def test_property_nothing_jumps_without_a_word(cls, level):
-    start, jumps = starting(cls), []
+    start, jumps = example_at(cls, level), []
     for name in numeric(cls):
-        declared = cls.inputs[name]
-        if declared.meaning.integer or is_single(declared) or not start.get(name):
+        declared, value = cls.inputs[name], common(cls, name)
+        if declared.meaning.integer or is_single(declared) or not value:
             continue
-        grid = start[name] * 10 ** np.linspace(-6, 6, 121)
+        grid = value * 10 ** np.linspace(-6, 6, 121)
         whole = answer(cls, level, {**start, name: grid})
         if whole is not None:
             jumps += [f"{output} at {name}" for output in steepest(cls, whole, grid.size)
@@ -228,7 +271,7 @@ def steepest(cls, whole, count):
 
 def jumps_at(cls, level, name, output, whole, grid):
     """Whether the largest change remains where the interval shrinks to nothing, and no word tells why."""
-    start = starting(cls)
+    start = example_at(cls, level)
     k = int(change(numbers_of(cls, whole, grid.size)[output]).argmax())
     low, high = grid[k], grid[k + 1]
     coarse = float(np.abs(np.diff(numbers_of(cls, whole, grid.size)[output])[k]))

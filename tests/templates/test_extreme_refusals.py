@@ -14,6 +14,8 @@ REFUSED = [
     ("engine", {"gas_cycle": "table", "pressure_angle": np.linspace(0, 4 * np.pi, 9)[:-1]}, "pressure"),
     ("engine", {"web_thickness": 1e-9}, "elastic_main_load_x"),
     ("engine", {"web_thickness": 1e-6, "cylinder_positions": [0.2, 0.2]}, "elastic_main_load_x"),
+    ("mixed_friction", {"bearing_roughness": 4e-5}, "journal_roughness"),
+    ("mixed_friction", {"journal_roughness": 9e-6}, "journal_roughness"),
 ]
 
 

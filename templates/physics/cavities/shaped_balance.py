@@ -41,6 +41,8 @@ SETTLED = 0.01
 """Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
 SAFETY = 1.25
 """What a stated error is over the change by refinement, after Roache 1994 [-]."""
+IRREGULAR = {"place": 1.5, "pressure": 1.5, "side flow": 2.0}
+"""What is stated more of what converges irregularly: chosen to hold in 98 % of the bearings of seed 36."""
 OFF_ORDER = 0.5
 """Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
 LEAST_GAP = 1e-6
@@ -134,7 +136,8 @@ class Balance:
     def place_error(self) -> float:
         """Return how far the journal may lie from where it is said to, over its displacement [-]."""
         step, previous = (float(np.hypot(*step)) for step in self._steps)
-        return SAFETY * max(step, min(previous / 4, _SUDDEN * step)) / max(self.fine.lie.eps, 1e-300)
+        moved = max(step, min(previous / 4, _SUDDEN * step))
+        return IRREGULAR["place"] * SAFETY * moved / max(self.fine.lie.eps, 1e-300)
 
     @property
     def gap_error(self) -> float:
@@ -144,12 +147,12 @@ class Balance:
     @property
     def pressure_error(self) -> float:
         """Return how far the largest pressure may be off, relative [-]."""
-        return self._error(lambda refined: refined.film.peak[0], 2)
+        return IRREGULAR["pressure"] * self._error(lambda refined: refined.film.peak[0], 2)
 
     @property
     def flow_error(self) -> float:
-        """Return how far the side flow, which converges irregularly, may be off, relative [-]."""
-        return 2 * self._error(lambda refined: refined.film.side_flow, 1)
+        """Return how far the side flow may be off, relative [-]."""
+        return IRREGULAR["side flow"] * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[Refined], float], order: int) -> float:
         """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""

@@ -20,7 +20,7 @@ from templates.core.arrays import Array
 from templates.physics.crankshaft.crank_supports import Flexibility
 
 _SHEAR_ROUND, _SHEAR_FLAT = 0.886, 5 / 6
-_REGULAR = 1e-12  # reciprocal condition of a stiffness scaled to a diagonal of 1, above which 4 digits are right
+_REGULAR = 1e-12  # reciprocal condition of a stiffness, scaled to a diagonal of 1, that leaves 4 digits
 
 
 @dataclass(frozen=True)
