@@ -8,7 +8,6 @@ read, explains the parameters; parameters, rules and the solid are those of `cad
 from collections.abc import Mapping
 from math import sin
 
-from cad.cranks.outline import Outline
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import Throw
 from cad.cranks.throw_readback import (
@@ -90,26 +89,7 @@ class CrankThrow(CrankRules):
 
     def drawn(self) -> Throw:
         """Return the parameters as radii, lengths and angles of the drawn shape."""
-        return Throw(
-            outline=Outline(
-                throw=mm(self.R),
-                half_width=mm(self.W) / 2,
-                rectangular=self.web_shape == "rectangular",
-                counterweight=mm(self.R_w),
-                half_angle=float(self.phi_w) / 2,
-            ),
-            web_thickness=mm(self.L_w),
-            journal=mm(self.D_j) / 2,
-            journal_bore=mm(self.d_j) / 2,
-            journal_length=mm(self.L_s),
-            pin=mm(self.D_c) / 2,
-            pin_bore=mm(self.d_c) / 2,
-            pin_length=mm(self.L_c),
-            fillet=mm(self.r_f),
-            drilling=mm(self.d_o) / 2,
-            inclination=float(self.beta),
-            incline_start=mm(self.x_b),
-        )
+        return self.throw_drawn(mm(self.R_w))
 
     def build(self) -> tuple[Part, ...]:
         """Return one solid."""

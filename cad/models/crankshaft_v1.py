@@ -10,11 +10,9 @@ import numpy as np
 from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
 from cad.cranks.crankshaft_readback import ShaftReadback
 from cad.cranks.end_parameters import EndParameters
-from cad.cranks.outline import Outline
 from cad.cranks.rules import clear_of_corners, corner
 from cad.cranks.split_parameters import SplitParameters, are_split, shortest, where_split
 from cad.cranks.split_pins import SplitPins
-from cad.cranks.throw import Throw
 from cad.cranks.whole import Throws, WholeShaft
 from cad.model import Box, Dimension, Part, mm
 from cad.shaft import Shaft
@@ -175,7 +173,7 @@ class Crankshaft(SplitParameters, EndParameters):
         angles = np.atleast_1d(self.psi).tolist()
         radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
         throws = (
-            Throws(self._throw(radii[2 * k]), self._throw(radii[2 * k + 1]), angle)
+            Throws(self.throw_drawn(radii[2 * k]), self.throw_drawn(radii[2 * k + 1]), angle)
             for k, angle in enumerate(angles)
         )
         return WholeShaft(tuple(throws), *self.ends_drawn(), self._split())
@@ -184,28 +182,6 @@ class Crankshaft(SplitParameters, EndParameters):
         if not are_split(self.delta):
             return None
         return SplitPins(float(shortest(self.delta)), mm(self.L_m), mm(self.W_m) / 2)
-
-    def _throw(self, counterweight: float) -> Throw:
-        return Throw(
-            outline=Outline(
-                throw=mm(self.R),
-                half_width=mm(self.W) / 2,
-                rectangular=self.web_shape == "rectangular",
-                counterweight=counterweight,
-                half_angle=float(self.phi_w) / 2,
-            ),
-            web_thickness=mm(self.L_w),
-            journal=mm(self.D_j) / 2,
-            journal_bore=mm(self.d_j) / 2,
-            journal_length=mm(self.L_j),
-            pin=mm(self.D_c) / 2,
-            pin_bore=mm(self.d_c) / 2,
-            pin_length=mm(self.L_c),
-            fillet=mm(self.r_f),
-            drilling=mm(self.d_o) / 2,
-            inclination=float(self.beta),
-            incline_start=mm(self.x_b),
-        )
 
     def build(self) -> tuple[Part, ...]:
         """Return one solid."""
