@@ -51,6 +51,8 @@ SIGNED = {
 SEIZED = {"thermal_clearance": "diametral_clearance"}
 """Templates whose clearance may be below zero, and the output of which a warning then says so."""
 STEPS = {
+    ("combustion_cycle", "peak_pressure_angle"): "of two peaks another becomes the higher",
+    ("combustion_cycle", "energy_balance_error"): "below 1e-9 it is 0",
     ("oil_film", "smallest_permissible_film"): "the table of ISO 7902-3 has steps",
     ("oil_film", "fit_exponent"): "the paper's fit has three rows",
     ("oil_film", "fit_factor"): "the paper's fit has three rows",
