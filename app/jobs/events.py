@@ -65,20 +65,11 @@ class Event:
 TOPIC: Callable[[Event], str] = attrgetter("topic")
 
 
-def note_event(session: Session, topic: str, name: str, data: Data) -> int:
-    """Write an event in the unit of work that makes it true; its number.
-
-    Nobody hears of it before they read the rows: services note events by `app.jobs.events.Events.note`.
-    """
-    (event,) = note_events(session, Event(topic, name, data))
-    assert event.number is not None
-    return event.number
-
-
 def note_events(session: Session, *events: Event) -> list[Event]:
     """Write events in the unit of work that makes them true; the same events with their numbers.
 
-    The rows of jobs are locked before those of designs, as everywhere.
+    Nobody hears of them before they read the rows: services note events by `app.jobs.events.Events.note`. The
+    rows of jobs are locked before those of designs, as everywhere.
     """
     counts = Counter(map(TOPIC, events))
     numbers = dict[str, int]()
