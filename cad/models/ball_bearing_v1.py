@@ -24,7 +24,7 @@ import numpy as np
 
 from cad.ball_row import BallRow
 from cad.model import Part, mm
-from cad.surfaces import PartSurfaces, Z
+from cad.surfaces import PartSurfaces, Size, Z
 from templates.core.language.template import Array, derived, formula, given, units
 
 SIZES = np.genfromtxt(
@@ -58,10 +58,10 @@ class BallBearing(BallRow):
 
     example = {"inner_diameter": "50 mm"}
     toleranced = {
-        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
-        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "ball_diameter": {"of": "ball", "spheres": True},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"cylindricity": 0.5},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "ball_diameter": {},
     }
 
     d: Array = given(
@@ -110,7 +110,7 @@ class BallBearing(BallRow):
         return {
             "inner_diameter": inner.diameters(Z)[0],
             "outer_diameter": outer.diameters(Z)[-1],
-            "width": outer.length(Z),
+            "width": inner.length(Z),
             "balls": ball.count,
-            "ball_diameter": ball.spheres[0],
+            "ball_diameter": Size.sphere(ball.spheres),
         }

@@ -24,7 +24,7 @@ from cad.cranks.volume import volume
 from cad.fillets import Crank
 from cad.model import Box, Part, mm
 from cad.shaft import Shaft
-from cad.surfaces import PartSurfaces, Y
+from cad.surfaces import PartSurfaces, Size, Y
 from templates.core.language.template import Array, formula
 
 
@@ -73,14 +73,17 @@ class CrankThrow(CrankRules):
         "face_inclination": "8 deg",
     }
     toleranced = {
-        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "journal_bore": {"cylinders": "z"},
-        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
-        "pin_bore": {"beside": "z"},
-        "throw": {"between": ["journal_diameter", "pin_diameter"]},
-        "oil_drilling_diameter": {"askew": True},
-        "pin_length": {"planes": "z", "levels": [[2, 3]], "perpendicularity": 1, "to": "A"},
-        "web_thickness": {"planes": "z", "levels": [[1, 2], [3, 4]]},
+        "journal_diameter": {"datum": "A", "cylindricity": 0.5},
+        "journal_bore": {},
+        "pin_diameter": {"cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {},
+        "throw": {},
+        "oil_drilling_diameter": {},
+        "pin_length": {"perpendicularity": 1, "to": "A"},
+        "web_thickness": {},
+        "web_width": {},
+        "fillet": {},
+        "counterweight_radius": {},
     }
 
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
@@ -129,13 +132,14 @@ class CrankThrow(CrankRules):
         """Return every parameter; the angle of a counterweight only if there is one."""
         surfaces, webs = seen[self.id], Webs.of(seen[self.id])
         front, rear = (stub[0] for stub in stubs(surfaces, webs))
+        before, behind = -front.reach[1], rear.reach[1]  # the end faces, in mid-journal
         return {
-            "journal_diameter": max(front.diameter, rear.diameter),
-            "journal_length": front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3],
+            "journal_diameter": Size.diameter([front, rear]),
+            "journal_length": webs.faces[0] - before + behind - webs.faces[3],
             "journal_bore": journal_bore(surfaces, webs),
             **pin(surfaces, webs),
-            "pin_length": webs.apart,
-            "web_thickness": webs.thickness,
+            "pin_length": webs.apart(surfaces),
+            "web_thickness": webs.thickness(surfaces),
             "web_width": surfaces.length(Y),
             "fillet": fillet(surfaces),
             "oil_drilling_diameter": drilling(surfaces),

@@ -90,21 +90,25 @@ class Crankshaft(SplitParameters, EndParameters):
         "bolt_circle_diameter": "68 mm",
     }
     toleranced = {
-        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "journal_bore": {"cylinders": "z"},
-        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
-        "pin_bore": {"beside": "z"},
-        "throw": {"between": ["journal_diameter", "pin_diameter"]},
-        "oil_drilling_diameter": {"askew": True},
-        "nose_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
-        "flange_diameter": {"cylinders": "z", "end": "high"},
-        "bolt_hole_diameter": {"beside": "z"},
-        "journal_length": {"shoulders": "journal_diameter"},
-        "pin_length": {"shoulders": "pin_diameter", "perpendicularity": 1, "to": "A"},
-        "web_thickness": {"discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]},
-        "middle_web_thickness": {
-            "discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]
-        },
+        "journal_diameter": {"datum": "A", "cylindricity": 0.5},
+        "journal_bore": {},
+        "pin_diameter": {"cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {},
+        "throw": {},
+        "oil_drilling_diameter": {},
+        "nose_diameter": {"cylindricity": 0.5},
+        "flange_diameter": {},
+        "bolt_hole_diameter": {},
+        "journal_length": {},
+        "pin_length": {"perpendicularity": 1, "to": "A"},
+        "web_thickness": {},
+        "middle_web_thickness": {},
+        "web_width": {},
+        "fillet": {},
+        "nose_length": {},
+        "flange_thickness": {},
+        "bolt_hole_depth": {},
+        "middle_web_width": {},
     }
 
     R_w: Array = curve(
@@ -201,7 +205,6 @@ class Crankshaft(SplitParameters, EndParameters):
         """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
         split = bool(are_split(self.delta))
         found = ShaftReadback(seen[self.id], split)
-        front, rear = found.ends
         radii = found.counterweights()
         near = np.degrees(np.atleast_1d(self.psi)).tolist()
         dimensions: dict[str, Dimension] = {
@@ -209,10 +212,7 @@ class Crankshaft(SplitParameters, EndParameters):
             **found.common(),
             "pin_split": found.pin_split(float(np.degrees(self.delta))),
             "counterweight_radius": radii,
-            "nose_length": front[1].reach[1] - front[0].reach[1],
-            "nose_diameter": front[1].diameter,
-            "flange_thickness": rear[1].reach[1] - rear[0].reach[1],
-            "flange_diameter": rear[1].diameter,
+            **found.flange(),
             **found.bolts(),
         }
         if split:

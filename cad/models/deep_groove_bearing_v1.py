@@ -19,7 +19,7 @@ from cad.deep_groove import (
     width_by_designation,
 )
 from cad.model import BRONZE, Part, mm
-from cad.surfaces import PartSurfaces, Z
+from cad.surfaces import PartSurfaces, Size, Z
 from templates.core.language.template import Array, Truth, choice, derived, formula, require
 
 BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
@@ -55,11 +55,13 @@ class DeepGrooveBearing(BallRow):
 
     example = {"designation": "6210", "ball_diameter": "12.7 mm", "balls": 10}
     toleranced = {
-        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
-        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "ball_diameter": {"of": "ball", "spheres": True},
-        "cage_width": {"of": "cage", "planes": "z"},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"cylindricity": 0.5},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "ball_diameter": {},
+        "cage_width": {},
+        "cage_thickness": {},
+        "pocket_bore": {},
     }
 
     designation: str = choice(*SIZES, words="designation")
@@ -154,17 +156,17 @@ class DeepGrooveBearing(BallRow):
         Include those of the cage if there is one.
         """
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
-        sizes = {
+        sizes: dict[str, float] = {
             "inner_diameter": inner.diameters(Z)[0],
             "outer_diameter": outer.diameters(Z)[-1],
-            "width": outer.length(Z),
+            "width": inner.length(Z),
             "balls": ball.count,
-            "ball_diameter": ball.spheres[0],
+            "ball_diameter": Size.sphere(ball.spheres),
         }
         if "cage" in seen:
             cage = seen["cage"]
-            walls = cage.diameters(Z)
+            walls = cage.rings(Z)
             sizes["cage_width"] = cage.length(Z)
-            sizes["cage_thickness"] = (walls[-1] - walls[0]) / 2
-            sizes["pocket_bore"] = next(c.diameter for c in cage.cylinders if not c.about(Z))
+            sizes["cage_thickness"] = Size.wall(walls[0], walls[-1])
+            sizes["pocket_bore"] = Size.diameter([c for c in cage.cylinders if not c.about(Z)])
         return sizes
