@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.judgement import Judgement, Place, sentence
 from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.evaluate import Evaluation
@@ -68,7 +68,7 @@ def criterion(judgement: Judgement) -> JsonObject:
     }
     present = {name: part for name, part in parts.items() if part is not None}
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    return {**names, "verdict": judgement.verdict, **present}
+    return {**names, "verdict": judgement.verdict, "sentence": sentence(judgement), **present}
 
 
 def _quantity(value: float, unit: str) -> dict[str, object] | None:

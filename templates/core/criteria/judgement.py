@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
@@ -93,7 +95,7 @@ class Judgement:
     @property
     def sign(self) -> str:
         """Return the sign between value and limit that is required."""
-        return ">=" if ">=" in self.require else "<="
+        return sign_of(self.require)
 
     @property
     def has_fixed_limit(self) -> bool:
@@ -108,16 +110,42 @@ class Judgement:
 
 def sentence(judgement: Judgement) -> str:
     """Return a verdict as a sentence: `film 1.53 µm is below permissible film 2 µm: not met`."""
-    verdict = judgement.verdict.replace("_", " ")
-    verdict += f", {judgement.truth}" if is_model(judgement.truth) else ""
-    unknown = "" if judgement.error_known or judgement.verdict == "not_checked" else "; error unknown"
     value, limit = judgement.value, judgement.limit
-    left, right = map(_in_words, judgement.sides)
-    if value is None or limit is None:
-        return f"{left} {judgement.sign} {right}: {verdict}"
-    opposite = {">=": "<", "<=": ">"}[judgement.sign]
-    sign = opposite if judgement.misses else judgement.sign
-    return f"{compared(Side(left, value), sign, Side(right, limit), judgement.unit)}: {verdict}{unknown}"
+    return verdict_sentence(
+        judgement.require,
+        judgement.verdict,
+        None if value is None or limit is None else (value, limit, judgement.unit),
+        misses=judgement.misses,
+        error_known=judgement.error_known,
+        truth=judgement.truth,
+    )
+
+
+def verdict_sentence(
+    require: str,
+    verdict: str,
+    numbers: tuple[float, float, str] | None,
+    *,
+    misses: bool,
+    error_known: bool,
+    truth: str | None,
+) -> str:
+    """Return the sentence on what is required, with value, limit and their unit where there are any."""
+    sign = sign_of(require)
+    left, right = (side.strip() for side in require.split(sign))
+    words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
+    if numbers is None or not all(map(math.isfinite, numbers[:2])):
+        return f"{_name(left)} {sign} {_name(right)}: {words}"
+    value, limit, unit = numbers
+    actual = {">=": "<", "<=": ">"}[sign] if misses else sign
+    unknown = "" if error_known or verdict == "not_checked" else "; error unknown"
+    sides = Side(_in_words(left), value), Side(_in_words(right), limit)
+    return f"{compared(sides[0], actual, sides[1], unit)}: {words}{unknown}"
+
+
+def sign_of(require: str) -> str:
+    """Return the sign between value and limit that is required."""
+    return ">=" if ">=" in require else "<="
 
 
 def is_model(truth: str | None) -> bool:
@@ -130,9 +158,15 @@ def not_judged(judgement: Judgement) -> str:
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
+@lru_cache(maxsize=1024)
 def _in_words(text: str) -> str:
     """Return a side in words; a number stands for itself, and is shown as the value."""
     if text.removeprefix("-")[:1].isdigit():
         return ""
-    words = _NAME.sub(lambda name: name[1].replace("_", " "), text)
-    return words if _NAME.fullmatch(text) else f"{words} ="
+    return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="
+
+
+def _name(text: str) -> str:
+    """Return names in words, without the steps before them; a number stays as it is written."""
+    is_number = text.removeprefix("-")[:1].isdigit()
+    return text if is_number else _NAME.sub(lambda name: name[1].replace("_", " "), text)
