@@ -116,6 +116,7 @@ class Step:
     ranges: list[Rule]  # the range of validity: domains and published ranges
     rules: list[Rule]
     warnings: list[StepWarning]
+    assumed: list[str]  # defaults that make a part look safer, and stand
     references: list[str]
 
 

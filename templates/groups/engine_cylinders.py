@@ -15,17 +15,20 @@ from templates.core.language.template import (
     require,
     shared,
 )
-from templates.physics.engine.engine_gas import burns_in_time, combustion_raises, engine_gas
+from templates.physics.engine.engine_gas import burns_in_time, engine_gas, greatest_end_of_compression
 from templates.physics.engine.engine_sizes import crank_of, is_either, is_within, masses_of
 from templates.physics.engine.gas_checks import (
     CYCLES,
+    GAUGE,
     GIVEN_PEAK,
     POLYTROPIC,
+    absolute_crankcase,
+    absolute_table,
     angles_rise,
     crankcase_is_filled,
     full_cycle,
     known_for,
-    pressures_are_of_one_kind,
+    lowest_of_table,
     table_closes,
     table_is_known,
     valves_in_order,
@@ -56,7 +59,7 @@ class EngineCylinders(Template):
     I_3: Array = curve("kg*m**2", "rod inertia", along=EACH, constant=True, alternative=True, ge=0, le=1e6)
     m_4: Array = curve("kg", "piston mass", along=EACH, constant=True, ge=0, le=1e5)
     U_c: Array = curve("kg*mm", "crank unbalance", along=EACH, constant=True, default="0 kg*mm", ge=-1e8,
-                       le=1e8)  # fmt: skip
+                       le=1e8, assumed="the throws have no unbalance")  # fmt: skip
     f_p: Array = curve("1", "pressure factor", along=EACH, constant=True, default="1", ge=0, le=100)
 
     gas_cycle: str = choice(*CYCLES, words="gas cycle")
@@ -75,7 +78,7 @@ class EngineCylinders(Template):
                            alternative=True, ge=-720, le=1440)  # fmt: skip
     p_t: Array = curve("bar", "pressure", along="pressure_angle", alternative=True, ge=-1.1, le=1000,
                        remedy="check its unit")  # fmt: skip
-    p_0: Array = given("bar", "crankcase pressure", default="0 bar", ge=0, le=100)
+    p_0: Array = given("bar", "crankcase pressure", default="0 bar", ge=0, le=100, assumed=GAUGE)
 
     @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
     def p_e(self) -> Array:
@@ -162,7 +165,7 @@ class EngineCylinders(Template):
     @require("combustion_pressure", warning="pressure_falls", remedy="check pressures, ratio and exponent")
     def combustion_raises(self) -> Truth:
         """Combustion does not begin below the pressure at the end of compression."""
-        return combustion_raises(self.gas)
+        return (self.p_3 >= self.p_2) | (self.gas_cycle not in GIVEN_PEAK)
 
     @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
              remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
@@ -174,7 +177,8 @@ class EngineCylinders(Template):
              remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
     def pressures_are_of_one_kind(self) -> Truth:
         """The pressures of the table and of the crankcase are both absolute, or both gauge."""
-        return pressures_are_of_one_kind(self.gas_cycle, self.p_t, self.p_0)
+        is_gauge = (self.p_low < self.p_absolute) | (self.p_0 > 0)
+        return is_gauge & ((self.p_low >= 0) | (self.p_0 < self.p_ambient))
 
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:
@@ -200,6 +204,26 @@ class EngineCylinders(Template):
     def m_rec(self) -> Array:
         """Mass that moves with each piston [kg]."""
         return self.rods.at_piston + self.m_4
+
+    @shared(unit="bar")
+    def p_2(self) -> Array:
+        """Greatest pressure of a cylinder at the end of compression."""
+        return greatest_end_of_compression(self.gas_cycle, lambda: self.gas)
+
+    @shared(unit="bar")
+    def p_low(self) -> Array:
+        """Lowest pressure of the table."""
+        return lowest_of_table(self.gas_cycle, self.p_t)
+
+    @shared(unit="bar")
+    def p_absolute(self) -> Array:
+        """Least pressure of a table that is taken for absolute."""
+        return np.asarray(absolute_table())
+
+    @shared(unit="bar")
+    def p_ambient(self) -> Array:
+        """Least pressure of a crankcase that is taken for absolute."""
+        return np.asarray(absolute_crankcase())
 
     @shared
     def gas(self) -> GasCycle:

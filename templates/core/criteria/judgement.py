@@ -1,4 +1,8 @@
-"""A criterion as judged: its verdict, and the numbers behind it at the worst point or place."""
+"""A criterion as judged: its verdict, the numbers behind it, and sentences about two values compared.
+
+Warnings of criteria and of rules are made here: they say what is the case, never what ought to be, so no
+sentence contradicts its own numbers.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,11 @@ from functools import lru_cache
 from typing import Any
 
 from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
-from templates.core.criteria.sentences import Side, compared
+from templates.core.units.units import unit_symbol
 
+IS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not below"}
+DIGITS = 4  # of a number in a sentence, unless more are needed to tell two apart
+_MOST_DIGITS = 17
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 
 
@@ -170,3 +177,33 @@ def _name(text: str) -> str:
     """Return names in words, without the steps before them; a number stays as it is written."""
     is_number = text.removeprefix("-")[:1].isdigit()
     return text if is_number else _NAME.sub(lambda name: name[1].replace("_", " "), text)
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a comparison: its words, which may be empty, and its magnitude in the unit of both."""
+
+    words: str
+    magnitude: float
+
+
+def related(left: str, sign: str, right: str) -> str:
+    """Return a relation without numbers: `minimum film thickness is below permissible film`."""
+    return f"{left} {IS[sign]} {right}"
+
+
+def compared(left: Side, sign: str, right: Side, unit: str) -> str:
+    """Return a true comparison: `minimum film thickness 2.133 µm is below permissible film 3 µm`."""
+    printed, (one, other) = unit_symbol(unit), told_apart(left.magnitude, right.magnitude)
+    sides = f"{left.words} {one} {printed}", f"{right.words} {other} {printed}"
+    return f" {IS[sign]} ".join(side.strip() for side in sides)
+
+
+def told_apart(one: float, other: float) -> tuple[str, str]:
+    """Return two numbers in so many digits that they differ, unless they are equal."""
+    texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
+    digits = DIGITS
+    while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:
+        digits += 1
+        texts = (f"{one:.{digits}g}", f"{other:.{digits}g}")
+    return texts

@@ -11,7 +11,7 @@ import numpy as np
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.engine.engine_layout import TURN, Layout
-from templates.physics.engine.gas_checks import burns_before_exhaust, pressure_rises
+from templates.physics.engine.gas_checks import burns_before_exhaust, end_of_compression
 from templates.physics.engine.gas_cycle import AT_DEAD_CENTRES, Charge, Polytropic, Valves, ideal, wrapped
 from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
 from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
@@ -144,8 +144,8 @@ def burns_in_time(name: str, gas: Callable[[], GasCycle]) -> Truth:
     return np.all(holds, axis=-1) if holds.ndim else bool(holds)
 
 
-@units(None, returns="1")
-def combustion_raises(gas: GasCycle) -> Truth:
-    """Return whether combustion begins at or above the compression's end pressure in every cylinder."""
-    holds = np.asarray(pressure_rises(gas))
-    return np.all(holds, axis=-1) if holds.ndim else bool(holds)
+@units(None, None, returns="Pa")
+def greatest_end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
+    """Return the greatest pressure [Pa] of all cylinders at the end of compression, rounding aside."""
+    ends = np.asarray(end_of_compression(name, gas))
+    return np.max(ends, axis=-1) if ends.ndim else ends

@@ -46,7 +46,9 @@ def test_a_violated_criterion_is_acknowledged_signed_and_printed(room):
     assert content["unconfirmed"] == ["large: size 31 mm is below 50 mm: not met"]
     place = f"{API}/designs/{design['id']}/revisions/1/report"
     report = room.viewer.get(f"{place}.pdf").content
-    text = " ".join(" ".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(report)).pages).split())
+    text = " ".join(
+        " ".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(report)).pages).split()
+    )
     assert text.count(f"1 criterion not confirmed: {REASON}") == 2
 
 
