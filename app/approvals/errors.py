@@ -5,7 +5,7 @@ ApprovalError
     OutOfOrder          another step comes first, or the step is taken
     Unacknowledged      what is said of unconfirmed criteria is missing, or needless
     SamePrincipal       the principal has taken another step, or is not the author
-    OtherDigest         the content to sign has changed since the signer saw it
+    OtherDigest         the content to sign has changed since the signer read it
 """
 
 from __future__ import annotations

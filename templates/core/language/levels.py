@@ -1,20 +1,20 @@
-"""Levels of fidelity: how wrong each is and what it costs, as measured; which is the cheapest that will do.
+"""Levels of fidelity: their measured errors and costs, and the choice of the cheapest sufficient level.
 
 A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against a converged solution, on a
-grid over two of the template's quantities. The table lies outside the frozen file, so that a version may gain
-a better one.
+script in `benchmarks/` measured: for every level and output the error against a converged solution, on a grid
+over two of the template's quantities. The table is not part of the frozen file, so that a version may get a
+better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
-measured. Two levels may follow two conventions, and then their errors say nothing of each other
+measured. Two levels may follow different conventions; then their errors cannot be compared
 (`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
 (`absolute_error`).
 
-A level may state the error of each answer itself, from what it has computed (`Template.own_error`); the table
-then says under `own` what error to expect before.
+A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
+error under `own`.
 
-Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
-them under `cases`, and `Template.measured_case` says which case its inputs are.
+Errors may be measured separately for several cases of inputs, such as kinds of oil supply: then the table
+holds them under `cases`, and `Template.measured_case` returns the case of the inputs.
 """
 
 from __future__ import annotations

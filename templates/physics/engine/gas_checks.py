@@ -1,4 +1,4 @@
-"""Check the data of a gas cycle for completeness and order, for rules of templates."""
+"""Check the data of a gas cycle for completeness and order, for use in rules of templates."""
 
 from __future__ import annotations
 
@@ -45,15 +45,18 @@ def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
     """Return whether combustion ends before the exhaust opens; other rules report missing inputs."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
-    return ~(cycle.v_cut >= cycle.v_opened)
+    return cycle.in_every_cylinder(~(cycle.v_cut >= cycle.v_opened))
 
 
 @units(None, None, returns="Pa")
 def end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
-    """Return the pressure [Pa] at the end of compression, rounding aside; 0 where nothing needs it."""
+    """Return the pressure [Pa] at the end of compression, rounding aside; 0 where nothing needs it.
+
+    Of several cylinders it is the greatest.
+    """
     if name not in GIVEN_PEAK or not isinstance(cycle := gas(), Polytropic):
         return np.asarray(0.0)
-    return cycle.p_compressed * (1 - 1e-12)
+    return cycle.greatest(cycle.p_compressed) * (1 - 1e-12)
 
 
 @units(None, "rad", "Pa", returns="1")
