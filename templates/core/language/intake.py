@@ -53,12 +53,12 @@ def _in_declared_sizes(
     A radial clearance is half the diametral one. Where both are given they must agree.
     """
     faults: list[Fault] = []
-    for other, name in _sizes(cls):
+    for other, name in other_sizes(cls):
         if other not in raw:
             continue
         raw = dict(raw)
         given, declared = raw.pop(other), cls.inputs[name]
-        factor = 2.0 if name.startswith("diametral") else 0.5
+        factor = factor_of(name)
         try:
             typed = scaled(read(given, declared.meaning.accepted), factor)
             same = read(raw[name], declared.meaning.accepted) if name in raw else typed
@@ -73,10 +73,15 @@ def _in_declared_sizes(
     return raw, faults
 
 
-def _sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
+def other_sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
     """Return the radial name of each diametral input that has none, and the other way round."""
     pairs = ((name, _DIAMETRAL.sub(_opposite, name)) for name in cls.inputs)
     return tuple((other, name) for name, other in pairs if other != name and other not in cls.inputs)
+
+
+def factor_of(name: str) -> float:
+    """Return by how much a size, radial or diametral, is larger than the other one."""
+    return 2.0 if name.startswith("diametral") else 0.5
 
 
 _DIAMETRAL = re.compile(r"\A(?:diametral|radial)(?=_clearance)")
