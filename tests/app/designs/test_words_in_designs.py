@@ -34,7 +34,8 @@ def test_a_radial_clearance_is_half_the_diametral_one(http, radial, diametral):
     kept = http.get(f"{API}/designs/{design['id']}").json()
     assert kept["steps"]["film"]["inputs"]["diametral_clearance"] == diametral
     assert kept["variants"] == {"wide": {"film.diametral_clearance": "80 um"}}
-    assert revision(http, design)["steps"]["film"]["inputs"]["diametral_clearance"]["value"] == 60
+    outputs = revision(http, design)["steps"]["film"]["outputs"]
+    assert outputs["relative_clearance"]["value"] == pytest.approx(0.060 / 48)
 
 
 def test_a_change_may_name_the_radial_clearance_too(http):
