@@ -56,13 +56,13 @@ from app.worksheets.service import Worksheets
 
 
 def services_of(request: Request) -> Services:
-    """Return the parts of the service that answers a request."""
+    """Return the parts of the service for a request."""
     services: Services = request.app.state.services
     return services
 
 
 def _part(name: str) -> Callable[[Request], Awaitable[object]]:
-    """Return the dependency that gives a part of the services by its name."""
+    """Return a dependency that provides a part of the services by its name."""
 
     async def part(request: Request) -> object:
         return getattr(services_of(request), name)
@@ -129,7 +129,7 @@ ExpensiveSteps = Depends(expensive_steps)
 
 
 async def one_stream(request: Request, client: TheClient) -> AsyncIterator[Still]:
-    """Count a stream from before its first byte to its end, and notice when it has ended."""
+    """Count a stream from its first byte to its end, and detect that end."""
     streams = services_of(request).streams
     streams.enter(client)
     try:

@@ -65,7 +65,7 @@ def curves_of(body: bytes) -> ReadCurves:
 
 
 def file_of(body: bytes) -> FileText:
-    """Return the text of a file, within the limits of a file of curves.
+    """Return the text of a file that is within the limits for curves.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _table(file: FileText) -> Table:
 
 
 def _parted(name: str, given: str) -> tuple[str, str]:
-    """Return words and unit of a heading, whose unit may end its name."""
+    """Return the words and the unit of a heading whose unit may end its name."""
     words, _, last = name.rpartition("_")
     return (words, last) if not given and last in SUFFIXES else (name, given)
 
@@ -122,7 +122,7 @@ def _named(column: TableColumn) -> str:
 
 
 def _by_line(fault: Fault) -> Fault:
-    """Return a fault named by its line, as that of a file is."""
+    """Return a fault with its line number."""
     if not (match := _ROW.fullmatch(fault.name)):
         return fault
     detail = f"{match['column']}: {fault.detail}" if match["column"] else fault.detail

@@ -21,7 +21,7 @@ def approve(
     acknowledged: str | None = None,
     key: str | None = None,
 ) -> Exchange[Approvals]:
-    """Take a step of an approval that was read; a withdrawal needs a reason.
+    """Take the next step of an approval that was read; a withdrawal needs a reason.
 
     To check or release a revision whose approvals list `unconfirmed` criteria, say in `acknowledged` why that
     may stand.
@@ -51,6 +51,6 @@ def comment(
 
 
 def resolve_comment(comment: Comment) -> Exchange[Comment]:
-    """Say that a comment is dealt with."""
+    """Mark a comment as resolved."""
     path = f"/designs/{comment.design}/revisions/{comment.revision}/comments/{comment.id}/resolve"
     return answered(Comment, post(path, {}))

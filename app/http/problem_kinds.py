@@ -245,5 +245,5 @@ SLUGS = {
 
 
 def kind_of(error: Exception) -> Kind:
-    """Return the kind of problem that an error is: that of its nearest class in the table."""
+    """Return the kind of problem of an error: that of its nearest class in the table."""
     return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)
