@@ -15,7 +15,6 @@ from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
-from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
 from app.designs.explanation import ExplanationQuestion
@@ -50,7 +49,6 @@ from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
-from app.workers.pieces import Pieces
 from app.worksheets.imports.service import Imports
 from app.worksheets.service import Worksheets
 
@@ -77,7 +75,6 @@ TheSettings = Annotated[Settings, Depends(_part("settings"))]
 TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
-TheEvaluations = Annotated[Questions[Question, Pieces], Depends(_part("evaluations"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]

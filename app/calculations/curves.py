@@ -37,17 +37,6 @@ class ReadCurves:
     assumed: list[str]
 
 
-def read_curves(body: bytes) -> dict[str, JsonObject]:
-    """Return the columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
-
-    Raises
-    ------
-    InvalidInputs
-        Naming every line that is wrong, up to twenty.
-    """
-    return curves_of(body).curves
-
-
 def curves_of(body: bytes) -> ReadCurves:
     """Return the columns of a file as quantities, and the assumptions made.
 

@@ -65,20 +65,11 @@ class Event:
 TOPIC: Callable[[Event], str] = attrgetter("topic")
 
 
-def note_event(session: Session, topic: str, name: str, data: Data) -> int:
-    """Write an event in the unit of work that makes it true; return its number.
-
-    No listener is informed: services use `app.jobs.events.Events.note` instead.
-    """
-    (event,) = note_events(session, Event(topic, name, data))
-    assert event.number is not None
-    return event.number
-
-
 def note_events(session: Session, *events: Event) -> list[Event]:
     """Write events in the unit of work that makes them true; return them with their numbers.
 
-    The rows of jobs are locked before those of designs, as everywhere.
+    No listener is informed: services use `app.jobs.events.Events.note` instead. The rows of jobs are locked
+    before those of designs, as everywhere.
     """
     counts = Counter(map(TOPIC, events))
     numbers = dict[str, int]()

@@ -54,6 +54,9 @@ from templates.physics.crankshaft.shaft_loads import (
 )
 
 MAINS = "mains"
+UNEQUAL = (
+    "sections of journals, pins and webs whose stiffnesses differ 1e12-fold cannot be solved: check the units"
+)
 UNLOADED = "no load, or no mains, or no crank"
 
 
@@ -293,15 +296,15 @@ class Engine(ArticulatedEngine):
     def i_m(self) -> Array:
         return governing(self.mains)
 
-    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
+    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}", remedy=UNEQUAL)
     def F_ex(self) -> Array:
         return along_x(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
+    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}", remedy=UNEQUAL)
     def F_ey(self) -> Array:
         return along_y(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
+    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}", remedy=UNEQUAL)
     def F_e_max(self) -> Array:
         return greatest(self.elastic_mains)
 

@@ -93,7 +93,8 @@ class CycleHeatBalance(Oil, FedBearing):
     that is there in the loss, and leaves the rate as it is.
     A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
-    No error of the model is stated: no measured cycle with all its inputs was at hand.
+    No level states an error: no ensemble against level supplied was made, and no measured cycle with all its
+    inputs was at hand.
 
     References
     ----------

@@ -258,7 +258,7 @@ class HydrostaticPad(Template):
     def eta_P(self) -> Array:
         return self.eta * (1 / self.K) ** (1 / 2)
 
-    @formula("cm**2", "pad area", symbol="A")
+    @formula("cm**2", "pad area", symbol="A", gt=0)
     def A(self) -> Array:
         return pad_area(self.D, self.d)
 

@@ -174,6 +174,12 @@ class MixedFriction(Oil):
         """The diametral clearance is smaller than the bearing diameter."""
         return self.c < self.D
 
+    @require("journal_roughness", "bearing_roughness", "diametral_clearance",
+             remedy="check the unit of the roughness, in um")  # fmt: skip
+    def roughness_within_clearance(self) -> Truth:
+        """The radial clearance is three times the composite roughness at least; else no film is full."""
+        return self.c / 2 >= FULL_FILM * self.sigma
+
     @formula("um", "composite roughness", symbol=r"\sigma")
     def sigma(self) -> Array:
         return composite_roughness(self.R_J, self.R_B)

@@ -341,6 +341,8 @@ def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
 def check_shapes(self: Calculation) -> None:
     """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
 
+    A list of one value is as good as a number only for a curve that may be constant.
+
     Raises
     ------
     InvalidInputs
@@ -351,14 +353,16 @@ def check_shapes(self: Calculation) -> None:
         return
     curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
     points = {n: v.shape[:-1] if n in curves else v.shape for n, v in arrays.items()}
-    together = [{n: shape for n, shape in points.items() if shape}]
     for along in dict.fromkeys(curve.along for curve in curves.values()):
-        together.append({n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along})
-    for shapes in together:
-        try:
-            np.broadcast_shapes(*shapes.values())
-        except ValueError:
-            raise InvalidInputs(_of_different_shapes(self, shapes)) from None
+        own = {n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along}
+        whole = {n: length for n, length in own.items() if length != (1,) or not curves[n].constant}
+        if len(set(whole.values())) > 1:
+            raise InvalidInputs(_of_different_shapes(self, own))
+    shapes = {n: shape for n, shape in points.items() if shape}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        raise InvalidInputs(_of_different_shapes(self, shapes)) from None
 
 
 def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:

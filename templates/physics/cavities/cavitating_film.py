@@ -64,13 +64,6 @@ class CavitatingFilm:
     """(n + 1, m + 1) share of the gap without oil."""
 
 
-def cavitating_film(
-    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
-) -> CavitatingFilm:
-    """Solve and measure the static film with cavities; as `solved_ring`."""
-    return measured(solved_ring(eps, ratio, grooves, ambient, around, across))
-
-
 def solved_ring(
     eps: float,
     ratio: float,

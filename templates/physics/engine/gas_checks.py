@@ -86,8 +86,9 @@ def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 @units(None, "1", "rad", "Pa", returns="1")
 def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Return whether a point that repeats the first, a cycle later, repeats its pressure."""
-    if name != "table" or np.ndim(angle) == 0 or not full_cycle(name, strokes, angle, p):
-        return True
+    given = name == "table" and np.ndim(angle) > 0 and np.ndim(p) > 0
+    if not given or not angles_rise(name, angle, p) or not full_cycle(name, strokes, angle, p):
+        return True  # another rule reports it
     repeats = np.isclose(angle[-1] - angle[0], np.pi * strokes, rtol=1e-9)
     return ~repeats | np.isclose(p[..., 0], p[..., -1], rtol=1e-6)
 
