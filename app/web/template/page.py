@@ -31,7 +31,7 @@ PATIENCE = 2.0  # time that the page waits for an answer [s]; it shows how the r
 
 
 async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """Return the page, with the answer to what the address asks; to the example, where it asks nothing."""
+    """Return the page with the answer to the question in the address, or to the example without one."""
     template = await services.run(show_template, id, version, services.catalogues)
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)
@@ -74,7 +74,7 @@ def typed_in(request: Request) -> dict[str, str]:
 
 
 def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
-    """Return the inputs, the options and the limits of a calculation for what was typed."""
+    """Return the inputs, options and limits of a calculation from the typed values."""
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}
     limits = limits_of(filled)
@@ -87,7 +87,7 @@ def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Val
 async def _tried(
     services: PageServices, template: Template, body: Mapping[str, JsonValue], units: System
 ) -> tuple[Worksheet | None, str, dict[str, str]]:
-    """Return the answer, or the address of the job that calculates it, or what is wrong."""
+    """Return the answer, the address of its job, or the faults."""
     try:
         given = services.read(EvaluateIn, body)
         asked = TemplateQuestion(template.id, template.version, "worksheet", given, units)

@@ -56,10 +56,7 @@ def toleranced(design: Design) -> bool:
 async def tolerances_page(
     request: Request, services: PageServices, id: str, job: str | None, *, is_part: bool
 ) -> Response:
-    """Return the analysis of the newest revision, or that of a finished job.
-
-    Alone, or as a part of the page.
-    """
+    """Return the analysis of the newest revision, or of a finished job, as a page or a part of one."""
     design = await services.run(services.designs.show, id)
     template = "tolerances/tolerances_part.html" if is_part else "tolerances/tolerances_page.html"
     try:
@@ -74,7 +71,7 @@ async def tolerances_page(
 async def _analysis(
     request: Request, services: PageServices, id: str, job: str | None
 ) -> tuple[ToleranceAnalysis | None, str | None]:
-    """Return the analysis, or the job that still makes it."""
+    """Return the analysis, or the job that computes it."""
     if job is not None:
         reply = await stored(services, job, ToleranceAnalysis)
         return reply.answer, reply.job or None
@@ -102,7 +99,7 @@ def _marks(output: OutputScatter) -> Iterator[bars.Mark]:
 
 
 def _near(one: Yield, edges: list[float]) -> bool:
-    """Return whether a limit lies so near that the histogram is not squeezed by it."""
+    """Return whether a limit is so near that it does not compress the histogram."""
     assert one.limit is not None
     width = edges[-1] - edges[0]
     return edges[0] - width <= one.limit <= edges[-1] + width
