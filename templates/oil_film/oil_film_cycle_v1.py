@@ -22,7 +22,7 @@ from templates.core.language.template import (
 from templates.groups.fed_bearing import FedBearing
 from templates.physics.elastic.elastic_journal import deflection_in_steel
 from templates.physics.numerics.reserve import above, below
-from templates.physics.orbits.cyclic_film import CycleFilm, Duty
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty, LoadCourse, load_course
 from templates.physics.pads.slider_film import spread
 from templates.physics.supplied.fed_cycle import (
     BOUNDARY,
@@ -32,7 +32,7 @@ from templates.physics.supplied.fed_cycle import (
     fed_film,
     fed_orbit,
 )
-from templates.physics.supplied.feeding import feed_under_load, supply_kind
+from templates.physics.supplied.feeding import feed_under_load, sleeve_motion, supply_kind
 
 BOOKER = "Booker 1965"
 ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
@@ -272,10 +272,36 @@ class OilFilmCycle(FedBearing):
         return self.orbit.march_error(output)
 
     def measured_case(self) -> str:
-        """The kind of supply; none of pressures and holes beyond those of the duties that were marched."""
-        kind = supply_kind(self.feeding)
-        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1))
-        return kind if marched and (kind.endswith("groove") or np.all(self.under_load <= 0.1)) else ""
+        """The kind of supply and the motion of the sleeve; none beyond the duties that were marched."""
+        kind, motion = supply_kind(self.feeding), sleeve_motion(self.motion)
+        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 4)) and motion
+        placed = kind.endswith("groove") or np.all(self.under_load <= 0.1)
+        return f"{kind}, {motion}" if marched and placed else ""
+
+    @shared
+    def course(self) -> LoadCourse:
+        """How the load varies over the cycle."""
+        return load_course(self.theta, self.F_x, self.F_y)
+
+    @shared
+    def peak(self) -> Array:
+        """Largest over mean load, on which the errors of the mobility levels depend."""
+        return self.course.peak
+
+    @shared
+    def turns(self) -> Array:
+        """What the load's direction varies by: 0.05 where it is constant, 1.05 at most; likewise."""
+        return 1.05 - self.course.steadiness
+
+    @shared
+    def whirls(self) -> Array:
+        """What part of the cycle the load turns at about half the crank's speed, and 0.05; likewise."""
+        return 0.05 + self.course.at_half_speed
+
+    @shared
+    def wide(self) -> Array:
+        """B/D over 0.5, or 1 for a narrower bearing; likewise."""
+        return np.maximum(self.b / 0.5, 1.0)
 
     @formula("1/N", "load scale", symbol="s")
     def s(self) -> Array:

@@ -21,7 +21,7 @@ import numpy as np
 from templates.core.arrays import Array
 
 MARGIN = 1.25
-"""Bound over the largest change from ring to ring, each brought to the finest by the square of the step [-]."""
+"""Bound over the largest change from ring to ring, each brought to the finest ring [-]."""
 LEAST = 5e-4
 """What is stated at least: where the changes are smaller, kinks of the load decide the error [-]."""
 RINGS = 4

@@ -1,19 +1,22 @@
 """Truths: against what an error was measured, and which levels are nearer to the same truth."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from templates.core.criteria.bands import CONVENTION
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.level_choice import reachable
-from templates.core.language.levels import Accuracy, absolute_error, accuracy, next_levels, truth_of
+from templates.core.language.levels import Accuracy, accuracy, next_levels, truth_of
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.oil_film.slider_bearing_v1 import SliderBearing
 
+ROOT = Path(__file__).parents[3]
 MEASURED = [cls for cls in built_in() if accuracy(cls)]
 
 
@@ -89,6 +92,14 @@ class TestTruth:
                 assert truth or not np.isfinite(cells).any(), (level, output)
                 assert truth is None or measured.content["truths"][truth]
 
+    @pytest.mark.parametrize("cls", MEASURED, ids=lambda cls: f"{cls.id}_{cls.version}")
+    def test_property_every_table_is_relative_to_the_truth(self, cls):
+        """And the script that wrote it measures so."""
+        content = accuracy(cls).content
+        assert content["convention"] == CONVENTION
+        script = ROOT / f"{content['made_by'].split()[2].replace('.', '/')}.py"
+        assert "CONVENTION" in script.read_text(encoding="utf-8")
+
     def test_property_two_conventions_of_friction_are_two_truths(self):
         """Power loss of the example: `map` 657.9 W by shear all around, `mass_conserving` 530.7 W."""
         loss = {
@@ -162,37 +173,6 @@ class TestConditions:
         raw = {**Rungs.example, "heat": "3 K"}
         assert np.isnan(evaluate(Rungs, raw, outputs=["warmth"], level="rough").error["warmth"])
         assert evaluate(Rungs, raw, outputs=["size"], level="rough").error["size"] == 0.1
-
-
-class TestProfiles:
-    def test_property_error_of_a_curve_through_zero(self, table):
-        """It is a share of the largest absolute value, the same at every place, zero included."""
-        table()
-        points = rung("fine", length={"value": [5, 8], "unit": "m"})
-        error = accuracy(Rungs).of(points, ["wave"])["wave"]
-        assert absolute_error(points, "wave", error).tolist() == [
-            pytest.approx([0.3] * 3),
-            pytest.approx([0.48] * 3),
-        ]
-        assert absolute_error(points, "size", np.array([0.01, 0.1])) == pytest.approx([0.0505, 0.808])
-        assert absolute_error(rung("fine"), "wave", 0.5) == pytest.approx([2.0] * 3)
-
-
-class TestSizes:
-    def test_property_what_errors_are_relative_to(self):
-        """An angle to 90°, a stiffness to the largest of its four, a size to itself."""
-        film = OilFilm.from_quantities(OilFilm.example)
-        assert absolute_error(film, "attitude_angle", 0.01) == pytest.approx(np.radians(0.9))
-        largest = max(abs(getattr(film, f"k_{xy}")) for xy in ("xx", "xy", "yx", "yy"))
-        assert absolute_error(film, "stiffness_yy", 0.01) == pytest.approx(0.01 * largest)
-        assert absolute_error(film, "power_loss", 0.01) == pytest.approx(0.01 * film.P)
-
-    def test_property_a_size_that_is_no_output_is_unknown(self):
-        pad = SliderBearing.from_quantities(SliderBearing.example)
-        assert np.isnan(absolute_error(pad, "pressure_gradient", 0.01))
-        assert absolute_error(pad, "pressure", 0.01) == pytest.approx(
-            np.full(np.shape(pad.p), 0.01 * np.abs(pad.p).max())
-        )
 
 
 class TestReachable:
