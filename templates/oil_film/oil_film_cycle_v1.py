@@ -53,7 +53,7 @@ OUTSIDE = (
 SUPPLIED_ONLY = "level supplied alone follows the oil that is fed; a starved film has no flow that repeats"
 MARCHED_ONLY = "levels flooded and supplied alone are marched in time"
 UNKNOWN_STEP = (
-    "no film repeats, or the gap changes too much from ring to ring to read an error from it; that of level "
+    "no film repeats, or none on a coarser ring of crank angles from which to read an error; that of level "
     "flooded is not known"
 )
 MARCH_IT = "take level supplied"
@@ -119,12 +119,14 @@ class OilFilmCycle(FedBearing):
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl in an orbit of any size.
     Two errors are stated. numerical_error, an output, bounds the error of the smallest film by the step, from
-    orbits on three rings of crank angles. At level supplied it bounds that by mesh, step and cycle: from the
-    change between the last two meshes, and from cycle to cycle. At level flooded it is null.
+    orbits on rings of crank angles. At level supplied it bounds that by mesh, step and cycle: from the change
+    between the last two meshes, and from cycle to cycle. At level flooded it is null.
     The error in the answer is that against the rigid film of level supplied. Level supplied states its
     numerical errors. Of the mobility levels it is a one-sided bound from random duties of the same kind of
-    supply. It is null where fewer than 59 duties support it, where it failed on fresh duties, where no or
-    several inlets are given, for pressures and at level flooded.
+    supply, with a sleeve that is fixed or swings, as a power law of the duty. It is null where fewer than 59
+    duties support it, beyond the range of these, where it failed on other duties, where no or several inlets
+    are given, for a hole that is under the load for more than a tenth of the cycle, for pressures, curves and
+    side flow, and at level flooded.
 
     References
     ----------
@@ -439,7 +441,7 @@ class OilFilmCycle(FedBearing):
         return self.Q
 
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
-             latex=r"\text{from three rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
+             latex=r"\text{from rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
     def numerical_error(self) -> Array:
         """Relative error of the smallest film, without the error of the model."""
         return self.orbit.numerical_error

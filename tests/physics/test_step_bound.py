@@ -75,9 +75,8 @@ def test_property_finer_data_never_worsen_the_bound() -> None:
     """
     real, ratio = random_duties(np.random.default_rng(92), 24, 576)
     coarse = resampled(real, 5.0)
-    orbits = [
-        periodic_orbit(load, MapLaw(ratio)) for load in (coarse, resampled(coarse, 1.25), resampled(real, 1.25))
-    ]
+    given = coarse, resampled(coarse, 1.25), resampled(real, 1.25)
+    orbits = [periodic_orbit(load, MapLaw(ratio)) for load in given]
     bounds = np.array([orbit.step_bound for orbit in orbits])
     assert np.isfinite(bounds).all()
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-6)
