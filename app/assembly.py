@@ -1,4 +1,4 @@
-"""Create the parts of the service from its settings; an exit stack ends them in reverse order."""
+"""Create the parts of the service from its settings; an exit stack closes them in reverse order."""
 
 from __future__ import annotations
 
@@ -148,10 +148,10 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     )
     studies = assemble_studies(of_studies, designs)
     worksheets = Worksheets(database, catalogues, calculations.pool, published)
-    imports = Imports(database, store, jobs, catalogues, worksheets)
-    jobs.register(IMPORT, imports, imports.failed)
+    imports = Imports(store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports)
     model_imports = ModelImports(database, store, jobs, catalogues, programs, registry)
-    jobs.register(MODEL_IMPORT, model_imports, model_imports.failed)
+    jobs.register(MODEL_IMPORT, model_imports)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)

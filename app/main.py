@@ -1,4 +1,4 @@
-"""The application: `create_app(settings)`. Everything it holds is made in `lifespan` and ends there."""
+"""The application: `create_app(settings)`. `lifespan` creates everything that it holds, and closes it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Find the faces of a part that carry a dimension: from the model's declaration and from their size.
+"""Find the faces of a part that carry a dimension, from the model's declaration and the faces' sizes.
 
-A face never gets the tolerance of another dimension: where none has the parameter's size, or two dimensions
+A face never gets the tolerance of another dimension: if no face has the parameter's size, or two dimensions
 claim the same face, the build is refused.
 """
 

@@ -1,4 +1,4 @@
-"""Deep groove ball bearings: sizes by designation, sections of rings and cage, capacities.
+"""Deep groove ball bearings: sizes by designation, sections of rings and cage, load ratings.
 
 References
 ----------

@@ -1,10 +1,10 @@
 """Semantic PMI of AP242: dimensions with their limits, datums, geometric tolerances, on the faces of parts.
 
-Known faults of Open CASCADE 7.9, each found by experiment: the schema must be AP242, with AP214 its writer
-dies; a dimension carries limits and never a class of fit, of which the writer counts the grade otherwise than
-ISO 286; the writer takes a lower deviation with its sign turned round, and writes deviations without their
-type (`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn:
-these annotations are for programs, a drawing is for people.
+Known faults of Open CASCADE 7.9, each found by experiment: the writer crashes unless the schema is AP242; a
+dimension must have limits and never a class of fit, because the writer numbers the grades differently from
+ISO 286; the writer expects a lower deviation with the opposite sign, and writes deviations without their type
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn: these
+annotations are for programs, drawings are for people.
 """
 
 from __future__ import annotations

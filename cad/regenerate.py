@@ -1,8 +1,9 @@
-"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function of them.
+"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function.
 
-A build is accepted only after its checks, and the checks look at the bytes that a user will get: one valid
-solid per part, its volume that of the closed form, the box filled, and every parameter read back from the
-surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and in any other.
+A build is accepted only after its checks, which examine the bytes that a user will get: each part is one
+valid solid with the volume of its closed form, the parts fill the bounding box, and every parameter is read
+back from the surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and
+in any other.
 """
 
 from __future__ import annotations

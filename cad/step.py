@@ -1,4 +1,4 @@
-"""STEP (AP242): parts to bytes, the same for the same parts, and back to bodies with names and colours."""
+"""STEP (AP242): write parts as reproducible bytes, and read bodies with names and colours."""
 
 from __future__ import annotations
 

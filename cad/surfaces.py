@@ -1,4 +1,4 @@
-"""Surfaces of a finished solid: planes, cylinders, spheres, tori; dimensions are read from them."""
+"""Surfaces of a finished solid (planes, cylinders, spheres, tori), from which dimensions are read."""
 
 from __future__ import annotations
 

@@ -7,31 +7,32 @@ A model declares this in `toleranced`, by parameter:
         "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
     }
 
-`of` names the part, or lists parts of which the first that is drawn has the faces; without it the part is
-named as the model. One of these says which faces are meant:
+`of` names the part, or lists parts, of which the first one drawn has the faces; without it the part has the
+name of the model. One of these keys selects the faces:
 
-- `cylinders`: those about that axis, of the parameter's diameter; `end`, `"low"` or `"high"`, takes only the
-  first or the last along the axis, which no other dimension takes then;
+- `cylinders`: cylinders about that axis with the parameter's diameter; `end`, `"low"` or `"high"`, selects
+  only the first or the last along the axis, and excludes it from other dimensions;
 - `beside`: cylinders along that axis, but not about it; `along`: about it or not;
 - `askew`: cylinders along no axis, here `True`;
 - `spheres`, here `True`;
-- `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
-  not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
-- `sides`: from a plane across that axis to another one as far on the other side of the origin; the first
-  part that is drawn and has both planes carries it;
-- `walls`: from the thinnest cylinder about that axis to the one thicker by the wall; `inside` names the parts
-  of which one, if it is drawn, has the thinnest cylinder, such as the lining of a shell;
-- `shoulders`: from plane to plane on either side of each cylinder of another dimension, which is named: the
-  length of each pin of a shaft;
-- `discs`: from plane to plane, neighbours across the axis of other dimensions, all named, with none of their
-  cylinders between: the thickness of each web;
-- `between`: from the axis of one dimension's cylinders to that of another's, both named.
+- `planes`: from one plane across that axis to another; `levels` numbers these planes, by default `[[0, -1]]`,
+  from the first to the last. Each pair of numbers is a separate dimension;
+- `sides`: from a plane across that axis to its mirror plane on the other side of the origin; the first drawn
+  part that has both planes carries the dimension;
+- `walls`: from the smallest cylinder about that axis to the one that is larger by the wall; `inside` names
+  parts that, if drawn, have the smallest cylinder, such as the lining of a shell;
+- `shoulders`: from plane to plane on either side of each cylinder of the named dimension: the length of each
+  pin of a shaft;
+- `discs`: between neighbouring planes with no cylinder of the named dimensions between them: the thickness of
+  each web;
+- `between`: from the axis of one named dimension's cylinders to the axis of the other's.
 
 `datum` makes the faces a datum. `cylindricity`, `perpendicularity` and `parallelism` are shares of the
 dimension's own tolerance, upper less lower limit; the last two need `to`, the datum. They are written only
-where the dimension has a tolerance. Nothing here calculates: a released model may change it (`MARKS`).
+where the dimension has a tolerance. `toleranced` does not affect results, so a released model may change it
+(`MARKS`).
 
-No kernel is imported here; `cad.pmi` finds the faces.
+This module does not import the kernel; `cad.pmi` finds the faces.
 """
 
 from __future__ import annotations
@@ -186,9 +187,17 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
         raise _wrong(cls, name, "end must be low or high")
     forms = {form: float(said[form]) for form in FORMS if form in said}
     if any(not 0 < share <= 1 for share in forms.values()):
-        raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
+        raise _wrong(
+            cls,
+            name,
+            "a geometric tolerance is a share, above 0 and at most 1, of the dimension's own tolerance",
+        )
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
-        raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
+        raise _wrong(
+            cls,
+            name,
+            "`to`, a datum, is required for perpendicularity and parallelism, and not allowed otherwise",
+        )
     part, *others = _parts(cls, name, "of", said.get("of", cls.id))
     inside = _parts(cls, name, "inside", said["inside"]) if "inside" in said else []
     if inside and kinds[0] != "walls":

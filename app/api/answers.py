@@ -1,4 +1,4 @@
-"""The answer to a question as a response: itself, or 202 with the job that makes it."""
+"""Send the answer to a question: the answer itself, or 202 with the job that computes it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Dependencies of routes, by annotation: parts of `Services`, and the parts of a request besides its body.
+"""FastAPI dependencies of routes: the parts of `Services`, and the parts of a request besides its body.
 
-The functions are async although they wait for nothing: FastAPI runs sync ones in a thread each.
+The functions are async although they wait for nothing: FastAPI would run each sync function in a thread.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Streams that go on where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
+"""Event streams that resume where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
 
-Browsers send the header by themselves when they connect again.
+Browsers send this header automatically when they reconnect.
 """
 
 from __future__ import annotations

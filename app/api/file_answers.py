@@ -1,4 +1,4 @@
-"""Answers with stored files: verified while they are sent, made again when they are missing or damaged."""
+"""Responses with stored files: verified while they are sent, rebuilt when they are missing or damaged."""
 
 from __future__ import annotations
 

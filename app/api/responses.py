@@ -1,4 +1,4 @@
-"""Responses of routes: how long a client waits, in which threads, 202 with a job, JSON and its compression.
+"""Build the responses of routes: waiting, worker threads, 202 with a job, JSON and its compression.
 
 Routes that may wait for the pool of calculation processes have their own threads, so that they never block
 the other routes.

@@ -1,4 +1,4 @@
-"""Comments on revisions: plain text, about a name in the design or about all of it, open until resolved."""
+"""Comments on revisions: plain text, on one name or the whole revision, open until resolved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Approvals of revisions and comments on them, as the interface takes and shows them."""
+"""Approvals of revisions and comments on them, as the REST interface accepts and returns them."""
 
 from __future__ import annotations
 

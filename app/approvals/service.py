@@ -92,7 +92,7 @@ class ApprovalService:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():
             if STEP in kinds and not self.store.exists(kinds[STEP]):
-                raise NotReady(f"the STEP file of {name} is lost: GET it, which makes it again, then sign")
+                raise NotReady(f"the STEP file of {name} is lost: GET it to rebuild it, then sign")
 
 
 def _links(place: str, kinds: dict[str, str]) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """Curves from a file: the columns of a table as quantities, an indicator diagram as one cycle.
 
-`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads a file as it reads what
-is pasted on a page, `indicator` makes one cycle of several. Nothing is stored; what is assumed is stated,
+`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads files and pasted tables
+alike; `indicator` averages several cycles into one. Nothing is stored. The answer states every assumption,
 and an unclear cell is refused with its line number.
 """
 
@@ -83,7 +83,7 @@ def _table(file: FileText) -> Table:
         name_here = api_name(words)
         seen[name_here] += 1
         if not name_here or not name_here[0].isalpha() or re.fullmatch(r"column [0-9]+", name):
-            return Fault(name, "missing_name", "it has no name; write it as pressure [bar]")
+            return Fault(name, "missing_name", "the column has no name; write one such as pressure [bar]")
         if seen[name_here] == 2:
             return Fault(name, "named_twice", f"two columns are named {name_here}; give them different names")
         if not own and not is_cycle_number(name):

@@ -1,8 +1,8 @@
 """The pressure of a journal bearing's oil film over its unrolled surface, for pictures.
 
-A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as
-`templates.physics.films.reynolds`. The field is for display only. It is solved again on 64 × 16 intervals,
-with an error of 0.1 % of the largest pressure.
+A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as in
+`templates.physics.films.reynolds`. The field is for display only: it is solved on 64 × 16 intervals, with an
+error of 0.1 % of the largest pressure.
 """
 
 from __future__ import annotations

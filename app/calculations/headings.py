@@ -1,8 +1,8 @@
 """Headings of measured tables: a name with its unit, as measuring programs write it.
 
 `pressure [bar]`, `Druck (bar(g))`, `p / bar`. Crank angles are written `°CA`, `degCA` or `°KW`, and pressures
-`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. What such a unit means beside
-its size is stated.
+`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. The answer states what such a
+unit implies, such as gauge pressure.
 """
 
 from __future__ import annotations

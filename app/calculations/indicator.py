@@ -1,9 +1,9 @@
-"""Indicator diagrams as measured: average several cycles, and turn times with TDC pulses into crank angles.
+"""Measured indicator diagrams: average several cycles, and convert times with TDC pulses to crank angles.
 
 A table is an indicator diagram if it has a pressure, or the volts of its sensor, over a crank angle, or over
-the time with a column of the pulses at top dead centre (TDC). Every other table is left as it is. Everything
-that is assumed is stated. Angles count as in `engine`: with four strokes combustion is at 360°, with two
-at 0°.
+the time with a column of the pulses at top dead centre (TDC). Every other table stays unchanged. The answer
+states every assumption. Crank angles are counted as in `engine`: combustion is at 360° in a four-stroke
+engine and at 0° in a two-stroke engine.
 """
 
 from __future__ import annotations
@@ -239,7 +239,7 @@ def _middles(seconds: Array, level: Array, name: str) -> Array:
         If the times do not grow, there are fewer than three pulses, or one is missing between others.
     """
     if np.any(np.diff(seconds) <= 0):
-        raise InvalidInputs([Fault("table", "unordered", "the times must grow from row to row")])
+        raise InvalidInputs([Fault("table", "unordered", "the times must increase from row to row")])
     low, high = float(level.min()), float(level.max())
     share = (level - low) / (high - low) if high > low else np.zeros(len(level))
     if np.median(share) > 0.5:

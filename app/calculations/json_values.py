@@ -203,6 +203,7 @@ def solution(result: Solution) -> JsonObject:
         "touching": [_root(root, result.unit) for root in result.touching],
         "jumps": [_jump(jump, result) for jump in result.jumps],
         "curve": _curve(result.curve, result),
+        "finer": [_curve(curve, result) for curve in result.finer],
         "evaluation": evaluation(result.evaluation),
     }
 

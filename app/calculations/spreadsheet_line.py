@@ -1,4 +1,4 @@
-"""An evaluation as lines of CSV, for a spreadsheet that asks by an address: names, units, numbers."""
+"""An evaluation as lines of CSV (names, units, numbers) for a spreadsheet that requests it by a URL."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The text of a file that holds a table: CSV in the letters of any usual program, or a sheet of XLSX.
+"""Read the text of a table file: CSV in any common encoding, or one sheet of XLSX.
 
-What is assumed of a file is stated beside its text. XLSX is a zip archive of XML that a stranger made: the
-sizes of its parts are bounded before any is read.
+The assumptions about a file are returned with its text. An XLSX file is an untrusted zip archive of XML: the
+sizes of its parts are checked before any part is read.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
     if content.startswith(ZIP):
         return FileText(sheet_text(content, most_unpacked, most_rows), is_sheet=True)
     if content.startswith(OLD_EXCEL):
-        raise _wrong("old_excel", "this is a file of an old spreadsheet (.xls); save it as .xlsx or as CSV")
+        raise _wrong("old_excel", "this is an old Excel file (.xls); save it as .xlsx or as CSV")
     return _decoded(content)
 
 

@@ -1,9 +1,9 @@
 """Tables as people paste them from a spreadsheet or a measuring program.
 
 Columns are separated by tabs, semicolons, commas, or blanks that align them. A decimal comma is read where
-the separator is not a comma; which mark was taken is stated. The first row may hold names, the second one
-units; a unit may also stand behind a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines of
-words above the headings are skipped. A fault names the row, counted as in the text, and the column.
+the separator is not a comma; the answer states which mark was used. The first row may hold names, the second
+one units; a unit may also follow a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines
+of words above the headings are skipped. A fault names the row, as numbered in the text, and the column.
 """
 
 from __future__ import annotations
@@ -229,7 +229,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
     )
     filled = list(islice(numbered, most_rows + 3))
     if not filled:
-        raise _wrong("table", "empty", "the table is empty; paste rows of numbers, with their names above")
+        raise _wrong("table", "empty", "the table is empty; paste rows of numbers below their column names")
     if len(filled) > most_rows + 2:
         raise _wrong("table", "too_many_rows", f"a table has at most {most_rows} rows; take fewer")
     separator, first = _layout(filled)

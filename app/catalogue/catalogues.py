@@ -1,6 +1,6 @@
-"""The parts of designs: versions of this program, of a team's files, and of released worksheets.
+"""Catalogues of the parts of designs: built-in versions, a team's files, and released worksheets.
 
-The files of a team are read again when they change; `app.worksheets` says which worksheets there are.
+The files of a team are reloaded when they change; `app.worksheets` lists the worksheets.
 """
 
 from __future__ import annotations

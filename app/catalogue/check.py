@@ -96,7 +96,9 @@ def _import_fault(error: BaseException, path: Path) -> FileFault:
             remedy = "correct this line" if line else "save the file as UTF-8"
             return FileFault("syntax", f"{type(error).__name__}: {error.msg}", remedy, line)
         case UnicodeError():
-            return FileFault("syntax", f"it is not text in UTF-8: {error}", "save the file as UTF-8", line)
+            return FileFault(
+                "syntax", f"it is not a text file in UTF-8: {error}", "save the file as UTF-8", line
+            )
         case ImportError():
             remedy = "correct the name, or install what is missing where the service runs"
             return FileFault("import", f"{type(error).__name__}: {error}", remedy, line)

@@ -1,4 +1,4 @@
-"""Find templates: the built-in ones, and those in a team's own folders beside its models."""
+"""Find templates: the built-in ones, and those in a team's own folders."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Search templates by what an engineer calls them: standards, authors, symbols, names of textbooks.
+"""Search templates by the terms of engineers: standards, authors, symbols, names from textbooks.
 
 A template is found by its title, its documentation with the references, and the names, words, symbols and
-sources of what it declares. Names under which textbooks know a quantity of another definition stand in
-`TERMS`, each with the factor between both.
+sources of what it declares. `TERMS` lists textbook names of quantities that are defined differently here,
+each with the conversion factor.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`crankwright audit …`: reads the audit in the database itself, whether the service runs or not."""
+"""`crankwright audit …`: reads the audit directly from the database, whether or not the service runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`crankwright check-template FILE`: report a file's faults as the service would, before it is installed."""
+"""`crankwright check-template FILE`: report the faults of a template file before it is installed."""
 
 from __future__ import annotations
 

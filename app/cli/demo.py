@@ -1,4 +1,4 @@
-"""`crankwright demo`: the demonstration of the paper, on this machine or on a whole team of processes."""
+"""`crankwright demo`: run the paper's demonstration, in one process or on all processes of a team."""
 
 from __future__ import annotations
 

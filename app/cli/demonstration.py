@@ -1,7 +1,7 @@
-"""Demonstrate through the interface what Mathcad and Creo do together in the paper.
+"""Demonstrate through the REST interface the link between Mathcad and Creo that the paper shows.
 
 A ball bearing of 50 mm; SCALE = 1 as a worksheet input; D = SCALE · 48 mm as the worksheet's bearing
-diameter; a relation ties the model's inner diameter to it; regenerate: the bearing measures 48 mm.
+diameter; a relation sets the model's inner diameter to it; after regeneration the bearing measures 48 mm.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`crankwright download`: a file of a design, from a running service, under its name."""
+"""`crankwright download`: download a file of a design from a running service."""
 
 from __future__ import annotations
 

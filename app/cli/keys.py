@@ -1,6 +1,6 @@
-"""`crankwright keys …`: manage principals and keys in the database itself, even if all keys are lost.
+"""`crankwright keys …`: manage principals and keys directly in the database, even if all keys are lost.
 
-A service may run meanwhile; it takes notice within a few seconds.
+A service may run meanwhile; it applies the change within a few seconds.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`crankwright model …`: models that a team brings from FreeCAD, Creo or a STEP file."""
+"""`crankwright model …`: import models from FreeCAD, Creo or a STEP file."""
 
 from __future__ import annotations
 

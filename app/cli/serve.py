@@ -1,4 +1,4 @@
-"""`crankwright serve`: the service on one address, with the checks that come before it listens."""
+"""`crankwright serve`: check the settings and the address, then start the service."""
 
 from __future__ import annotations
 
@@ -98,6 +98,6 @@ def _check_reach(settings: Settings, insecure: bool) -> None:
     )
     if not insecure:
         raise click.ClickException(
-            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
+            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure to allow it."
         )
     click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)

@@ -1,4 +1,4 @@
-"""`crankwright study | sweep`: many rows of a design, from a running service or on a data folder."""
+"""`crankwright study | sweep`: calculate many rows of a design, through a service or on a data folder."""
 
 from __future__ import annotations
 

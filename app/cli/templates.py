@@ -1,4 +1,4 @@
-"""`crankwright evaluate | template | freeze`: the templates in this process, without a service.
+"""`crankwright evaluate | template | freeze`: use templates in this process, without a service.
 
 If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
 the models with the geometry kernel, and the schema are imported by the commands that need them.
@@ -93,7 +93,7 @@ def _result(answer: Answer) -> str:
 def _pair(text: str) -> tuple[str, Raw]:
     name, sign, value = text.partition("=")
     if not sign:
-        raise click.BadParameter(f"{text!r} is not a NAME=QUANTITY, such as radial_load='25 kN'")
+        raise click.BadParameter(f"{text!r} is not of the form NAME=QUANTITY, such as radial_load='25 kN'")
     return name, argument(name, value)
 
 

@@ -1,4 +1,4 @@
-"""`crankwright worker` and `crankwright scheduler`: the machines of a team and their scheduler."""
+"""`crankwright worker` and `crankwright scheduler`: run a worker machine of a team, or its scheduler."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""`crankwright worksheet …`: worksheets as text files, and their states in the service.
+"""`crankwright worksheet …`: exchange worksheets as text files with the service, and change their states.
 
-A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text as it
-was written, byte by byte.
+A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text byte for
+byte.
 """
 
 from __future__ import annotations
@@ -241,7 +241,7 @@ def _named(file: Path) -> tuple[str, int]:
     """Return the id and the version that a file's name says; 0 where it says none."""
     if (match := FILE.fullmatch(file.name)) is None:
         raise click.ClickException(
-            f"{file.name} is no <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
+            f"{file.name} is not named <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
         )
     return match[1], int(match[2] or 0)
 
@@ -251,4 +251,4 @@ def _text(file: Path) -> str:
     try:
         return file.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
-        raise click.ClickException(f"{file} is not text in UTF-8") from None
+        raise click.ClickException(f"{file} is not a text file in UTF-8") from None

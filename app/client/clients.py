@@ -1,6 +1,6 @@
 """The two clients, synchronous and asynchronous, with a method for each request.
 
-Their methods are the `operations`; how a request is sent is in `app.client.connections`.
+The methods come from `operations`; `app.client.connections` sends the requests.
 """
 
 from __future__ import annotations

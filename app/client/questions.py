@@ -1,4 +1,4 @@
-"""Questions about designs: solve for an input, analyse tolerances, impact of a version."""
+"""Questions about designs: solve for an input, analyse tolerances, show the impact of a version."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Studies as a client handles them: an object that waits, lists its rows and chooses one.
+"""Studies in the client: an object that waits for the study, lists its rows and chooses one.
 
 study = client.study(design.id, method="grid", vary={…}, steps=41, outputs=["film.power_loss"])
 study.wait(print).result

@@ -1,12 +1,12 @@
-"""Proposals for model parameters that are not set, by kind, name and role of a quantity, with reasons.
+"""Proposals that link unset model parameters to values of a design, by kind, name and role, with reasons.
 
-A proposal is never applied unless its user says so. Three things must fit:
+A proposal is applied only if the user accepts it. Three things must fit:
 
-- the *kind*: both are measured alike, and a single value is not tied to a curve;
-- the *name*: the step's quantity is called as the parameter is, or as it is `also` known;
-- the *role*: a name of general words alone, such as `bore` or `width`, does not say of which part it is: the
-  bore of an engine is that of its cylinder. It counts only under the very name of the parameter, in a
-  template whose id shares a word with the model's.
+- the *kind*: both measure the same kind of quantity, and a single value is not linked to a curve;
+- the *name*: the step's quantity has the name of the parameter, or a name listed under `also`;
+- the *role*: a name of general words only, such as `bore` or `width`, does not say which part it belongs to:
+the bore of an engine is the bore of its cylinder. Such a name counts only if it equals the name of the
+parameter and the ids of template and model share a word.
 """
 
 from __future__ import annotations

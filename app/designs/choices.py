@@ -1,6 +1,6 @@
-"""The choices that relations test, `film.oil is "SAE 30"`: known from the document alone.
+"""Choices that relations test, as in `film.oil is "SAE 30"`: resolved from the document alone.
 
-A choice does not depend on other values. So its tests are decided when the network is built, and a test
+A choice does not depend on other values. So the network resolves each test when it is built, and a test
 creates no loop if a relation sets an input of the same step.
 """
 

@@ -1,4 +1,4 @@
-"""List all that differs between two stored revisions, of one design or of two; nothing is calculated."""
+"""List all differences between two stored revisions, of one design or of two; nothing is calculated."""
 
 from __future__ import annotations
 

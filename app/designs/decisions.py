@@ -1,4 +1,4 @@
-"""Decisions about criteria: answered at once, or by a job where a level takes long."""
+"""Decide criteria of a design: answer at once, or start a job if a level takes long."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The dependencies in a design: its blocks in columns, its relations, and the names that these may use."""
+"""The dependencies in a design: blocks in columns, relations, and the names that relations may use."""
 
 from __future__ import annotations
 

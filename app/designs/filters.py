@@ -1,4 +1,4 @@
-"""A filter on the list of designs, and the SQL conditions that it stands for.
+"""A filter on the list of designs, and its SQL conditions.
 
 The database walks along the designs, newest first, until a page is full. A filter therefore costs time in
 proportion to the number of designs that it skips, and memory for one page.

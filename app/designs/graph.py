@@ -1,7 +1,7 @@
-"""Read a document as its user sent it, build its network, and check that before anything is calculated.
+"""Read a document as its user sent it, build its network, and check it before any calculation.
 
-Every check returns what it finds; nothing is changed on the way. The units of relations are checked before
-any value is known.
+Every check returns its findings and changes nothing. The units of relations are checked before any value is
+known.
 """
 
 from __future__ import annotations

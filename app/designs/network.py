@@ -1,8 +1,8 @@
-"""The network of a design: which value depends on which.
+"""The network of a design: the dependencies between its values.
 
-Its nodes are cells, which are the values that a user wrote (`scale`, `film.radial_load`); blocks, which are
-steps and models; solids, which are models when built; and analyses of solids. A block depends on its cells,
-and its outputs depend on the block. Measurements depend on the solid.
+Its nodes are cells (the values that a user wrote, such as `scale` or `film.radial_load`), blocks (steps and
+models), solids (built models) and analyses of solids. A block depends on its cells, and its outputs depend on
+the block. Measurements depend on the solid.
 
 Criteria name values of the network. A name without a dot is a criterion of the design itself, which needs
 `require`. `film.pressure` is the criterion `pressure` of the template of step `film`: the design may replace
@@ -321,7 +321,7 @@ def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, 
     if criterion.member not in names:
         there = [f"{b.name}.{c.name}" for b in blocks.values() for c in b.cls.declared_criteria]
         detail = unknown_name(name, there, "criterion").detail if there else "no template here has criteria"
-        raise FaultyText("unknown_name", f"{detail}; a criterion of the design has no dot in its name")
+        raise FaultyText("unknown_name", f"{detail}; the name of a design's criterion must not contain a dot")
 
 
 def _uses(require: str | None) -> dict[str, Reference]:

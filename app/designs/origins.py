@@ -1,4 +1,4 @@
-"""Trace values of a design to their origins: the literal quantities behind them, the solids on the way."""
+"""Trace values of a design to their origins: the typed quantities, and the solids in between."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The results of a revision and of its variants, as it stores them: outputs and criteria, models, solids."""
+"""The stored results of a revision and its variants: outputs, criteria, models and solids."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Sensitivities of a design's value or criterion to each quantity that its user typed.
+"""Sensitivities of a value or criterion of a design to each quantity that its user typed.
 
-Slopes by central differences, local to the design: 1 + 2 n rows in one array call, at the levels that the
-design itself used. What acts through a solid has a reason instead: each of its values needs its own solid.
+The slopes are central differences at the design point: 1 + 2 n rows in one array call, at the levels that the
+design used. A quantity that acts through a solid gets a reason instead of a slope, because each of its values
+needs another solid.
 """
 
 from __future__ import annotations
@@ -177,7 +178,7 @@ class DifferenceRows:
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(
-                "too_many_values", f"{count} rows of lists this long would take too long; {STUDY}"
+                "too_many_values", f"{count} rows with lists of this length would take too long; {STUDY}"
             )
 
     def _at(self) -> str:

@@ -1,8 +1,8 @@
-"""Fields that a revision has for the surface of a crankshaft: use of its fillets, shapes of torsional modes.
+"""Fields that a revision has for the surface of a crankshaft: utilisation of fillets, torsional mode shapes.
 
 They come from steps that use finite-element results of the model: a `fatigue_life` with the tensors of
-`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. A user declares nothing for them, and
-the service stores none.
+`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. They need no declaration, and the
+service does not store them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The stamp that a downloaded file of a model carries: its design, revision, date, materials, signatures."""
+"""The stamp on a downloaded model file: its design, revision, date, materials and signatures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A design as it is sent to a calculation process: its document and the files of its templates."""
+"""A design as a calculation process receives it: its document and the files of its templates."""
 
 from __future__ import annotations
 

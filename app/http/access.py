@@ -1,4 +1,4 @@
-"""Who sends a request: its principal, its client, and the role that its route needs.
+"""Identify who sends a request: the principal, the client, and the role that the route needs.
 
 Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
 If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the

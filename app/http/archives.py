@@ -1,4 +1,4 @@
-"""ZIP files written while they are sent: one file is in memory at a time; equal files give equal bytes."""
+"""ZIP files written while they are sent: one file at a time is in memory; equal files give equal bytes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that a client saves: under which name, whether it has them already, and bytes sent as a file."""
+"""Downloads: the file name, whether the client already has the file, and bytes sent as a file."""
 
 from __future__ import annotations
 

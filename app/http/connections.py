@@ -3,9 +3,9 @@
 uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
 accepts headers of any length, and copies all of them again whenever another piece arrives.
 
-From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
-serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this
-service sends one: the protocol marks such a request, and the guard refuses it.
+If the request target is more than a path, such as `GET http://evil.example/healthz`, uvicorn drops its host
+and serves the path, although RFC 9112 gives that host priority over the header `Host`. No client of this
+service sends such a target: the protocol marks the request, and the guard refuses it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The outermost layer of the application: it keeps other sites from reading, writing or framing pages.
+"""The outermost layer of the application: it stops other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
@@ -150,7 +150,7 @@ def _host(looked: Looked, scope: Scope) -> bytes:
     if len(given) != 1:
         raise BadHost(f"send exactly one header Host; there are {len(given)}")
     if not is_mere_path(scope):
-        raise BadHost("send the path alone as the target of the request, such as /healthz, without a host")
+        raise BadHost("send only a path as the request target, such as /healthz, without a host")
     if len(given[0]) > LONGEST:
         raise BadHost(_no_host(given[0]))
     return given[0]
@@ -169,8 +169,8 @@ def _allowed(hosts: Hosts, given: bytes, scheme: str, server: tuple[str, int | N
     if not hosts.allows(asked, scheme, server):
         name = f"[{asked.name}]" if ":" in asked.name else asked.name
         raise HostNotAllowed(
-            f"this service does not answer to the host {name!r}; if that is its name, the operator allows it "
-            f"by the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
+            f"this service does not answer to the host {name!r}; if the service has this name, the "
+            f"operator must add it to the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
         )
     return asked
 

@@ -1,4 +1,4 @@
-"""Limits on every request: the sizes of head and body, how slowly the body may come, the end of the service.
+"""Limits on every request: the sizes of head and body, the speed of the body, the shutdown of the service.
 
 FastAPI reads the cookies of every request by a function of the standard library whose time is quadratic in
 the length of a quoted cookie; none of ours is quoted, so quoted ones are dropped. FastAPI's own limit on

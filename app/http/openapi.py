@@ -3,9 +3,10 @@
 FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of a
 path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
 refused; `itemSchema` is OpenAPI 3.2. Some parts are written in the form that client generators understand.
-Problems that follow from what an operation takes are added here too; a route declares those of its own.
+Problems that follow from an operation's parameters and body are added here too; a route declares only its
+own.
 
-`Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.
+FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The kinds of problems, and the table from errors to them: the domains know nothing of HTTP.
+"""The kinds of problems, and the table that maps errors to them; the domains know nothing of HTTP.
 
 A kind names its `type`, `/problems/<slug>`, its status, title and remedy.
 """

@@ -1,4 +1,4 @@
-"""Errors → RFC 9457 problems, by the table of `app.http.problem_kinds`.
+"""Turn errors into RFC 9457 problems, by the table of `app.http.problem_kinds`.
 
 A problem's `type` is a relative link, `/problems/<slug>`, which answers with its meaning and remedy.
 """

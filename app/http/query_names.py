@@ -1,4 +1,4 @@
-"""Names of parameters in an address: a misspelt one is refused, since it would change nothing."""
+"""Check the names of query parameters: a misspelt name is refused, since the route would ignore it."""
 
 from __future__ import annotations
 

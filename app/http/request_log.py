@@ -1,4 +1,4 @@
-"""Every request gets an id, is counted and timed, and leaves a line in the log."""
+"""Give every request an id, count and time it, and log one line for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every request is a span; only with traces is this imported, see `app.observation.traces`."""
+"""Record every request as a span. Imported only if traces are on, see `app.observation.traces`."""
 
 from __future__ import annotations
 

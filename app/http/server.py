@@ -1,10 +1,10 @@
 """The web server: uvicorn with limits on connections, and a shutdown that never exceeds the drain time.
 
-SIGTERM and SIGINT begin the end. Requests in flight have most of the drain time to be answered, then jobs are
+SIGTERM and SIGINT start the shutdown. Requests in flight have most of the drain time to finish; then jobs are
 put back into the queue and all rows are committed. If the process still hangs, a thread kills it; if that
 thread cannot run because something holds the interpreter lock, the interpreter's own watchdog does. A second
-signal ends at once. The process leaves without Python's own clean-up, which would wait for threads and run
-the destructors of the geometry kernel.
+signal ends the process at once. The process exits without Python's own clean-up, which would wait for threads
+and run the destructors of the geometry kernel.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
-`StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
-nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
-calls its endpoint without FastAPI's machinery.
+`StrictRoute` replaces FastAPI's lenient parsing of bodies: pydantic's parser refuses lone surrogates and deep
+nesting, and a missing or wrong content type is refused. `PlainRoute` reads just as strictly, and calls its
+endpoint without FastAPI's machinery.
 """
 
 from __future__ import annotations

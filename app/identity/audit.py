@@ -1,4 +1,4 @@
-"""The record of who did what: a row in the transaction of the change itself."""
+"""The record of who did what: one row, written in the transaction of the change itself."""
 
 from __future__ import annotations
 

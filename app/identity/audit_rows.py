@@ -1,4 +1,4 @@
-"""The audit as it is listed: newest first, all of it or what fits a filter."""
+"""The listing of the audit: newest first, all of it or only what matches a filter."""
 
 from __future__ import annotations
 

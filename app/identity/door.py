@@ -1,7 +1,7 @@
 """Identify the sender of a request: by its key, or by the session of a browser.
 
-Before the first principal exists, everybody is LOCAL; from then on every request needs a key. A verified key
-is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
+Before the first principal exists, every sender is LOCAL; from then on every request needs a key. A verified
+key is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
 """
 
 from __future__ import annotations

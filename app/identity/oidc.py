@@ -2,7 +2,7 @@
 
 OpenID Connect Core 1.0, section 3.1, and RFC 7636.
 
-Needs the extra `team`, of which the parts are imported where they are used.
+It needs the extra `team`, whose packages are imported where they are used.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ class Provider:
         audience = claims["aud"]
         if "azp" not in claims and isinstance(audience, list) and len(audience) > 1:
             raise ProviderRefused(
-                "the provider's token is for several services and does not say which of them asked for it"
+                "the provider's token is for several services and does not name the one that requested it"
             )
         if claims.get("azp", self.client) != self.client:
             raise ProviderRefused("the provider's token is for another service")

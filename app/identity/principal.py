@@ -1,6 +1,6 @@
-"""The acting principal: set for each request and job, read wherever an action is recorded.
+"""The acting principal: set for each request and job, read where an action is recorded.
 
-Units of work run in the context of their caller, so a row that is written there has the right author.
+Units of work run in the context of their caller, so each row that they write has the right author.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Principals, their keys and sessions: every change has its row in the audit, and counts here at once."""
+"""Principals, their keys and sessions: every change is audited and takes effect here at once."""
 
 from __future__ import annotations
 

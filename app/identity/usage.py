@@ -1,4 +1,4 @@
-"""Usage of principals: rows by day, raised in the unit of work that uses something. LOCAL has no limits."""
+"""Usage of principals: one row a day, updated in the unit of work that causes it. LOCAL has no limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compare one design, or variant, calculated with its own versions and with the new one."""
+"""Compare a design or variant, calculated with its own versions, with itself calculated with the new one."""
 
 from __future__ import annotations
 

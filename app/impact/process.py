@@ -1,4 +1,4 @@
-"""The impact of a version in a calculation process: some designs, calculated with both versions."""
+"""The impact of a version in a calculation process: some designs are calculated with both versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All SQL of the impact of a version; nothing is written."""
+"""All SQL of the impact of a version; it only reads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{number}/impact`: which designs another version changes, and how."""
+"""`/templates/{id}/versions/{number}/impact`: the designs that this version would change, and how."""
 
 from __future__ import annotations
 

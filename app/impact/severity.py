@@ -1,4 +1,4 @@
-"""The order of the affected designs, worst first, and of the verdicts of one design."""
+"""The order of the affected designs and of the verdicts of one design, worst first."""
 
 from __future__ import annotations
 

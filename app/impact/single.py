@@ -1,4 +1,4 @@
-"""One design calculated by itself, as a save does, but with no solid that is not built."""
+"""Calculate one design by itself, as a save does, but without building any solid."""
 
 from __future__ import annotations
 

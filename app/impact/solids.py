@@ -1,4 +1,4 @@
-"""The stored measurements of the solids of some designs, as a calculation process takes them."""
+"""The stored measurements of solids, as a calculation process receives them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All designs that use another version of a template, calculated batch by batch, and ranked."""
+"""Calculate all designs that use another version of a template, batch by batch, and rank them."""
 
 from __future__ import annotations
 

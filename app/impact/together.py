@@ -1,6 +1,6 @@
-"""Designs of one form calculated together: each is a row of the same array calls.
+"""Calculate designs of the same form together: each is one row of the same array calls.
 
-`alone` calculates the other designs: those with steps whose level follows from a tolerance, values that are
+`single` calculates the other designs: those with steps whose level follows from a tolerance, values that are
 measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
 refused.
 """

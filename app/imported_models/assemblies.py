@@ -1,7 +1,7 @@
 """Build the description of an assembly from its manifest: find, pin and pack each fixed part.
 
-The package holds the STEP file of every fixed part. So an assembly can be built again whatever happens to the
-models and designs from which the parts came.
+The package holds the STEP file of every fixed part. So an assembly can be rebuilt even if the models and
+designs of its parts are gone.
 """
 
 from __future__ import annotations

@@ -32,14 +32,14 @@ def require_free(id: str, catalogues: Catalogues) -> None:
         raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as main_cap")])
     snapshot = catalogues.snapshot
     if any(name == id for name, _ in (*snapshot.templates.quarantined, *snapshot.models.quarantined)):
-        raise ModelIdTaken(f"{id} is the id of one of the team's files")
+        raise ModelIdTaken(f"{id} is already the id of a file of the team")
     if id in snapshot.templates.ids:
-        raise ModelIdTaken(f"{id} is the id of a template")
+        raise ModelIdTaken(f"{id} is already the id of a template")
     if any(
         name == id and imported_description(cls) is None
         for (name, _), cls in snapshot.models.versions.items()
     ):
-        raise ModelIdTaken(f"{id} is the id of a model in a Python file")
+        raise ModelIdTaken(f"{id} is already the id of a model in a Python file")
 
 
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""The programs that draw imported models, each behind the same interface: values in, solids out."""
+"""Programs that draw imported models, all behind the same interface: values in, solids out."""
 
 from __future__ import annotations
 

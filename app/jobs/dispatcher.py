@@ -1,4 +1,4 @@
-"""The threads that take jobs from the queue, have them run, and record how they ended."""
+"""Threads that take jobs from the queue, have them executed, and record their outcomes."""
 
 import logging
 import secrets

@@ -1,4 +1,4 @@
-"""Events of designs and jobs: rows that are written with the change itself, and sent to subscribers.
+"""Events of designs and jobs: rows, written in the transaction of the change and sent to subscribers.
 
 The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
 its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a

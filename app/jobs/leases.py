@@ -1,4 +1,4 @@
-"""Leases of jobs on a shared database: other servers take over the jobs of a server that died."""
+"""Leases of jobs on a shared database: when a server dies, other servers take over its jobs."""
 
 from __future__ import annotations
 

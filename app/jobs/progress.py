@@ -1,4 +1,4 @@
-"""Progress of running jobs for other servers: stored in their rows, and read from there.
+"""Progress of running jobs for other servers: stored in the rows of the jobs.
 
 Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
 """

@@ -1,11 +1,11 @@
 """All SQL about jobs. Every function runs in the transaction of its caller.
 
-What a claimed job writes is fenced: it takes effect only while the row is running at the attempt and by the
-owner that claimed it, so a job which was cancelled or claimed again cannot write any more. So these units may
-run again (`repeatable`).
+The writes of a claimed job are fenced: they take effect only while its row is still running under the same
+owner and attempt, so a job that was cancelled or claimed again can no longer write. That is why these units
+may run again (`repeatable`).
 
-On a database that several servers share a claim is a lease: its owner prolongs it by `beat`, and any server
-queues again by `reap` what nobody has prolonged. Its times are those of the database's clock.
+On a database that several servers share, a claim is a lease: its owner renews it by `beat`, and any server
+requeues expired claims by `reap`. Lease times follow the database's clock.
 """
 
 from collections.abc import Collection, Mapping

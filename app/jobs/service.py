@@ -6,7 +6,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from sqlalchemy.orm import Session
 
@@ -30,6 +30,7 @@ from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database
 from app.storage.locks import lock
+from app.storage.units import Unit
 from app.workers.base import BatchWorker, Limits
 from app.workers.errors import JobCancelled
 
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "JobRests", "Jobs"]
 
 logger = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 
 def _ignore(session: Session, job: Job, problem: Problem) -> None:
@@ -137,7 +140,7 @@ class Jobs:
         client: str = "",
         question: str | None = None,
     ) -> str:
-        """Queue a job of a client in a unit of work and return its id; call `wake` when that is committed.
+        """Queue a job of a client in a unit of work and return its id; `commit` the unit.
 
         Raises
         ------
@@ -229,6 +232,18 @@ class Jobs:
         """Return the waiting time of the oldest job [s of operation]; 0 if none waits."""
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
+
+    def commit(self, unit: Unit[T], kind: str | None = None) -> T:
+        """Commit a unit of work that may queue a job, and wake all threads of the queue, or those of a kind.
+
+        Raises
+        ------
+        Exception
+            As `Database.write`; nothing is queued then.
+        """
+        result = self._database.write(unit)
+        self.wake(kind)
+        return result
 
     def wake(self, kind: str | None = None) -> None:
         """Wake all threads of the queue, or those of a kind's lane."""

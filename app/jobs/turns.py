@@ -1,8 +1,9 @@
-"""The queue of jobs: its limits, and the turns by which clients alternate. All SQL about turns.
+"""The queue of jobs: its limits, and the turns in which clients alternate. All SQL about turns.
 
-A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
-run by turn, those of one turn by age. So a new client's job is second in line, however many jobs of another
-client wait. Every lane has turns of its own. Every function runs in the transaction of its caller.
+A client's new job takes the turn after that client's previous job, but never an earlier turn than the queue's
+current one. Jobs run in the order of their turns, and by age within a turn. So a new client's job is second
+in line, however many jobs of another client wait. Each lane counts its own turns. Every function runs in the
+transaction of its caller.
 """
 
 from __future__ import annotations

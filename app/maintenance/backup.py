@@ -1,7 +1,7 @@
 """Back up a data folder while the service runs: a snapshot of the database first, then the files it names.
 
 The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot
-is there, unless it is damaged, or the service has deleted it with its row meanwhile.
+exists, unless it is damaged or the service has deleted it together with its row in the meantime.
 """
 
 from __future__ import annotations
@@ -216,7 +216,7 @@ def temporary(target: Path, what: str) -> Iterator[Path]:
 def publish(archive: Path, target: Path) -> None:
     """Give a whole archive its name; raises CannotRun."""
     if target.exists():
-        raise CannotRun(f"{target} has appeared meanwhile: a backup never replaces another.")
+        raise CannotRun(f"{target} was created in the meantime: a backup never replaces another.")
     os.rename(archive, target)
     descriptor = os.open(target.absolute().parent, os.O_RDONLY)
     try:

@@ -1,6 +1,6 @@
 """Check a data folder: the database, the files that its rows name, and the files that no row names.
 
-It only reads, so it may run beside the service.
+The check only reads, so it may run beside the service.
 """
 
 from __future__ import annotations

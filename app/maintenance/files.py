@@ -1,4 +1,4 @@
-"""The files of a service, as `check` reads them: it changes nothing, not even what is damaged."""
+"""Read the files of a service for `check`, which changes nothing, not even damaged files."""
 
 from __future__ import annotations
 

@@ -89,6 +89,6 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
     if older_too and schema != (newest := known_schemas()[0]):
         raise CannotRun(
             f"The database has schema {schema}, older than this program's {newest}: start the service "
-            "once, which brings it up to date."
+            "once to upgrade it."
         )
     return schema

@@ -1,4 +1,4 @@
-"""Repair a data folder that no service uses: make lost files again from rows, set unnamed ones aside."""
+"""Repair a data folder that no service uses: rebuild lost files, set unreferenced files aside."""
 
 from __future__ import annotations
 

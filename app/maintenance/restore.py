@@ -1,6 +1,6 @@
 """Restore a backup into a new data folder, which appears only when everything in it is verified.
 
-Nothing in the archive decides where a byte goes: only entries of known names and plain files are taken.
+The archive cannot decide where its bytes go: only plain files with known names are accepted.
 """
 
 from __future__ import annotations
@@ -122,12 +122,12 @@ def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Resto
     elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
         _take_artifact(artifact[2], file, folder / entry.name, restored)
     else:
-        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of Crankwright puts there.")
+        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which a Crankwright backup never contains.")
 
 
 def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: RestoreResult) -> None:
     if sha in restored.artifacts:
-        raise CannotRun(f"The archive holds artifact {sha} twice.")
+        raise CannotRun(f"The archive contains artifact {sha} twice.")
     place.parent.mkdir(parents=True, exist_ok=True)
     if _written(file, place) != sha:
         raise CannotRun(f"Artifact {sha} in the archive is damaged: its bytes have another hash.")
@@ -150,7 +150,7 @@ def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
         raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup writes.")
     note = json.loads(file.read())
     if not isinstance(note, dict):
-        raise CannotRun(f"{entry.name} in the archive is not what this program writes.")
+        raise CannotRun(f"{entry.name} in the archive was not written by this program.")
     return note
 
 

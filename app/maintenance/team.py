@@ -1,7 +1,7 @@
-"""Backup and restore of a team's PostgreSQL and files, wherever the settings say that these are.
+"""Back up and restore a team's PostgreSQL database and files, wherever the settings place them.
 
-As with SQLite the rows come first and then the files that they name, whose bytes precede their rows. A
-bucket that keeps versions needs no copy of its files: the backup may hold the database alone.
+As with SQLite, the backup reads the rows first and then the files that they name; each file was stored before
+its row. A bucket with versioning needs no copy of its files: the backup may hold the database alone.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Check what servers share: rows of PostgreSQL, and the files that they name. It only reads.
+"""Check the data that servers share: rows of PostgreSQL, and the files that they name. It only reads.
 
-PostgreSQL verifies its own pages (`initdb --data-checksums`, `pg_amcheck`); here is what its rows mean.
+PostgreSQL verifies its own pages (`initdb --data-checksums`, `pg_amcheck`); this module checks the contents
+of the rows.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Structured logs on standard error, as text or JSON lines, each with the id of the request behind it.
+"""Structured logs on standard error, as text or JSON lines, each with the id of its request.
 
 Bodies, queries, cookies and keys are never logged. A separate thread writes the lines, so a blocked terminal
-delays nobody. Lines that exceed the queue are dropped and counted.
+delays nobody. Lines beyond the capacity of the queue are dropped and counted.
 """
 
 from __future__ import annotations

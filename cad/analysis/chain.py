@@ -1,7 +1,8 @@
-"""A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
+"""A crankshaft as a chain of throws: matrices of single throws, rotated by their pin angles and assembled.
 
-The first end is held. In a guided chain each main stays on the axis, as in a bearing, and may turn; otherwise
-nothing else is held. A series of separately computed throw stiffnesses neglects the bearings between them.
+The first end is held. In a guided chain each main stays on the axis, as in a bearing, but may rotate;
+otherwise nothing else is held. A series of separately computed throw stiffnesses neglects the bearings
+between them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The parameters of a shaft of many throws, read back from the surfaces of the finished solid.
+"""Read the parameters of a shaft of many throws back from the surfaces of the finished solid.
 
-Each feature is recognised by its place, never by its expected size: the planes across the shaft are, in their
-order, the faces of the ends and of the webs. Where all throws share a dimension, each of them must show it.
+Each feature is recognised by its position, never by its expected size: the planes across the shaft are, in
+order, the faces of the ends and of the webs. Where all throws share a dimension, each throw must have it.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
-"""Parameters of a crank throw, which the models of a throw and of a shaft share, and what follows from them.
+"""Parameters of a crank throw, shared by the models of a throw and of a shaft, and derived quantities.
 
-A model adds how much of a main journal it draws on each side of the throw (`L_s`). A parameter of 0 omits the
-feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`, the
-counterweight angle has no effect.
+A model adds the length of main journal that it draws on each side of the throw (`L_s`). A parameter of 0
+omits the feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`,
+the counterweight angle has no effect.
 
 The *face inclination* is the angle by which the outer face of each web leans towards the middle of the throw,
 from beside the journal's fillet to the end beyond the pin. 0 is a flat face and the heaviest web; the larger
-the angle, the more material is taken off. Material that is added on an inclined face, as Punewale et al.
-(2015) do to stiffen a shaft, is thus a smaller `face_inclination`.
+the angle, the more material is removed. To add material on an inclined face, as Punewale et al. (2015) do to
+stiffen a shaft, reduce `face_inclination`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The parameters of a crank, read back from the surfaces of the finished solid.
+"""Read the parameters of a crank back from the surfaces of the finished solid.
 
-Each feature is recognised by its place, not by its expected size: planes across the shaft are the faces of
+Each feature is recognised by its position, not by its expected size: planes across the shaft are the faces of
 webs, cylinders about the shaft beyond the webs are journals and ends, another cylinder along it is the pin.
 """
 

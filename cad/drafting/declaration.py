@@ -1,4 +1,4 @@
-"""The part of a model's declaration that a drawing shows: kind, limits, datums, form tolerances."""
+"""The part of a model's declaration that a drawing shows: kind, limits, datums, geometric tolerances."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Find the sizes that can be dimensioned in the two views of a drawing, from surfaces of any model."""
+"""Find the sizes that can be dimensioned in the two views of a drawing, from the surfaces of a model."""
 
 from __future__ import annotations
 

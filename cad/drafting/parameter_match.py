@@ -1,4 +1,4 @@
-"""Match sizes in a drawing with parameters: by their values, and by the kind that their words name."""
+"""Match sizes in a drawing with parameters, by their values and by the kind that their names suggest."""
 
 from __future__ import annotations
 

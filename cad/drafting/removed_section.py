@@ -4,7 +4,7 @@ A model declares in `sections` where its drawing has one, by letter:
 
     sections = {"B": {"of": "rod", "at": {"centre_distance": 0.5}, "shows": ["shank_width"]}}
 
-`of` is the part; `at` where it is cut along y, a sum of parameters with their factors; `shows` are the
+`of` is the part. `at` is the position of the cut along y, a sum of parameters with factors. `shows` lists the
 parameters that are dimensioned there instead of in the other views.
 """
 

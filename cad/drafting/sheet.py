@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section has its true coordinates, everything is drawn 1:1, and the sheet around it is as large as the
-scale requires. So a DIMENSION measures the true size of the part. Each carries the name of its parameter.
+The section keeps its true coordinates and is drawn 1:1; the sheet around it is enlarged by the scale. So a
+DIMENSION measures the true size of the part. Each DIMENSION carries the name of its parameter.
 """
 
 from __future__ import annotations

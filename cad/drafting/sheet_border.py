@@ -1,4 +1,4 @@
-"""Border, title block, notes and the table of parameters of a sheet."""
+"""The border, title block, notes and parameter table of a sheet."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-The section takes one of two planes through the shaft: one that is not a joint, and then the one that holds
-the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
-first-angle projection, stands the view from the left. Balls, shafts and round bars are not cut lengthwise
-(ISO 128-3): they are drawn whole, a shaft with its hidden lines.
+The section uses one of two planes through the shaft: one that is not a joint, and of these the one that
+contains the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
+first-angle projection, is the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO
+128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """Single-row deep groove ball bearing: two rings and their balls, with standard boundary dimensions.
 
-For main and big-end bearings of small engines, and as the stand-in of a bought part in an assembly. At a
+For main and big-end bearings of small engines, and as the placeholder of a bought part in an assembly. At a
 standard bore the outer diameter and the width are those of dimension series 02 of ISO 15 (50 mm: 6210, 90 ×
-20); between standard bores they are interpolated, beyond the table they keep the proportions of its ends. The
-standard leaves the inside to the maker: balls, grooves and chamfers are drawn in proportions common among
-makers, right for looks, mass and clearances, not for a life calculation. There is no cage.
+20). Between standard bores they are interpolated; beyond the table they keep the proportions of its ends. The
+standard leaves the internal geometry to the maker: balls, grooves and chamfers are drawn in proportions
+common among makers, suitable for appearance, mass and clearances, not for a life calculation. There is no
+cage.
 
 References
 ----------

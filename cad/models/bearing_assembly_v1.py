@@ -1,4 +1,4 @@
-"""A main bearing put together: journal, two half shells, block and cap; see the class below."""
+"""An assembled main bearing: journal, two half shells, block and cap; see the class below."""
 
 from __future__ import annotations
 

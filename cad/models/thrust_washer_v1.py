@@ -1,4 +1,4 @@
-"""Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
+"""Thrust washer: a flat ring or a half ring with radial oil grooves, a pin hole, and a locating lug.
 
 The class below, which users read, explains the parameters.
 """

@@ -1,4 +1,4 @@
-"""Sizes of a half shell as the surfaces of its back and its lining show them."""
+"""Sizes of a half shell, read from the surfaces of its back and its lining."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Free spread: the shape of a half shell that nothing holds, which is wider over its joints than its seat.
+"""Free spread: the shape of a free half shell, which is wider at its joints than the seat.
 
 The free shell is drawn as an arc of a larger radius: the middle of the wall keeps the length that it has in
-the housing, and each crush height stays a straight leg. So the curvature changes alike everywhere, as in a
+the housing, and each crush height stays a straight leg. So the curvature changes equally everywhere, as in a
 thin ring under a uniform moment; the seat forces the arc back to a half circle.
 """
 

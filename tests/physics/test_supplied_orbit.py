@@ -189,7 +189,7 @@ def test_progress_rises_and_a_reporter_may_cancel() -> None:
 def test_a_hole_that_does_not_come_back_is_refused() -> None:
     load = CyclicLoad(ANGLE, 2 * np.pi, np.ones((2, 1, 72)), np.full((1, 72), 0.5))
     hole = Supply((Pocket(0.0, 0.1, 0.3, on_journal=True),), 0.2)
-    with pytest.raises(ValueError, match="18° off its place"):
+    with pytest.raises(ValueError, match="18° away from its initial position"):
         supplied_orbit(load, np.full(72, 1.1), 0.4, hole, QUICK)
 
 

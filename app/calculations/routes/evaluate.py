@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
+"""`/templates/{id}/versions/{n}/evaluate`, `…/solve` and `…/worksheet`.
 
 A cheap calculation runs here, in the event loop or a thread. An expensive calculation, or a large body, goes
 to a calculation process.

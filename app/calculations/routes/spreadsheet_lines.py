@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{n}/evaluate.csv`: an evaluation by an address, for spreadsheets."""
+"""`/templates/{id}/versions/{n}/evaluate.csv`: an evaluation requested by its URL alone, for spreadsheets."""
 
 from __future__ import annotations
 

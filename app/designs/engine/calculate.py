@@ -1,4 +1,4 @@
-"""Calculate a design: all values known now, those that wait for a solid or a job, and the faults.
+"""Calculate a design: the values known now, those that wait for a solid or a job, and the faults.
 
 The calculation does not stop at the first fault, so that a user sees all faults at once. Values that depend
 on varied parameters are calculated for all rows at once. A refused row has no value there.
@@ -200,7 +200,7 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
     models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
     unset = [f"{model}.{n}" for model in sorted(models) for n in result.missing.get(model, ())]
     return (
-        [Fault(name, "missing", f"this needs {', '.join(unset)}: set it, or map it to an output")]
+        [Fault(name, "missing", f"this needs {', '.join(unset)}: set it, or link it to an output")]
         if unset
         else []
     )

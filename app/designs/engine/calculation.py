@@ -1,4 +1,4 @@
-"""The values of a design in some rows, each as far as it is known, and the faults of it."""
+"""The values of a design in some rows, as far as they are known, and the faults of the design."""
 
 from __future__ import annotations
 

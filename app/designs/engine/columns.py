@@ -1,8 +1,8 @@
 """Values of many rows of a design, with their error bounds.
 
-The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
-axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not
-mistaken for a curve of 360 places.
+Rows run along the first axis, places along a curve along the last. A value that is equal for all rows has no
+row axis. So each column states whether its first axis counts rows, and 360 rows are not mistaken for a curve
+of 360 places.
 """
 
 from __future__ import annotations

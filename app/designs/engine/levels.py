@@ -1,4 +1,4 @@
-"""One level for all rows of a step: the cheapest whose stated error is small enough at enough of them."""
+"""Choose one level for all rows of a step: the cheapest whose stated error is small enough in most rows."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def place_faults(
         if cell is None and _declared(graph, reference) is None:
             yield unknown_name(name, _places(graph), "place")
         elif isinstance(_declared(graph, reference), Choice):
-            yield Fault(name, "not_a_number", f"{name} is a word; only quantities can vary")
+            yield Fault(name, "not_a_number", f"{name} is not a quantity; only quantities can vary")
         elif cell and cell.relations and reference not in set_aside:
             yield Fault(name, "follows_from", _followed(cell))
 
@@ -181,7 +181,11 @@ def checked_rows(
     count = next((len(array) for array in arrays.values() if array.ndim), 1)
     for reference, array in arrays.items():
         if reference in varied and array.ndim - 1 not in _ranks(graph, reference):
-            faults.append(Fault(str(reference), "shape", f"rows of this place have no shape {array.shape}"))
+            faults.append(
+                Fault(
+                    str(reference), "shape", f"values of this parameter cannot have the shape {array.shape}"
+                )
+            )
         elif array.ndim and len(array) != count:
             detail = f"all columns have one length, but this one has {len(array)} rows, another {count}"
             faults.append(Fault(str(reference), "shape", detail))

@@ -1,8 +1,8 @@
-"""Relations for many rows at once, each row by itself: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
+"""Relations for many rows at once, evaluated row by row: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
 
-Where no value differs from row to row, a relation is calculated as its text says. A relation hands on the
-tolerance of a value, or of that plus a constant. Other results of toleranced values lie in an interval too,
-but no part is made to that interval: a tolerance analysis reports it, and drawings and STEP files leave it
+Where no value differs from row to row, a relation is calculated once. A relation that is a value, or a value
+plus a constant, passes on the tolerance of that value. Other results of toleranced values also have an
+interval, but no part is made to it: a tolerance analysis reports it, and drawings and STEP files leave it
 out.
 """
 

@@ -1,9 +1,9 @@
-"""Propagate errors of steps to later values: each uncertain output is shifted to both ends.
+"""Propagate errors of steps to later values: shift each uncertain output to both ends of its band.
 
-The error of a step leaves out that of its inputs. So the engine recalculates everything that depends on an
-uncertain output, with that output at the lower and at the upper end of its band, in all rows at once. It
-names what it cannot recalculate quickly (solids, expensive steps), and states no error for the values that
-depend on it. Which outputs a value follows from is the same in all rows; how uncertain they are is not.
+The error of a step does not include the errors of its inputs. So the engine recalculates everything that
+depends on an uncertain output, with that output at the lower and at the upper end of its band, in all rows at
+once. It names what it cannot recalculate quickly (solids, expensive steps), and states no error for the
+values that depend on it. All rows share the same dependencies; the errors differ from row to row.
 """
 
 from __future__ import annotations

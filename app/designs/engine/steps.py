@@ -1,11 +1,11 @@
-"""One step, or one model, over many rows: array calls of its template, and which rows it refuses.
+"""Evaluate one step or model over many rows by array calls, and report the rows that it refuses.
 
-In an array call, a template masks the points that it would refuse alone. This module refuses those rows, with
-the message of the mask. If a template refuses a whole array, the rows are halved until the faulty ones are
-found. A refused row has no value in any output of the step, as in a design of one row.
+In an array call, a template masks the points that it would refuse as single points. This module refuses those
+rows, with the message of the mask. If a template refuses a whole array, the rows are bisected until the
+faulty ones are found. A refused row has no value in any output of the step.
 
-A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
-change of a design recomputes only what depends on it.
+A step whose inputs are equal in all rows is evaluated once, and its latest evaluations are cached: a change
+of a design recomputes only the steps that depend on it.
 """
 
 from __future__ import annotations

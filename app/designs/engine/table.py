@@ -1,4 +1,4 @@
-"""The results of many rows of a design: columns, errors, levels, and why rows have no values."""
+"""The results of many rows of a design: columns, errors, levels, and the reasons of rows without values."""
 
 from __future__ import annotations
 

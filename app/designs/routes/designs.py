@@ -1,4 +1,4 @@
-"""`/designs`: create, list, change, delete, preview, map, copy, measure, explain."""
+"""`/designs`: create, list, change, delete, preview, auto-map, copy, measure and explain designs."""
 
 from __future__ import annotations
 

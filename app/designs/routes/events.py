@@ -1,4 +1,4 @@
-"""`/designs/{id}/events`: a design's revisions and regenerations as they happen (server-sent events)."""
+"""`/designs/{id}/events`: the stream of a design's new revisions and regenerations (server-sent events)."""
 
 from __future__ import annotations
 

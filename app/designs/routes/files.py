@@ -1,4 +1,4 @@
-"""`/designs/{id}/model…`: files of the newest good model, or of that of a revision."""
+"""`/designs/{id}/model…`: files of the newest valid model, or of the model of one revision."""
 
 from __future__ import annotations
 

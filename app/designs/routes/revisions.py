@@ -1,4 +1,4 @@
-"""`/designs/{id}/revisions`: list, show, restore."""
+"""`/designs/{id}/revisions`: list, show and restore revisions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`…/models/{name}/fields`: what can be painted on a crankshaft, as GLB and as a picture."""
+"""`…/models/{name}/fields`: fields that can be painted on a crankshaft, as GLB and as a picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields of a drawing's title block that a client types at a download; what an approval says stays."""
+"""Title-block fields that a client sets for one drawing download; an approval's entries have priority."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants` as CSV and XLSX: the table of variants for a spreadsheet, and back."""
+"""`/designs/{id}/variants` as CSV and XLSX: write and read the table of variants."""
 
 from __future__ import annotations
 

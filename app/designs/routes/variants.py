@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants`: the table of a design's variants, their files one by one, and all in a ZIP."""
+"""`/designs/{id}/variants`: the table of a design's variants, and their files, singly or as a ZIP."""
 
 from __future__ import annotations
 

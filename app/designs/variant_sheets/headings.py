@@ -1,4 +1,4 @@
-"""Read a heading of a sheet, or the name of a row, as a person writes it: `Radial load`, `main 1`."""
+"""Read a heading of a sheet, or the name of a row, as people write it: `Radial load`, `main 1`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Variants from the cells of a sheet: every faulty cell is named by its address, all at once."""
+"""Read variants from the cells of a sheet, and report all faulty cells by their addresses."""
 
 from __future__ import annotations
 

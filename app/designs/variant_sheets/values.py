@@ -1,4 +1,4 @@
-"""A value of a variant as a cell: a number in the unit of its column, a relation without its sign, a text."""
+"""A value of a variant as a cell: a number in the column's unit, a relation without `=`, or a text."""
 
 from __future__ import annotations
 

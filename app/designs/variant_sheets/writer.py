@@ -1,4 +1,4 @@
-"""The table of variants as rows of a sheet: inputs that can be read back, then results that are not."""
+"""The table of variants as rows of a sheet: inputs, which can be read back, then results, which cannot."""
 
 from __future__ import annotations
 

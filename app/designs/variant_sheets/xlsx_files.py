@@ -1,7 +1,7 @@
 """XLSX files: the sheet named `variants`, else the first that is not hidden.
 
-The file is a zip archive of XML that a stranger made: the size of its parts is bounded before any is read,
-and a cell that holds a formula, a date or an error is refused by its address.
+The file is an untrusted zip archive of XML: the sizes of its parts are checked before any part is read. A
+cell that holds a formula, a date or an error is refused by its address.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One step for several variants: an array call for all whose inputs have one form, and its rows."""
+"""Evaluate one step for several variants: one array call for all whose inputs have the same form."""
 
 from __future__ import annotations
 

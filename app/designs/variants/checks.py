@@ -1,4 +1,4 @@
-"""All variants of a design, calculated, and everything that is wrong with its table at once."""
+"""Calculate all variants of a design, and report everything that is wrong with its table at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One variant with every output of its steps, curves included, calculated when it is asked for.
+"""One variant with every output of its steps, curves included, calculated on request.
 
 A revision keeps the single outputs of its variants; the curves of 200 variants would fill the database.
 """

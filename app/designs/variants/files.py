@@ -1,4 +1,4 @@
-"""The models of variants whose files are served: each at its newest good revision, or at one revision."""
+"""Serve the models of variants: each at its newest valid revision, or at a given one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The result of a variant, however it was calculated."""
+"""The result of a variant, whether it was calculated alone or with others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table of variants saved as a revision of its design."""
+"""Save a table of variants as a revision of its design."""
 
 from __future__ import annotations
 

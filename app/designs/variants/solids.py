@@ -1,4 +1,4 @@
-"""The part of a regeneration that is about variants: one solid for each distinct set of parameters.
+"""Regenerate variants: build one solid for each distinct set of parameters.
 
 If a solid fails, only the variants that use it fail; the revision stays usable.
 """

@@ -1,9 +1,9 @@
-"""Variants calculated together: every step once for all of them, in array calls at one level.
+"""Calculate variants together: each step once for all of them, in array calls at one level.
 
 Cells are calculated variant by variant, as in designs of their own. At a step, those variants that give it
-the same inputs, of the same shapes and with the same choices, share one array call; each then has its row of
-the result, and goes on with it. A variant that an array call refuses or masks is calculated alone, so that
-the message refers to that variant.
+the same inputs, of the same shapes and with the same choices, share one array call; each then continues with
+its row of the result. A variant that an array call refuses or masks is calculated alone, so that the message
+refers to that variant.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`/me`, `/principals` and their keys: who may use the service, and the usage of each principal."""
+"""`/me`, `/principals` and their keys: the principals that may use the service, and their usage."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The band of the true value around a value whose relative error is stated, and around an expression.
 
-A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). `CONVENTION` is that
-sentence: every table of measured errors repeats it, and the scripts that measure take `relative_error`.
-Several errors may contribute to one band; a contribution that is not known leaves the band as wide as the
-known ones make it, and the band is then not known.
+A stated error e means |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). `CONVENTION` is that
+sentence: every table of measured errors repeats it, and the scripts that measure use `relative_error`.
+Several errors may contribute to one band. If a contribution is unknown, the band includes only the known ones
+and is marked as unknown.
 """
 
 from __future__ import annotations

@@ -1,17 +1,17 @@
-"""Levels of fidelity: how wrong each is and what it costs, as measured; which is the cheapest that will do.
+"""Levels of fidelity: their measured errors and costs, and the choice of the cheapest sufficient level.
 
 A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against a converged solution, on a
-grid over two of the template's quantities. The table lies outside the frozen file, so that a version may gain
-a better one.
+script in `benchmarks/` measured: for every level and output the error against a converged solution, on a grid
+over two of the template's quantities. The table is not part of the frozen file, so that a version may get a
+better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
-measured. Two levels may follow two conventions, and then their errors say nothing of each other
-(`truth_of`, `next_levels`). Every error is relative to the truth, of a profile to its largest absolute value:
-`templates.core.criteria.bands.CONVENTION`, which the file repeats.
+measured. Two levels may follow different conventions; then their errors cannot be compared
+(`truth_of`, `next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
+value: `templates.core.criteria.bands.CONVENTION`, which the file repeats.
 
-A level may state the error of each answer itself, from what it has computed (`Template.own_error`); the table
-then says under `own` what error to expect before.
+A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
+error under `own`.
 
 Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
 them under `cases`, and `Template.measured_case` says which case its inputs are. Where an error varies much

@@ -1,15 +1,15 @@
-r"""The orbit of a journal under a load that repeats, by the mobility method; many cases at once.
+r"""The orbit of a journal under a periodic load, by the mobility method; many cases at once.
 
 .. math:: d\vec\epsilon/d\theta = S\,\vec M(\vec\epsilon, \vec S) + w\,\hat z\times\vec\epsilon,
     \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
 
-theta is the crank angle, which turns with Omega; the load on the journal is linear between its points. The
-film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
-is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
-of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
-the bound of the smallest gap's error is above 0.2 per cent. The load's intervals are halved until they are
-short enough: the nodes, and with them the answer and its bound, are the same if the same load is given at
-half its angles.
+theta is the crank angle, which increases with Omega; the load on the journal is linear between its points.
+The film is massless and always full where it carries, so its history does not matter. All nodes of the cycle
+are solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
+of Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and
+a quarter of that where the error bound of the smallest gap is above 0.2 per cent. The intervals of the load
+are halved until they are short enough: the nodes, the answer and its bound do not change if the same load is
+given at twice as many angles.
 
 References
 ----------
