@@ -22,7 +22,7 @@ import numpy as np
 
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
-from app.designs.engine.decision import Climb, is_open
+from app.designs.engine.decision import Climb
 from app.designs.graph import Catalogues, build_graph, resolved
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs
@@ -143,7 +143,7 @@ def decided(inputs: Row) -> Row:
     return {
         "level": evaluation.level,
         "verdicts": {name: judged[name].verdict for name in OWN},
-        "open": [name for name in OWN if is_open(judged[name])],
+        "open": [name for name in OWN if judged[name].is_open],
         "errors": {name: judged[name].relative_error for name in OWN if judged[name].band},
         "refused": next((trial.reason for trial in result.trials if trial.reason), None),
         "seconds": round(process_time() - begin, 2),

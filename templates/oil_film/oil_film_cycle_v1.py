@@ -276,7 +276,7 @@ class OilFilmCycle(FedBearing):
     def measured_case(self) -> str:
         """The kind of supply and the motion of the sleeve; none beyond the duties that were marched."""
         kind, motion = supply_kind(self.feeding), sleeve_motion(self.motion)
-        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 4)) and motion
+        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1)) and motion
         placed = kind.endswith("groove") or np.all(self.under_load <= 0.1)
         return f"{kind}, {motion}" if marched and placed else ""
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Mask, Truth
+from templates.core.arrays import Array, Mask, Truth
 from templates.core.errors import FaultyText
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
@@ -97,7 +97,7 @@ def spread(value: Value, axes: int) -> Value:
     return value[(..., *(None,) * axes)] if axes and isinstance(value, np.ndarray) else value
 
 
-def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Value:
+def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Array:
     """Return the error of a value by `CONVENTION`; 0 where both agree, infinite where the truth alone is 0.
 
     Parameters
@@ -109,7 +109,7 @@ def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Va
     """
     size = np.abs(truth) if scale is None else scale
     with np.errstate(all="ignore"):
-        return np.where(value == truth, 0.0, np.abs(value - truth) / size)[()]
+        return np.asarray(np.where(value == truth, 0.0, np.abs(value - truth) / size))[()]
 
 
 def band(value: Value, error: Value) -> Bounds:
