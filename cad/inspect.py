@@ -69,7 +69,7 @@ def measure(body: Body) -> BodyMeasures:
 
 def look_at(bodies: Iterable[Body]) -> dict[str, PartSurfaces]:
     """Return the surfaces of every body, by its name."""
-    return {body.name: look(body.shape, len(body.places)) for body in bodies}
+    return {body.name: look(body.shape, len(body.places), body.name) for body in bodies}
 
 
 def summarise(

@@ -45,7 +45,7 @@ def npy(result: Evaluation) -> bytes:
 
 
 def _column(name: str, output: Answer) -> NDArray[np.float64]:
-    """Return the values of an output; raises NoArray."""
+    """Return the values of an output as a column; raises NoArray."""
     if isinstance(output.value, str):
         raise NoArray(f"{name} is text; a NumPy file holds only numbers")
     if output.value is None:
@@ -59,7 +59,7 @@ def _column(name: str, output: Answer) -> NDArray[np.float64]:
 
 
 def _shape(columns: dict[str, NDArray[np.float64]]) -> tuple[int, ...]:
-    """Return the shape of all columns of more than one value; raises NoArray if there are two."""
+    """Return the common shape of all columns with more than one value; raises NoArray if they differ."""
     shapes = {column.shape: name for name, column in columns.items() if column.ndim}
     if len(shapes) > 1:
         (first, one), (second, other), *_ = shapes.items()

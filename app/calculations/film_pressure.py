@@ -42,12 +42,12 @@ class Film(Template):
 
 
 def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
-    """Return the field for inputs as a user types them.
+    """Return the pressure field for inputs as typed by a user.
 
     Raises
     ------
     InvalidInputs
-        If an input is wrong, an array, or outside what the film's solution covers.
+        If an input is wrong, an array, or outside the range of the film's solution.
     """
     film = Film.from_quantities(raw)
     arrays = [name for name, value in film.inputs_si().items() if np.ndim(value)]

@@ -49,12 +49,12 @@ class HeadingUnit:
 
 
 def heading_unit(text: str) -> HeadingUnit:
-    """Read the unit of a heading; `-` is that of a pure number.
+    """Return the unit in a heading; `-` means a pure number.
 
     Raises
     ------
     FaultyText
-        If it is none.
+        If it is not a unit.
     """
     plain = text.strip()
     if plain == "-":
@@ -102,7 +102,7 @@ def parted(cell: str) -> tuple[str, str]:
 
 
 def _opening(cell: str, opening: str, closing: str) -> int:
-    """Return where the bracket opens that closes at the end of a text; -1 if none does."""
+    """Return the position of the bracket that opens a final pair of brackets; -1 if there is none."""
     if not cell.endswith(closing):
         return -1
     depth = 0

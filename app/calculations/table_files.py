@@ -48,7 +48,7 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
 
 
 def _decoded(content: bytes) -> FileText:
-    """Return the text in UTF-8, in UTF-16, or else in the Western letters of Windows."""
+    """Return the text, decoded from UTF-8, UTF-16, or else Windows-1252."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return FileText(content.decode("utf-16", errors="replace"), ("UTF-16",))
     sample = content[:_SAMPLE]
@@ -66,7 +66,7 @@ def _decoded(content: bytes) -> FileText:
 
 
 def sheet_text(content: bytes, most_unpacked: int, most_rows: int) -> str:
-    """Return the first visible sheet of an XLSX file, a row a line, its cells separated by tabs.
+    """Return the first visible sheet of an XLSX file, one line per row, cells separated by tabs.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
 
 
 def _check_size(content: bytes, most_unpacked: int) -> None:
-    """Refuse what would unpack to more than any table; `zipfile` unpacks no more than the archive says."""
+    """Refuse an archive that would unpack to more than any table; `zipfile` trusts the stated sizes."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             parts = archive.infolist()

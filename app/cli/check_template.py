@@ -40,7 +40,7 @@ def check_template_command(ctx: click.Context, file: Path, as_json: bool, second
 
 
 def _checked(path: Path, seconds: float | None) -> TeamFile:
-    """Return the file with its faults, also beside the built-in versions."""
+    """Return the file with its faults, including conflicts with built-in versions."""
     settings = Settings()
     limits = Limits(seconds or settings.template_seconds, settings.job_memory_mb)
     worker = LocalProcesses(PRELOAD)

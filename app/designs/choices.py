@@ -33,9 +33,9 @@ class Choices:
     catalogues: Catalogues
 
     def decided(self, relation: Relation) -> Relation:
-        """Return a relation with words in place of the choices that it tests.
+        """Return a relation with its choices replaced by their words.
 
-        As it is, if a template is unknown.
+        It is unchanged if a template is unknown.
 
         Raises
         ------

@@ -72,7 +72,7 @@ async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 def run(app: FastAPI, settings: Settings) -> NoReturn:
-    """Serve until a signal; does not return."""
+    """Serve until a signal arrives; never return."""
     flush = logs.configure(settings.log_level, settings.log_format)
     answer_promptly()
     server = Server(configuration(app, settings), settings.drain_seconds, flush)
@@ -111,7 +111,7 @@ class Server(uvicorn.Server):
             self._leave(0)
 
     def _guard(self) -> None:
-        """Wait for a signal, then for the drain time or a second one, and end what is left."""
+        """Wait for a signal, then for the drain time or a second signal, and end the remaining work."""
         self._signals.get()
         start = time.monotonic()
         logger.info("stopping: requests in flight are answered within %g s", self.drain_seconds)
@@ -141,7 +141,7 @@ def what_runs() -> list[str]:
 
 
 def _busy_threads() -> list[str]:
-    """Return the threads that do more than wait for work, and where they are."""
+    """Return the threads that are working, not waiting for work, and their positions in the code."""
     frames, busy = sys._current_frames(), []
     for thread in threading.enumerate():
         frame = frames.get(thread.ident or 0)

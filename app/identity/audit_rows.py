@@ -21,7 +21,7 @@ class AuditFilter:
 
 
 def page(session: Session, limit: int, before: str | None, wanted: AuditFilter) -> list[AuditRow]:
-    """Return one page of rows, newest first, and one more if there are more."""
+    """Return one page of rows, newest first, plus one row if there are more."""
     query = select(AuditRow).where(*_conditions(wanted)).order_by(AuditRow.id.desc())
     if before:
         query = query.where(AuditRow.id < before)

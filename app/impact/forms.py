@@ -55,7 +55,7 @@ class _PlaceRemoval:
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """Return a parameter of the design: its kind is that of its own unit."""
+        """Return a parameter of the design, with the kind of its typed unit."""
         if _is_written_out(raw):
             return raw
         try:

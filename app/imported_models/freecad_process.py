@@ -99,11 +99,11 @@ class FreeCadProcess:
         Raises
         ------
         DeadlineExceeded, MemoryExceeded, JobCancelled
-            The process was ended, or ended by itself.
+            If the process was ended, or exited by itself.
         GeometryError
-            FreeCAD refuses, or crashed.
+            If FreeCAD refuses or crashed.
         ProgramMissing
-            It did not start.
+            If it did not start.
         """
         self.is_sound = False
         if not self._is_ready:

@@ -25,7 +25,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     InvalidInputs
         If the id means something else.
     ModelIdTaken
-        If a template, or a model from elsewhere, has it.
+        If a template or another model has it.
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
         why = "has an address of its own" if id in RESERVED else "ends like a version"
@@ -43,7 +43,10 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 
 
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
-    """Return an API name for a parameter: `boreDiameter` → `bore_diameter`; its object before it if taken."""
+    """Return an API name for a parameter: `boreDiameter` → `bore_diameter`.
+
+    Prefixed by its object if it is in use.
+    """
     name = snake(key) or "parameter"
     if name in taken:
         name = f"{snake(thing) or 'object'}_{name}"[:LONGEST].strip("_")
@@ -54,9 +57,9 @@ def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
 
 
 def snake(text: str) -> str:
-    """Return a text in small ASCII letters, digits and single underscores, beginning with a letter.
+    """Return a text in lower-case ASCII letters, digits and single underscores, beginning with a letter.
 
-    Maybe empty.
+    The result may be empty.
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", plain).lower()

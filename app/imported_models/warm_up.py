@@ -40,7 +40,7 @@ class WarmProcesses:
         cancelled: threading.Event,
         seconds: float = math.inf,
     ) -> FreeCadAnswer:
-        """Ask the process of a file for an answer within some seconds; raises as `FreeCadProcess.ask`."""
+        """Send a request to the process of a file, with a time limit; raises like `FreeCadProcess.ask`."""
         process = self._taken(sha, content)
         try:
             return process.ask(do, given, cancelled, seconds)

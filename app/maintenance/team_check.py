@@ -36,7 +36,7 @@ def check_shared(url: str, files: Files) -> Faults:
     Raises
     ------
     CannotRun
-        The database does not answer, or has another schema.
+        If the database does not answer, or has another schema.
     """
     findings = Faults(quarantined=files.quarantined())
     ages = files.ages()  # before the rows: a row that comes meanwhile has its file already
@@ -67,7 +67,7 @@ def _require_schema(connection: Connection) -> None:
 
 
 def _broken_references(connection: Connection) -> Iterable[str]:
-    """Yield rows that lead nowhere, a sentence each; foreign keys are PostgreSQL's own."""
+    """Yield a sentence for each row with a broken reference; PostgreSQL checks foreign keys itself."""
     for sentence, query in LEADING_NOWHERE.items():
         for (name,) in connection.exec_driver_sql(query):
             yield sentence.format(name)

@@ -98,9 +98,3 @@ def turned(angle: float) -> Array:
     plane = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
     space = block_diag(plane, np.eye(1))
     return np.asarray(block_diag(space, space, space, space, plane))
-
-
-def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
-    """Return the stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
-    alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
-    return 1 / sum(1 / stiffness for stiffness in alone)

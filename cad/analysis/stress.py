@@ -83,18 +83,6 @@ def von_mises(components: Components) -> Any:
     return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
-def first_principal(components: Components) -> Any:
-    """Return the largest principal stress, by Cardano's formula; factors of bending are of it."""
-    xx, yy, zz, xy, yz, xz = components
-    mean = (xx + yy + zz) / 3
-    a, b, c = xx - mean, yy - mean, zz - mean
-    radius = von_mises(components) * 2 / 3 + 1e-300  # an unloaded point has no direction
-    determinant = a * b * c + 2 * xy * yz * xz - a * yz**2 - b * xz**2 - c * xy**2
-    cosine = 4 * determinant / radius**3
-    inside = ng.IfPos(cosine - 1, 1, ng.IfPos(-1 - cosine, -1, cosine))  # rounding may leave it outside
-    return mean + radius * ng.cos(ng.acos(inside) / 3)
-
-
 def greatest_stress(
     solid: Solid,
     material: Material,

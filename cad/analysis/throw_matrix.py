@@ -23,9 +23,8 @@ import ngsolve as ng
 import numpy as np
 
 from cad.analysis.elastic import System
-from cad.analysis.levels import LEVELS, Level
-from cad.analysis.mesh import Grid, make_grid
-from cad.analysis.solid import FREE, LOADED, read_solid
+from cad.analysis.mesh import Grid
+from cad.analysis.solid import FREE, LOADED
 from cad.shaft import PinPlace, Shaft
 from templates.core.arrays import Array
 
@@ -45,12 +44,6 @@ class ThrowMatrix:
     pitch: float  # [mm]
     throw: float  # [mm]
     degrees_of_freedom: int = 0  # of the elements behind it
-
-
-def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
-    """Return the stiffness and mass of the throw in a STEP file, from `shaft.held` to `shaft.loaded`."""
-    solid = read_solid(step, shaft, mirrors=())
-    return matrix_on(make_grid(solid, level.fineness), level.order, shaft, pin)
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:

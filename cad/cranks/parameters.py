@@ -14,7 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from cad.model import CadModel
+from cad.cranks.outline import Outline
+from cad.cranks.throw import Throw
+from cad.model import CadModel, mm
 from templates.core.language.template import Array, choice, derived, formula, given
 
 
@@ -170,3 +172,26 @@ class CrankParameters(CadModel):
     def c_2(self) -> Array:
         """Distance from the drilling's axis to the inclined face, along its normal."""
         return np.cos(self.beta) * self.L_w - np.sin(self.beta) * (self.x_1 - self.x_b)
+
+    def throw_drawn(self, counterweight: float) -> Throw:
+        """Return the throw as radii, lengths and angles; `counterweight` is the radius of its own [mm]."""
+        return Throw(
+            outline=Outline(
+                throw=mm(self.R),
+                half_width=mm(self.W) / 2,
+                rectangular=self.web_shape == "rectangular",
+                counterweight=counterweight,
+                half_angle=float(self.phi_w) / 2,
+            ),
+            web_thickness=mm(self.L_w),
+            journal=mm(self.D_j) / 2,
+            journal_bore=mm(self.d_j) / 2,
+            journal_length=mm(self.L_s),
+            pin=mm(self.D_c) / 2,
+            pin_bore=mm(self.d_c) / 2,
+            pin_length=mm(self.L_c),
+            fillet=mm(self.r_f),
+            drilling=mm(self.d_o) / 2,
+            inclination=float(self.beta),
+            incline_start=mm(self.x_b),
+        )

@@ -112,7 +112,7 @@ def read(content: bytes) -> Manifest:
     Raises
     ------
     UnreadableModel
-        Naming all that is wrong.
+        Naming all faults.
     """
     if len(content) > LONGEST:
         raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")

@@ -46,7 +46,7 @@ class Creoson:
 
 
 def unreachable(reason: str) -> ProgramMissing:
-    """Return the refusal where Creo does not answer, with what to do."""
+    """Return the refusal for an unreachable Creo, with a remedy."""
     return ProgramMissing(
         "creo_unreachable", f"Creo cannot be used: {reason}. Start Creo and CREOSON, then retry"
     )
@@ -64,7 +64,7 @@ class CreoSession:
     id: str = field(default="")
 
     def connect(self) -> None:
-        """Connect; raises ProgramMissing if CREOSON does not answer or Creo does not run."""
+        """Connect; raises ProgramMissing if CREOSON does not answer or Creo is not running."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
         self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
@@ -84,7 +84,7 @@ class CreoSession:
         GeometryError
             If Creo refuses.
         ProgramMissing, DeadlineExceeded, JobCancelled
-            If it does not answer, not in time, or nobody waits any more.
+            If it does not answer, is too slow, or the job was cancelled.
         """
         request = {"sessionId": self.id, "command": command, "function": function, "data": data}
         answered = self._post(request, code, names).get("data") or {}

@@ -9,7 +9,11 @@ from templates.core.criteria.bands import CONVENTION
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.level_choice import reachable
+<<<<<<< HEAD
 from templates.core.language.levels import Accuracy, accuracy, next_levels, truth_of
+=======
+from templates.core.language.levels import Accuracy, accuracy, next_levels
+>>>>>>> main
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
@@ -88,7 +92,7 @@ class TestTruth:
         measured = accuracy(cls)
         for level, tables in measured.errors.items():
             for output, cells in tables.items():
-                truth = truth_of(cls, level, output)
+                truth = measured.truth(level, output)
                 assert truth or not np.isfinite(cells).any(), (level, output)
                 assert truth is None or measured.content["truths"][truth]
 
@@ -109,14 +113,14 @@ class TestTruth:
         values = [one.outputs["power_loss"].value for one in loss.values()]
         bands = [one.error["power_loss"] for one in loss.values()]
         assert values[0] * (1 - bands[0]) > 1.2 * values[1] * (1 + bands[1])  # no band explains it
-        truths = [truth_of(OilFilm, level, "power_loss") for level in loss]
+        truth = accuracy(OilFilm).truth
+        truths = [truth(level, "power_loss") for level in loss]
         assert truths == ["Swift-Stieber, shear all around", "Swift-Stieber, shear where oil is"]
-        assert {truth_of(OilFilm, level, "minimum_film_thickness") for level in loss} == {"Swift-Stieber"}
+        assert {truth(level, "minimum_film_thickness") for level in loss} == {"Swift-Stieber"}
 
     def test_property_nothing_is_named_where_nothing_is_measured(self):
-        assert truth_of(OilFilm, "map", "density") is None
-        assert truth_of(OilFilm, "map", "no_such_output") is None
-        assert truth_of(CycleHeatBalance, "mobility", "minimum_film_thickness") is None
+        assert accuracy(OilFilm).truth("map", "density") is None
+        assert accuracy(OilFilm).truth("map", "no_such_output") is None
 
 
 class TestNextLevels:
@@ -186,4 +190,6 @@ def test_property_texts_have_no_truth():
     texts = {cls: [n for n, f in cls.formulas.items() if isinstance(f, Text)] for cls in MEASURED}
     assert any(texts.values())
     for cls, names in texts.items():
-        assert {truth_of(cls, level, name) for level in accuracy(cls).errors for name in names} <= {None}
+        assert {accuracy(cls).truth(level, name) for level in accuracy(cls).errors for name in names} <= {
+            None
+        }
