@@ -35,7 +35,6 @@ from benchmarks.film_cycle_duties import (
 )
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.physics.supplied.fed_cycle import UNREPEATED, fed_film, fed_orbit
-from templates.physics.supplied.feeding import HALF
 from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
@@ -50,6 +49,7 @@ from templates.physics.supplied.supplied_orbit import (
     supplied_orbit,
 )
 from templates.physics.supplied.supply import Pocket, Supply
+from templates.physics.supplied.supply_geometry import HALF
 
 KEPT = Path("benchmarks/results/film_cycle_engines.jsonl")
 SUPPLIES = ("half_groove", "full_groove", "pin_hole", "sleeve_hole", "slot", "part_groove", "several")

@@ -71,7 +71,7 @@ from templates.core.criteria.bands import CONVENTION
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.physics.supplied.fed_cycle import fed_orbit
-from templates.physics.supplied.feeding import HALF
+from templates.physics.supplied.supply_geometry import HALF
 
 FILE = Path("templates/oil_film/oil_film_cycle_v1.accuracy.json")
 QUANTILE, CONFIDENCE = 0.95, 0.95

@@ -7,12 +7,8 @@ better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
 measured. Two levels may follow different conventions; then their errors cannot be compared
-<<<<<<< HEAD
-(`truth_of`, `next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
+(`next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
 value: `templates.core.criteria.bands.CONVENTION`, which the file repeats.
-=======
-(`Accuracy.truth`, `next_levels`). The error of a profile is relative to its largest absolute value.
->>>>>>> main
 
 A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
 error under `own`.
@@ -31,10 +27,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-<<<<<<< HEAD
 from math import prod
-=======
->>>>>>> main
 from pathlib import Path
 from typing import Any
 
@@ -256,15 +249,6 @@ def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Arra
     }
 
 
-<<<<<<< HEAD
-def truth_of(cls: type[Template], level: str, output: str) -> str | None:
-    """Return the name of the truth of an output's error at a level; None if no error is stated there."""
-    measured = accuracy(cls)
-    return measured.truth(level, output) if measured else None
-
-
-=======
->>>>>>> main
 @dataclass(frozen=True)
 class NextLevel:
     """A level with a smaller error, and that error at each point [-]."""

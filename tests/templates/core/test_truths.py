@@ -9,11 +9,7 @@ from templates.core.criteria.bands import CONVENTION
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.level_choice import reachable
-<<<<<<< HEAD
-from templates.core.language.levels import Accuracy, accuracy, next_levels, truth_of
-=======
 from templates.core.language.levels import Accuracy, accuracy, next_levels
->>>>>>> main
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
