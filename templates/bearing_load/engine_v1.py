@@ -32,7 +32,7 @@ from templates.physics.crankshaft.main_bearings import (
     mains_ascend,
 )
 from templates.physics.crankshaft.main_clearance import (
-    Supported,
+    SupportReactions,
     Supports,
     flexibilities,
     law_residual,
@@ -184,9 +184,12 @@ class Engine(ArticulatedEngine):
     l_p: Array = given("mm", "crankpin length", optional=True, single=True, gt=0, le=1e4)
     t_s: Array = given("mm", "web thickness", optional=True, single=True, gt=0, le=1e4)
     b_s: Array = given("mm", "web width", optional=True, single=True, gt=0, le=1e4)
-    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10)
-    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
-    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
+    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10,
+                       assumed="the mains have no clearance")  # fmt: skip
+    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along x")  # fmt: skip
+    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along y")  # fmt: skip
     E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
     nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
     f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
@@ -246,7 +249,7 @@ class Engine(ArticulatedEngine):
         return supports_of(self.z_m, self.k_s, self.c_m, self.o_x, self.o_y)
 
     @shared
-    def played(self) -> Supported | None:
+    def played(self) -> SupportReactions | None:
         """Loads of mains with play; none where they have none, or the crank is not given."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,

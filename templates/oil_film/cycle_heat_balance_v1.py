@@ -21,6 +21,7 @@ from templates.core.language.template import (
     shared,
 )
 from templates.groups.fed_bearing import FedBearing
+from templates.groups.film_assumptions import FULL, PARALLEL, RIGID, SMOOTH
 from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
@@ -104,6 +105,7 @@ class CycleHeatBalance(Oil, FedBearing):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, FULL, "the oil has one temperature over the cycle")
     levels = MARCHED_LEVELS
     default_level = "mobility"
     most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500, "supplied": 1}
@@ -176,7 +178,7 @@ class CycleHeatBalance(Oil, FedBearing):
     rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
     k: Array = given("1", "heat share", default="1", ge=0, le=1)
     eta_H: Array = given("mPa*s", "HTHS viscosity", symbol=r"\eta_\mathrm{HTHS}", name="hths_viscosity",
-                         alternative=True, gt=0)  # fmt: skip
+                         alternative=True, gt=0, assumed="shear does not thin the oil")  # fmt: skip
     r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
     n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
 

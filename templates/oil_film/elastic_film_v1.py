@@ -20,6 +20,7 @@ from templates.core.language.template import (
     table,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, SMOOTH
 from templates.groups.journal import ISO, Journal
 from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import Oil
@@ -108,6 +109,7 @@ class ElasticFilm(Oil, Journal):
     DIN 31652:1983, ISO 7902:1998, for the rigid film.
     """
 
+    assumptions = (PARALLEL, SMOOTH, ISOTHERMAL)
     levels = ALL_LEVELS
     default_level = RIGID
     most_points = {"rigid": 5_000, "liner": 100, "housing": 50, "elastic": 20}

@@ -18,6 +18,7 @@ from templates.core.language.template import (
     shared,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import film_parameter, regime_of_contact
 from templates.physics.journals.mixed_journal import (
@@ -94,6 +95,7 @@ class MixedFriction(Oil):
     ISO 7902-1:1998, for the transition.
     """
 
+    assumptions = (RIGID, PARALLEL, ISOTHERMAL)
     levels = LEVELS
     default_level = MAP
     most_points = {"map": 5_000, "averaged": 100}

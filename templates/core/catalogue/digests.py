@@ -22,11 +22,11 @@ from typing import Any
 
 from templates.core.catalogue.modules import text_of
 from templates.core.language.origin import file_of
-from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # versions whose digests are kept, by the text of their files: every page quotes them

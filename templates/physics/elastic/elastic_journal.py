@@ -19,7 +19,7 @@ from templates.core.language.declare import on_paper, units
 from templates.physics.elastic.compliance import HARMONICS, ring_compliance
 from templates.physics.elastic.soft_balance import (
     MESHES,
-    Balanced,
+    FilmEquilibrium,
     NoBalance,
     carried,
     rigid_balance,
@@ -177,7 +177,7 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 
 def _changes(So: float, ratio: float, softness: Softness, eps: float) -> list[dict[str, float]]:
     """On each mesh: logarithms of ratios, differences of angles, deformation and thickening."""
-    soft: Balanced | None = None
+    soft: FilmEquilibrium | None = None
     changes = []
     for mesh in MESHES:
         rigid = rigid_balance(So, ratio, eps, *mesh)
