@@ -70,7 +70,7 @@ class Chain:
         return np.asarray(moved[np.searchsorted(free, mains)])
 
     def frequency(self, *, guided: bool) -> float:
-        """Return the frequency [Hz] of the mode with the largest inertia about z; the first section is held."""
+        """Return the frequency [Hz] of the mode with the largest inertia about z; one end is held."""
         free = self.free_to_move(guided=guided)
         K, M = (self.assembled(name)[np.ix_(free, free)] for name in ("stiffness", "mass"))
         squares, shapes = eigh(K, M)

@@ -104,7 +104,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller or the journal longer",
     )  # fmt: skip
     def drilling_opens_in_journal(self) -> Truth:
-        """The mouth of the oil drilling is within the journal, with 10 % distance from its fillet and its end."""
+        """The mouth of the oil drilling is within the journal, 10 % away from its fillet and its end."""
         return (self.d_o <= 0) | (self.m_j <= 0.9 * (self.L_s / 2 - self.r_f))
 
     @require(
@@ -112,7 +112,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller, or the pin shorter or thicker",
     )  # fmt: skip
     def drilling_stays_in_pin(self) -> Truth:
-        """The oil drilling enters the web from within the pin, at least 2 % of its radius from its underside."""
+        """The oil drilling enters the web from within the pin, 2 % of its radius from its underside."""
         return (self.d_o <= 0) | (self.x_1 - self.e_o >= self.R - 0.49 * self.D_c)
 
     @require(
@@ -120,7 +120,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller, or the journal shorter or thicker",
     )  # fmt: skip
     def drilling_stays_in_journal(self) -> Truth:
-        """The oil drilling leaves the web within the journal, at least 2 % of its radius from its upper side."""
+        """The oil drilling leaves the web within the journal, 2 % of its radius from its upper side."""
         return (self.d_o <= 0) | (self.x_2 + self.e_o <= 0.49 * self.D_j)
 
     @require(

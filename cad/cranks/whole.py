@@ -167,7 +167,7 @@ class WholeShaft:
             yield placed(behind, rear if last or not self.split else self._seam_behind(number))
 
     def _seam_behind(self, number: int) -> Half:
-        """Return the rotation of a journal between split throws: its seam is away from the mouths of both drillings."""
+        """Return the rotation of a journal between split throws, with its seam away from both drillings."""
         (_, rear), (front, _) = self.halves(number), self.halves(number + 1)
         return Half(rear.angle + remainder(front.angle - rear.angle, 2 * pi) / 2, rear.middle)
 
@@ -206,7 +206,7 @@ def placed(part: Shape, half: Half) -> Shape:
 
 
 def _tools_of_half(t: Throw) -> Iterator[Shape]:
-    """Yield the cutting solids of the rear half of a throw with split pins: the bore ends at the middle web."""
+    """Yield the cuts of the rear half of a throw with split pins: the bore ends at the middle web."""
     if t.pin_bore > 0:
         yield t.blind_bore()
     if t.drilling > 0:

@@ -67,7 +67,7 @@ class Controls:
         self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
     def _stems(self, placed: PlacedDimension) -> Iterator[tuple[Rectangle, Symbol]]:
-        """Yield the possible positions of a datum's letter: in line with a dimension line, or near the feature."""
+        """Yield possible positions of a datum's letter: in line with a dimension line, or nearby."""
         if placed.ends is None:
             tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
             starts = [(tip, turn) for turn in turns]

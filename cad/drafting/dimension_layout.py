@@ -91,8 +91,7 @@ class DimensionLayout:
         return placed
 
     def within(self, one: Dimension, along: float, high: float) -> PlacedDimension:
-        """Return a vertical dimension whose line runs within a view, as across a web, with its text above the
-        view.
+        """Return a vertical dimension whose line runs within a view, with its text above the view.
 
         Parameters
         ----------
@@ -261,7 +260,7 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """Return the middle of the text on a dimension line: between its ends, or beyond the end with fewer lines."""
+    """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
         return (low + high) / 2

@@ -41,7 +41,7 @@ class Label:
 
 
 def label_of(dimension: Dimension) -> Label:
-    """Return the label: Ø before a diameter, the count before a repeated size, brackets for reference sizes."""
+    """Return the label: Ø before a diameter, the count of a repeated size, brackets for reference sizes."""
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION

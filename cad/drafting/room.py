@@ -93,7 +93,7 @@ def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
 
 
 def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray:
-    """Return which of the straight pieces (n, 4) are closer to a rectangle than this distance (Liang and Barsky)."""
+    """Return which straight pieces (n, 4) are closer to a rectangle than this (Liang and Barsky)."""
     start, away = lines[:, :2], lines[:, 2:] - lines[:, :2]
     away = np.where(np.abs(away) < 1e-12, 1e-12, away)
     low = (np.array([box[0] - apart, box[1] - apart]) - start) / away

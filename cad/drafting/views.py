@@ -85,7 +85,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Return whether the drawing is that of an assembly: whether there are balls or bars among other parts."""
+    """Return whether this is the drawing of an assembly, with balls or bars among other parts."""
     whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
     return any(whole) and not all(whole)
 
