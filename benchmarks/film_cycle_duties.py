@@ -20,7 +20,7 @@ from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.core.arrays import Array
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
 from templates.physics.supplied.fed_cycle import UNREPEATED, FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.supplied.feeding import Feeding, feed_under_load
+from templates.physics.supplied.supply_geometry import SupplyGeometry, feed_under_load
 
 KEPT = Path("benchmarks/results/film_cycle_ensemble.jsonl")
 TRUTHS = Path("build/film_cycle_truths")
@@ -100,7 +100,7 @@ def under_load(duty: RandomDuty) -> float:
     no_hole = (none, none, none)
     holes = (*no_hole, *hole) if pocket.on_journal else (*hole, *no_hole)
     one = np.float64(1.0)
-    return float(feed_under_load(fed(duty).duty, Feeding(one, one, none, none, none, *holes)))
+    return float(feed_under_load(fed(duty).duty, SupplyGeometry(one, one, none, none, none, *holes)))
 
 
 def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:

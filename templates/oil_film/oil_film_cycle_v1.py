@@ -33,7 +33,7 @@ from templates.physics.supplied.fed_cycle import (
     fed_film,
     fed_orbit,
 )
-from templates.physics.supplied.feeding import feed_under_load, supply_kind
+from templates.physics.supplied.supply_geometry import feed_under_load, supply_kind
 
 BOOKER = "Booker 1965"
 ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"

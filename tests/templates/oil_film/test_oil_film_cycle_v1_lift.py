@@ -17,7 +17,7 @@ from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.physics.orbits.grooved_mobility import Groove, lift_of, lifting
-from templates.physics.orbits.turning import Turning
+from templates.physics.orbits.rotation import PartRotation
 from templates.physics.supplied.fed_cycle import fed_film, fed_orbit
 from templates.physics.supplied.supplied_orbit import NEAR_HOLES, supplied_orbit
 
@@ -82,7 +82,7 @@ class TestLift:
 
     def test_analytic_force_comes_out_of_the_groove_and_turns_with_the_sleeve(self):
         angle = np.array([0.0, np.pi / 2, np.pi])
-        sleeve = Turning(np.array([1.0]), 2 * np.pi, np.zeros((1, 3)))
+        sleeve = PartRotation(np.array([1.0]), 2 * np.pi, np.zeros((1, 3)))
         groove = Groove(np.array([0.2]), np.array([-np.pi / 2]), np.array([np.pi]))
         force = lifting(np.array([2.0]), sleeve, groove, angle)
         assert force[:, 0] == pytest.approx(np.array([[2, 0, -2], [0, 2, 0]]), abs=1e-12)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Mask, Truth
 from templates.core.language.declare import units
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
-from templates.physics.orbits.turning import turning
+from templates.physics.orbits.rotation import turning
 from templates.physics.supplied.supply import LONGEST, Pocket, Supply
 
 UNDER_LOAD = np.pi / 3
@@ -26,7 +26,7 @@ AROUND = 2 * np.pi * (1 - 1e-9)
 
 
 @dataclass(frozen=True)
-class Feeding:
+class SupplyGeometry:
     """Groove and holes of some points, SI, each midway across; NaN where there is none."""
 
     D: Array
@@ -97,7 +97,7 @@ class Feeding:
             yield tuple(pockets)
 
 
-def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
+def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]:
     """Return the `Supply` of each point, (...).
 
     None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
@@ -111,7 +111,7 @@ def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
     return supplies.reshape(shape)
 
 
-def supply_kind(feeding: Feeding) -> str:
+def supply_kind(feeding: SupplyGeometry) -> str:
     """Return the kind of supply of all points; empty where they differ."""
     half = np.abs(feeding.groove_extent - np.pi) <= HALF + 1e-9
     kinds = {
@@ -147,7 +147,7 @@ def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
     return np.asarray(~needed | np.isfinite(turned.turns.reshape(points)))[()]
 
 
-def feed_under_load(duty: Duty, feeding: Feeding) -> Array:
+def feed_under_load(duty: Duty, feeding: SupplyGeometry) -> Array:
     """Return share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
 
     NaN where there is none. A groove or slot longer than that is never under the load as a whole.
