@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from time import process_time
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -296,8 +297,9 @@ def own_errors() -> dict[str, Any]:
     """
     films, fresh = (shapes.measured_films(seed) for seed in (shapes.SEED, shapes.HELD_OUT))
     expected, held = {}, {}
+    measures = SimpleNamespace(**{own: name for name, own in shapes.STATED.items()})
     for output, field in MESH_ERRORS.items():
-        name = next(name for name, own in shapes.STATED.items() if own == field)
+        name = field(measures)
         size = np.pi / 2 if output == "attitude_angle" else 1.0
         stated = np.array([film["stated"][name] for film in films])
         expected[output] = float(f"{np.percentile(stated, 95) / size:.2g}")
