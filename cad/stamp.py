@@ -1,8 +1,8 @@
-"""The stamp on a downloaded STEP file or drawing, which names the design that it belongs to.
+"""The stamp on a downloaded STEP file or drawing, which identifies the design.
 
-A build is shared by all designs of equal parameters, so its files name none. A stamp is written into a copy
-when it is downloaded: into the names of products and the time of a STEP file, into the title block of a
-drawing. It is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
+All designs with equal parameters share a build, so its files name no design. The stamp is written into a copy
+at the download: into the product names and the time of a STEP file, or into the title block of a drawing. The
+result is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
 """
 
 from __future__ import annotations

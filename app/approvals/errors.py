@@ -4,7 +4,7 @@ ApprovalError
     NotReady            the revision is not calculated, or a file of it is missing
     OutOfOrder          another step comes first, or the step is taken
     SamePrincipal       the principal has taken another step, or is not the author
-    OtherDigest         the content to sign has changed since the signer saw it
+    OtherDigest         the content to sign has changed since the signer read it
 """
 
 from __future__ import annotations

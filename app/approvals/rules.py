@@ -20,23 +20,23 @@ ROLES: dict[Step, Role] = {
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
-    """Return the last step that was taken."""
+    """Return the last completed step."""
     return last_of({row.step for row in taken}) or "unsigned"
 
 
 def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
-    """Return the step that comes next on the way to a release; None behind that."""
+    """Return the next step towards a release; None after the release."""
     steps = {row.step for row in taken}
     return next((step for step in ORDER[:3] if step not in steps), None)
 
 
 def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
-    """Check that it is the turn of a step.
+    """Check that a step is the next one.
 
     Raises
     ------
     OutOfOrder
-        If it is taken, or another one comes first.
+        If the step is already taken, or another one comes first.
     """
     for row in taken:
         if row.step in (step, "withdrawn"):
@@ -56,7 +56,7 @@ def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Seque
     RoleNeeded
         If its roles do not allow it.
     SamePrincipal
-        If it took another step, or if it hands over a revision of another author.
+        If it took another step, or submits another author's revision.
     """
     if not who.may(ROLES[step]):
         raise RoleNeeded(who, (ROLES[step],))

@@ -1,4 +1,4 @@
-"""Approvals of revisions and comments on them, as the interface takes and shows them."""
+"""Approvals of revisions and comments on them, as the REST interface accepts and returns them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
 
 
 def _written(text: object) -> object:
-    """Return the value; refuse a text without a letter or with control characters.
+    """Return the value; refuse a text without letters or with control characters.
 
     Raises ValueError.
     """
@@ -148,7 +148,7 @@ class ApprovalIn(Bounded):
 
     @model_validator(mode="after")
     def with_its_reason(self) -> Self:
-        """Require a reason for a withdrawal, and for no other step; raises ValueError."""
+        """Require a reason for a withdrawal, and refuse one for any other step; raises ValueError."""
         if (self.step == "withdrawn") != (self.reason is not None):
             raise ValueError("a withdrawal needs a `reason`; no other step takes one")
         return self

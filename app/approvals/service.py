@@ -48,9 +48,9 @@ class ApprovalService:
         RoleNeeded, SamePrincipal
             If the principal may not.
         OutOfOrder, NotReady
-            If the revision is not there yet, or already beyond.
+            If another step comes first, or the step is already taken.
         OtherDigest
-            If `expected` (an If-Match) is not the digest of what there is to sign.
+            If `expected` (an If-Match) is not the digest of the content to sign.
         """
         self._require_good_files(id, number)
 
@@ -87,12 +87,12 @@ class ApprovalService:
         )
 
     def _require_good_files(self, id: str, number: int) -> None:
-        """Check that the STEP files of a revision are in the store with the right bytes; raises NotReady."""
+        """Check that the STEP files of a revision are stored with the right bytes; raises NotReady."""
         with self.database.read() as session:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():
             if STEP in kinds and not self.store.exists(kinds[STEP]):
-                raise NotReady(f"the STEP file of {name} is lost: GET it, which makes it again, then sign")
+                raise NotReady(f"the STEP file of {name} is lost: GET it to rebuild it, then sign")
 
 
 def _links(place: str, kinds: dict[str, str]) -> dict[str, str]:

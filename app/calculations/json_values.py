@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 def rendered(ordered: Sequence[Judgement]) -> JsonObject:
-    """Return `criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
+    """Return `criteria`, worst first, and the overall `verdict`; an empty result without criteria."""
     if not ordered:
         return {}
     return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}
 
 
 def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
-    """Return the verdict over all criteria, which stand in order."""
+    """Return the verdict over all criteria, which must be in order."""
     summary = summarised(ordered)
     return {
         "verdict": summary.verdict,
@@ -43,7 +43,7 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 
 def criterion(judgement: Judgement) -> JsonObject:
-    """Return one criterion as JSON, without the members that do not apply."""
+    """Return one criterion as JSON, without members that do not apply."""
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
     shown: JsonObject = {**names, "verdict": judgement.verdict}
     _show_numbers(judgement, shown)
@@ -100,7 +100,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
 
 
 def _where(places: Sequence[Place]) -> dict[str, object]:
-    """Return places by name; what has no unit is a name, such as that of a variant."""
+    """Return places by name; a place without a unit is a name, such as that of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
         for place in places
@@ -119,7 +119,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Return the version that calculated: id, version and the digest of its code."""
+    """Return the version of the calculation: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
@@ -129,12 +129,12 @@ def identity(cls: type[Template]) -> Identity:
 
 
 def quantity(value: object, unit: str | None) -> dict[str, object]:
-    """Return a value with its unit; a text has none."""
+    """Return a value with its unit; a text has no unit."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
-    """Return the outputs; what does not exist is null with its reason."""
+    """Return the outputs; a missing value is null with its reason."""
     shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
@@ -147,7 +147,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
 
 
 def _array(output: Answer) -> dict[str, object]:
-    """Return an output of several points or places; each that does not exist is null with its reason."""
+    """Return an output of several points or places; each missing value is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -157,7 +157,7 @@ def _array(output: Answer) -> dict[str, object]:
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
     """Return the values as objects, None where there is none.
 
-    A profile, which has one reason, is one object.
+    A profile has a single reason, so it is one object.
     """
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
@@ -170,7 +170,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
 
 
 def _plain(value: object) -> object:
-    """Return a single value or an array as JSON; what was not measured is null."""
+    """Return a single value or an array as JSON; unmeasured values are null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
     if value.ndim == 1:
@@ -187,7 +187,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
 
 
 def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
-    """Return the inputs as they were used."""
+    """Return the inputs that the calculation used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
         unit = {} if used.unit is None else {"unit": used.unit}
@@ -196,7 +196,7 @@ def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
 
 
 def evaluation(result: Evaluation) -> JsonObject:
-    """Return the whole answer to `evaluate`."""
+    """Return the complete answer of `evaluate`."""
     return {
         "template": identity(type(result.template)),
         "inputs": inputs(result.inputs),
@@ -215,7 +215,7 @@ def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
 
 
 def solution(result: Solution) -> JsonObject:
-    """Return the whole answer to `solve`."""
+    """Return the complete answer of `solve`."""
     return {
         "unknown": quantity(result.unknown, result.unit),
         "warnings": warnings(result.warnings),
@@ -223,6 +223,7 @@ def solution(result: Solution) -> JsonObject:
         "touching": [_root(root, result.unit) for root in result.touching],
         "jumps": [_jump(jump, result) for jump in result.jumps],
         "curve": _curve(result.curve, result),
+        "finer": [_curve(curve, result) for curve in result.finer],
         "evaluation": evaluation(result.evaluation),
     }
 

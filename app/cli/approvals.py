@@ -41,8 +41,9 @@ def approve_command(
 def verify_report_command(ctx: click.Context, file: Path, url: str | None, data: Path | None) -> None:
     """Verify FILE, a report (PDF), against the service that has the revision.
 
-    Prints what holds and what does not: every signature, that the revision still is as it was signed, that it
-    is released, and that the pages are those that the service prints. The exit code is 1 if something fails.
+    It prints the result of each check: every signature, that the revision is unchanged since it was signed,
+    that it is released, and that the pages equal those that the service prints. The exit code is 1 if a check
+    fails.
     """
     pdf = file.read_bytes()
     try:

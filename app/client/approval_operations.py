@@ -16,7 +16,7 @@ def approvals(id: str, revision: int) -> Exchange[Approvals]:
 def approve(
     seen: Approvals, step: Step, reason: str | None = None, *, key: str | None = None
 ) -> Exchange[Approvals]:
-    """Take a step of an approval that was read; a withdrawal needs a reason."""
+    """Take the next step of an approval that was read; a withdrawal needs a reason."""
     body = {"step": step} if reason is None else {"step": step, "reason": reason}
     path = f"/designs/{seen.design}/revisions/{seen.revision}/approvals"
     return answered(Approvals, post(path, body, {"If-Match": f'"{seen.to_sign}"', **once(key)}))
@@ -41,6 +41,6 @@ def comment(
 
 
 def resolve_comment(comment: Comment) -> Exchange[Comment]:
-    """Say that a comment is dealt with."""
+    """Mark a comment as resolved."""
     path = f"/designs/{comment.design}/revisions/{comment.revision}/comments/{comment.id}/resolve"
     return answered(Comment, post(path, {}))

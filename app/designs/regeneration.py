@@ -70,7 +70,7 @@ class Regeneration:
         Raises
         ------
         JobFailed
-            With the problem, for anything that the design itself brings about.
+            With the problem, for every fault of the design itself.
         """
         assert job.design is not None
         assert job.revision is not None
@@ -102,7 +102,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
-        """Return a revision's document and its calculation: that of its save, or calculated again."""
+        """Return a revision's document and its calculation, from its save or calculated again."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -135,7 +135,7 @@ class Regeneration:
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
-        """Return the variants of a document, each with its solids or with the reason why it has none."""
+        """Return the variants of a document, each with its solids or with the reason of a failure."""
         if not document.variants:
             return []
         raise_if(row_faults(base))
@@ -147,9 +147,9 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """Return the calculation once all its models are built and all used analyses are done.
+        """Return the calculation once all its models are built and all used analyses are finished.
 
-        Models may wait for each other's measures, so each round makes what can be made.
+        Models may wait for each other's measurements, so each round builds the models that can be built.
         """
         while True:
             raise_if(calculation.faults)
@@ -165,7 +165,7 @@ class Regeneration:
             calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
-        """Analyse every solid whose analysis is waited for; whether there was any."""
+        """Analyse every solid that needs it; return whether there was any."""
         waiting = calculation.waiting()
         for node in waiting:
             name, kind = node.model.name, node.kind

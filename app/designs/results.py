@@ -1,4 +1,4 @@
-"""The results of a revision and of its variants, as it stores them: outputs and criteria, models, solids."""
+"""The stored results of a revision and its variants: outputs, criteria, models and solids."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return the results of a calculation and its variants that a revision keeps beside the models."""
+    """Return the results of a calculation and its variants that a revision stores besides the models."""
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
@@ -64,7 +64,7 @@ def stored(
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
-    """Return by model every analysis that it declares, with its used and known outputs."""
+    """Return by model every declared analysis, with its used and known outputs."""
     return {
         block.name: {
             kind: in_design(
@@ -80,9 +80,9 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
-    """Return every step: its evaluation, or that it waits for a solid or for its job.
+    """Return every step: its evaluation, or that it waits for a solid or a job.
 
-    Its criteria stand with those of the design; it keeps the warnings of those that are not met.
+    Its criteria are listed with those of the design; the step keeps the warnings of unmet ones.
     """
     return {
         name: _step(calculation, block, criteria)
@@ -105,7 +105,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
 
 
 def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
-    """Return the warnings of a step, those of criteria as they were judged in the design."""
+    """Return the warnings of a step, with those of criteria as judged in the design."""
     prefix = f"{block.name}."
     own = [
         replace(judgement, name=judgement.name.removeprefix(prefix))
@@ -147,7 +147,7 @@ def _variant(
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
 ) -> JsonObject:
-    """Return one variant as a revision keeps it, without empty members."""
+    """Return one variant as a revision stores it, without empty members."""
     parts: JsonObject = {
         "values": dict(values),
         "outputs": dict(outputs),
@@ -206,7 +206,7 @@ class Outcome:
 def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
     """Return every output of every step that is not an array, by its name in relations.
 
-    Null with its reason.
+    A missing value is null with its reason.
     """
     shown: dict[str, JsonObject] = {}
     for step, evaluation in calculation.evaluations.items():

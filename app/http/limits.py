@@ -1,4 +1,4 @@
-"""Limits on every request: the sizes of head and body, how slowly the body may come, the end of the service.
+"""Limits on every request: the sizes of head and body, and the speed of the body.
 
 FastAPI reads the cookies of every request by a function of the standard library whose time is quadratic in
 the length of a quoted cookie; none of ours is quoted, so quoted ones are dropped. FastAPI's own limit on
@@ -94,7 +94,7 @@ class BodyLimits:
         return BodyTooLarge(f"a body may have at most {self.size / 2**20:g} MiB")
 
     def _counted(self, receive: Receive) -> Receive:
-        """Raise once a body of unknown length grows beyond the limit."""
+        """Raise once a body of unknown length exceeds the limit."""
         size = 0
 
         async def counted() -> Message:
@@ -108,7 +108,7 @@ class BodyLimits:
         return counted
 
     def _timed(self, receive: Receive) -> Receive:
-        """Time only what is waited for: while the service does something else, the client may wait."""
+        """Time only the waiting for the client, not the time in which the service is busy."""
         waited, size, whole = 0.0, 0, False
 
         async def timed() -> Message:
@@ -136,7 +136,7 @@ class BodyLimits:
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:
-    """Yield the headers without cookies in quotes, which take quadratic time to read."""
+    """Yield the headers without quoted cookies, which take quadratic time to parse."""
     for name, value in headers:
         yield name, (_plain_cookies(value) if name == b"cookie" and b'"' in value else value)
 

@@ -1,4 +1,4 @@
-"""The kinds of problems, and the table from errors to them: the domains know nothing of HTTP.
+"""The kinds of problems, and the table that maps errors to them; the domains know nothing of HTTP.
 
 A kind names its `type`, `/problems/<slug>`, its status, title and remedy.
 """
@@ -239,5 +239,5 @@ SLUGS = {
 
 
 def kind_of(error: Exception) -> Kind:
-    """Return the kind of problem that an error is: that of its nearest class in the table."""
+    """Return the kind of problem of an error: that of its nearest class in the table."""
     return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)

@@ -1,4 +1,4 @@
-"""The record of who did what: a row in the transaction of the change itself."""
+"""The record of who did what: one row, written in the transaction of the change itself."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _RECORDED = Statement(
 def record(
     session: Session, action: str, object: str, digest: str | None = None, at: str | None = None
 ) -> None:
-    """Record what the acting principal does to an object, in the unit of work that does it.
+    """Record an action of the acting principal on an object, in the same unit of work.
 
-    The id of the row begins with the time by this machine's clock, and is not a counter of the
-    database: units of work that only record something do not wait for each other.
+    The id of the row begins with the time of this machine's clock instead of a database counter, so that
+    units of work that only record something do not wait for each other.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def record(
     object
         Its path in the interface, without `/api/v1/`, such as `designs/<id>/revisions/3`.
     digest
-        SHA-256 of what was written or signed, where there is one.
+        SHA-256 of the written or signed content, if there is one.
     at
-        The time that the change itself carries, as text; the present if not given.
+        The time stored with the change, as text; by default the present time.
     """
     who = acting()
     row = {

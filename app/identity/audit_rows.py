@@ -1,4 +1,4 @@
-"""The audit as it is listed: newest first, all of it or what fits a filter."""
+"""The listing of the audit: newest first, all of it or only what matches a filter."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class AuditFilter:
 
 
 def page(session: Session, limit: int, before: str | None, wanted: AuditFilter) -> list[AuditRow]:
-    """Return one page of rows, newest first, and one more if there are more."""
+    """Return one page of rows, newest first, plus one row if there are more."""
     query = select(AuditRow).where(*_conditions(wanted)).order_by(AuditRow.id.desc())
     if before:
         query = query.where(AuditRow.id < before)

@@ -1,7 +1,7 @@
 """Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
 Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
-`app/web/verdict/criteria.js` writes the same while a user types; `tests/app/web` compares the two.
+`app/web/verdict/criteria.js` writes the same sentences while a user types; `tests/app/web` compares the two.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The verdict with which a report begins: every criterion as judged, worst first."""
+"""The verdict at the head of a report: every criterion as judged, worst first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Criteria as judged, and the verdict over all of them."""
+"""Criteria as judged, and the overall verdict."""
 
 from __future__ import annotations
 

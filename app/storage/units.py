@@ -1,8 +1,8 @@
 """Units of work: functions that run in one transaction, and their statements, compiled once.
 
-At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row. That
-takes several times as long as SQLite itself. On SQLite a `Statement` hands its text and its values to the
-driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
+At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row, which
+takes several times as long as SQLite itself. On SQLite a `Statement` passes its text and values directly to
+the driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
 
 An upsert writes a row that several servers may insert at the same time, without reading it first.
 """

@@ -1,4 +1,4 @@
-"""The pages as a part of the app: routes, files, errors, compression."""
+"""Add the pages to the app: routes, files, errors, compression."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Gas pressure of a four-stroke cylinder from the heat of its fuel: one zone, Wiebe's law.
+"""Gas pressure of a four-stroke cylinder from the heat of its fuel: single zone, Wiebe's law.
 
-Its curve is the pressure table of `engine` and `bearing_load`.
+Its curve serves as the pressure table of `engine` and `bearing_load`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+"""A whole engine of any layout: pins and firing, balance by orders, torque, and loads of every bearing.
 
 In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
 that need not be equal; mains with play.
@@ -19,6 +19,7 @@ from templates.core.language.template import (
 from templates.groups.articulated_engine import ArticulatedEngine
 from templates.groups.engine_cylinders import EACH
 from templates.groups.engine_motion import CYCLE
+from templates.groups.petrol_engine import OVERLAP, PETROL_CYCLE, SHAFT
 from templates.physics.crankshaft.crank_frame import CrankSections
 from templates.physics.crankshaft.main_bearings import (
     ShaftLoads,
@@ -139,30 +140,12 @@ class Engine(ArticulatedEngine):
         "rod_centre": {"value": [40, 36], "unit": "mm"},
         "rod_inertia": {"value": [2900, 700], "unit": "kg*mm**2"},
         "piston_mass": "0.48 kg",
-        "gas_cycle": "four_stroke",
-        "suction_pressure": "0.9 bar",
-        "exhaust_pressure": "1.1 bar",
-        "compression_ratio": 10,
-        "compression_exponent": 1.32,
-        "expansion_exponent": 1.28,
-        "combustion_pressure": "60 bar",
-        "cutoff": 1.15,
-        "inlet_opens": "705 deg",
-        "inlet_closes": "222 deg",
-        "exhaust_opens": "492 deg",
-        "exhaust_closes": "14 deg",
-        "crankcase_pressure": "1 bar",
+        **PETROL_CYCLE,
+        **OVERLAP,
         "orders": [1, 2],
         "main_positions": {"value": [0, 94, 170], "unit": "mm"},
         "web_positions": {"value": [22, 72, 132], "unit": "mm"},
-        "web_unbalance": "12 kg*mm",
-        "counterweights": "16 kg*mm",
-        "support_stiffness": "500 kN/mm",
-        "journal_diameter": "55 mm",
-        "crankpin_diameter": "48 mm",
-        "crankpin_length": "32 mm",
-        "web_thickness": "18 mm",
-        "web_width": "80 mm",
+        **SHAFT,
     }
     criteria = {
         "main_load": {

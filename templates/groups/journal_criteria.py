@@ -1,4 +1,4 @@
-"""What the static film of a journal bearing is held to: criteria that versions of `oil_film` share."""
+"""Criteria of the static film of a journal bearing, shared by the versions of `oil_film`."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Groups: an oil and its viscosity at a film's temperature; and what gives a film that temperature.
+"""Groups: an oil with its viscosity at the film temperature, and the sources of that temperature.
 
-A template that inherits `Oil` says in `T_film` which temperature its film has [K]; the viscosity follows,
-unless it is given. One that inherits `WarmOil` says instead in `balance` what its heat balance finds.
+A template that inherits `Oil` defines the film temperature in `T_film` [K]; the viscosity follows from it,
+unless it is given. A template that inherits `WarmOil` instead defines its heat balance in `balance`.
 """
 
 from __future__ import annotations

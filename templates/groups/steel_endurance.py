@@ -1,4 +1,4 @@
-"""Group: what steel bears in fatigue, by its ultimate strength and Marin's factors; what a notch counts."""
+"""Group: the fatigue strength of steel, by its ultimate strength, Marin's factors, and notch sensitivity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of the library, and what a row of one gives: limits of criteria, or inputs."""
+"""The tables of the library, and the values that their rows give for limits of criteria or for inputs."""
 
 from __future__ import annotations
 

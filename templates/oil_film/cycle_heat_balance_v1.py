@@ -1,7 +1,8 @@
-"""Heat balance of a journal bearing's film over an engine cycle: its effective viscosity and what follows.
+"""Heat balance of a journal bearing's film over an engine cycle: effective viscosity and dependent results.
 
-Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the temperature
-of the supply give one viscosity; the orbit and the smallest film are those of that viscosity.
+One viscosity follows from the power loss and side flow of the film over the cycle, from the flow that the
+supply pressure drives, and from the supply temperature; the orbit and the smallest film are calculated at
+that viscosity.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Oil film of a journal bearing under static load whose liner, bore and oil give way to the pressure.
+"""Oil film of a journal bearing under static load whose liner, bore and oil yield to the pressure.
 
-A plain, aligned bearing: rigid; with its liner as columns; with its housing as a thick ring; with its bore by
-the compliance of a drawn housing or rod.
+The plain, aligned bearing is rigid, or has its liner as columns, its housing as a thick ring, or the bore
+compliance of a drawn housing or rod.
 """
 
 from __future__ import annotations

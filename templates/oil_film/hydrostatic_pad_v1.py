@@ -1,6 +1,6 @@
 """Hydrostatic pad: a circular or annular step pad with a recess, fed by a pump (MEC 315).
 
-The pump lifts the load at any speed, and at rest: the film follows from the load, the lands and the
+The pump lifts the load at any speed, even at rest: the film follows from the load, the lands and the
 restrictor. Closed forms; laminar, isothermal, incompressible, parallel rigid faces, a deep recess.
 """
 

@@ -1,7 +1,8 @@
-"""Mixed friction of a journal bearing: film and roughness share the load; friction over speed (Stribeck).
+"""Mixed friction of a journal bearing: film and roughness share the load; the Stribeck curve.
 
-The roughness of both faces bears what the film does not. At low speed that is all, and friction is that of
-the contact; at high speed nothing, and friction is the oil's; between them lies the curve's lowest point.
+The rough faces carry the share of the load that the film does not. At low speed they carry all of it, and the
+contact causes the friction; at high speed they carry nothing, and the oil causes it. In between, the curve
+has its minimum.
 """
 
 from __future__ import annotations

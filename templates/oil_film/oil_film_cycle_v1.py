@@ -1,6 +1,6 @@
-"""Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at five levels.
+"""Oil film of a journal bearing under a periodic load, fed by grooves and holes, at five levels.
 
-The orbit of the journal, the smallest film and where in the cycle it is, pressure, loss and flow.
+Results are the orbit of the journal, the smallest film and its crank angle, pressure, power loss and flow.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Oil film of a journal bearing under static load: any bore, aligned or not, at five levels of fidelity.
 
 One bearing and one interface, from Ocvirk's closed form for a plain bore to a mass-conserving solution for
-lobes, bell mouths and a tilted journal; each answer says by which level, and how far off it may be.
+lobes, bell mouths and a tilted journal; each answer states its level and its error.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Oil film of a journal bearing under static load, with a temperature at every place.
+"""Oil film of a journal bearing under static load, with a varying temperature in the film.
 
-Dowson's generalised Reynolds equation with the energy equation, and beside it what one temperature gives.
+Dowson's generalised Reynolds equation is solved with the energy equation; a solution with one temperature is
+given for comparison.
 """
 
 from __future__ import annotations

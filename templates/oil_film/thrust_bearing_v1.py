@@ -1,7 +1,8 @@
 """Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
 
-The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
-Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+The film follows from the load, and its temperature from the friction heat that the oil carries off. The film
+is isothermal with an effective viscosity, incompressible and laminar; faces are rigid, and the pressure
+around the pads is ambient.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Torsional stiffness of a crank throw from its drawing's dimensions, after Carter and after Ker Wilson.
+"""Torsional stiffness of a crank throw from its drawn dimensions, after Carter and after Ker Wilson.
 
-From mid-journal to mid-journal, for a first layout and as a check of finite elements. Fits to tests of
-common proportions; fillets, oil holes, counterweights and the shape of the web are not in them.
+The stiffness is from mid-journal to mid-journal, for a first layout and as a check of finite elements. Both
+formulas are fitted to tests of common proportions; they ignore fillets, oil holes, counterweights and the
+shape of the web.
 """
 
 from __future__ import annotations

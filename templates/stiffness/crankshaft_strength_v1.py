@@ -1,7 +1,8 @@
 """Fatigue strength of a crankshaft at its fillets and oil bores, by IACS UR M53.
 
-For the endurance limit of a life under the cycle, where a factor for a plain specimen does not do: the rule
-holds the size of the shaft, how it is made, and the support that a small fillet gives itself.
+It gives the endurance limit for a life under the engine cycle, where a factor for a plain specimen is not
+sufficient: the rule includes the size of the shaft, its manufacture, and the support effect of a small
+fillet.
 """
 
 from __future__ import annotations

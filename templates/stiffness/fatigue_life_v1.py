@@ -1,7 +1,7 @@
-"""Life under the engine's cycle: tensors of unit loads superposed, cycles counted, damage summed.
+"""Life under the engine cycle: superposed tensors of unit loads, counted cycles, summed damage.
 
-For the fillets of a crank, and for any part whose stresses under unit loads are known: by finite elements, or
-measured. Elastic throughout.
+For the fillets of a crank, and for any part whose stresses under unit loads are known from finite elements or
+measurements. All stresses are elastic.
 """
 
 from __future__ import annotations

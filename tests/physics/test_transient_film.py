@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from templates.core.arrays import Array
-from templates.physics.cavities.cavitating_film import cavitating_film
+from templates.physics.cavities.cavitating_film import measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.cavities.transient_balance import Journal, balance, transient_mesh
 from templates.physics.cavities.transient_film import State, stepped
@@ -40,7 +40,7 @@ def marched(journal: Journal, eps: Array, loads: Array, w: float) -> list[State]
 )
 def test_constant_load_settles_in_the_static_cavitating_film(eps: float, ratio: float) -> None:
     """That of oil_film 2 with oil fed along the widest gap, on a mesh four times as fine."""
-    static = cavitating_film(eps, ratio, [Groove(np.pi, 0.0)])
+    static = measured(solved_ring(eps, ratio, [Groove(np.pi, 0.0)]))
     loads = np.full((250, 2), [static.So, 0.0])
     settled = marched(transient_mesh(ratio, 96, 6), np.array([0.3, 0.3]), loads, 0.5)[-1].eps
     assert np.hypot(*settled) == pytest.approx(eps, rel=5e-3)

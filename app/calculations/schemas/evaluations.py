@@ -103,9 +103,12 @@ class Jump(Quantity):
 
 
 class TracedCurve(Answer):
-    """The output over the unknown, between the bounds."""
+    """The output over the unknown, between the bounds, at one level."""
 
-    x: Values = Field(description="the unknown, even steps, in the logarithm where the bounds span a decade")
+    x: Values = Field(
+        description="the unknown, ascending; even steps, in the logarithm where the bounds span a decade; of "
+        "a level that takes few points, the solutions and a value to both sides of each"
+    )
     y: Shown = Field(description="the output; null where it has no value")
     reasons: list[str | None] = Field(description="why there is no value; null where there is one")
     level: str | None = Field(description="the level of fidelity of all points")
@@ -119,7 +122,12 @@ class Solution(Answer):
     roots: list[Root] = Field([], description="every crossing of the target within the bounds, ascending")
     touching: list[Root] = Field([], description="extrema that just reach the target, ascending")
     jumps: list[Jump] = Field([], description="where the output jumps across the target")
-    curve: TracedCurve | None = Field(None, description="absent in answers of earlier program versions")
+    curve: TracedCurve | None = Field(
+        None, description="the curve that was searched; absent in answers of earlier program versions"
+    )
+    finer: list[TracedCurve] = Field(
+        [], description="the curve of each finer level at which solutions were confirmed"
+    )
     evaluation: Evaluation = Field(description="at `unknown`")
 
 

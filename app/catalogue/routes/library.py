@@ -27,13 +27,13 @@ Id = Annotated[str, Path(max_length=64, examples=["bearing_material"])]
 
 @router.get("")
 def list_library_tables(limit: Limit = 100, cursor: Cursor = None) -> LibraryTables:
-    """The tables of the library."""
+    """Return the tables of the library."""
     return page_of(LibraryTables, list(tables().values()), limit, cursor, _summary)
 
 
 @router.get("/{table_id}", responses=refusals(404))
 def show_library_table(table_id: Id) -> LibraryTable:
-    """One table: its columns, and its rows with a source for each value."""
+    """Return one table: its columns, and its rows with a source for each value."""
     one = table(table_id)
     return LibraryTable(
         id=one.id,

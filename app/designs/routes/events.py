@@ -1,4 +1,4 @@
-"""`/designs/{id}/events`: a design's revisions and regenerations as they happen (server-sent events)."""
+"""`/designs/{id}/events`: the stream of a design's new revisions and regenerations (server-sent events)."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current",
 async def watch_design(
     id: Id, database: TheDatabase, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:
-    """The state first, then `revision`, `regenerating`, `progress`, `current`, `failed` as they come.
+    """Stream the state first, then `revision`, `regenerating`, `progress`, `current` and `failed` events.
 
-    In place of the state, a client that comes back gets the events after its last one, if they are kept.
+    A client that reconnects gets the events after its last one instead of the state, if they are still
+    stored.
     """
     async with listening(jobs.events, f"design:{id}") as events:
         now = await run_in_threadpool(_start, database, id, last)
@@ -43,6 +44,6 @@ async def watch_design(
 
 
 def _start(database: Database, id: str, last: int | None) -> Standing | None:
-    """Return the state of a design; None if the reader can go on after its last event."""
+    """Return the state of a design; None if the reader can continue after its last event."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

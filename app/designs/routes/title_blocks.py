@@ -1,4 +1,4 @@
-"""Fields of a drawing's title block that a client types at a download; what an approval says stays."""
+"""Title-block fields that a client sets for one drawing download; an approval's entries have priority."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class TitleBlock:
     texts: dict[str, str]
 
     def on(self, stamp: Stamp, kind: str) -> Stamp:
-        """Return the stamp with these texts.
+        """Return the stamp with these texts added.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class TitleBlock:
 
 
 def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
-    """Return names and states that only an approval gives."""
+    """Return names and states that only an approval may set."""
     faults = []
     for field, name in _SIGNED.items():
         signed = getattr(stamp, field)
@@ -79,9 +79,9 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
 
 
 def _shown(text: str) -> str:
-    """Return a text as a drawing shows it, without room about it.
+    """Return a text as a drawing shows it, without surrounding blanks.
 
-    Signs that do not print are spaces there.
+    Unprintable characters become spaces.
     """
     return "".join(sign if sign.isprintable() else " " for sign in text).strip()
 
@@ -89,7 +89,7 @@ def _shown(text: str) -> str:
 def _letters(text: str) -> str:
     """Return the small Latin letters of a text.
 
-    A reader sees `released` in `Released.` and in `ｒeleased` too.
+    `Released.` and `ｒeleased` also look like `released` to a reader.
     """
     return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
 

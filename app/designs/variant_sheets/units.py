@@ -25,7 +25,7 @@ def _unit(network: Network, place: Reference) -> str | None:
 
 
 def _typed_unit(cell: Cell) -> str | None:
-    """Return the unit that a parameter was typed in; a relation has none of its own."""
+    """Return the unit in which a parameter was typed; a relation has none."""
     if is_relation(cell.raw) or cell.relations:
         return None
     try:

@@ -37,7 +37,7 @@ def list_audit(
     principal: Who = None,
     action: Action = None,
 ) -> AuditList:
-    """Changes, newest first: all, or those that fit every filter given."""
+    """Return changes, newest first: all, or those that match all filters."""
     with database.read() as session:
         rows = audit_rows.page(session, limit, cursor, AuditFilter(object, principal, action))
     return page(AuditList, rows, limit, AuditEntry.model_validate, lambda row: row.id)
@@ -45,7 +45,7 @@ def list_audit(
 
 @router.get("/head", dependencies=[needs("admin")])
 def show_head(database: TheDatabase) -> AuditHead:
-    """The hash to note elsewhere: `crankwright audit verify --head HASH` asks for it later."""
+    """Return the hash to record elsewhere; `crankwright audit verify --head HASH` uses it later."""
     with database.read() as session:
         newest = chain.head(session)
     return AuditHead(seq=newest.seq, hash=newest.hash)

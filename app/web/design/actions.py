@@ -1,7 +1,8 @@
 """Actions of forms about designs: each calls a service, then shows the page with the result.
 
-Without a script in the browser these are all actions there are; with one, `design/design.js` saves by itself.
-`app.http.guard` refuses a form of another site: a browser would send it without asking anyone.
+Without scripts in the browser, these forms are the only way to act; with scripts, `design/design.js` saves
+changes directly. `app.http.guard` refuses forms of other sites, because a browser would send them without
+asking the user.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The form of a new step; it is empty, so that no example value is taken for the user's.
+"""The form of a new step; it is empty, so that no example value is mistaken for the user's.
 
-It makes a new design, or a further step of one. Until it is filled in, nothing is saved.
+It creates a design, or adds a step to one. Nothing is saved until the form is complete.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The routes of the forms of a new step."""
+"""The routes of the form of a new step."""
 
 from __future__ import annotations
 

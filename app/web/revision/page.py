@@ -1,6 +1,6 @@
-"""The page of one revision of a design, and how it differs from another.
+"""The page of one revision of a design, and its differences from another revision.
 
-If a template or model of it cannot be used now, the page shows what is stored, and why that is all.
+If one of its templates or models cannot be used now, the page shows the stored results and the reason.
 """
 
 from __future__ import annotations

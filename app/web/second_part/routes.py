@@ -1,4 +1,4 @@
-"""The page that adds a bought part to a model of a design; it writes the manifest of the assembly.
+"""The page that adds a bought part to a model of a design, by writing the manifest of an assembly.
 
 The assembly is imported like any other model, and then replaces the model in the design.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import re
 from collections.abc import Mapping
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -16,8 +15,9 @@ from pydantic import JsonValue, TypeAdapter
 from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.schemas.designs import Design, DesignModel
 from app.solids.routes.models import list_models, show_model
-from app.web.model_import.routes import MISSED, begun_import
+from app.web.model_import.routes import FORM, imported_version
 from app.web.shared.design_answers import job_of
+from app.web.shared.file_form import MISSED
 from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id
 from app.web.shared.responses import go, show
@@ -29,7 +29,6 @@ GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
 _FIXED = "Fixed part "  # the title of an imported STEP file begins so
-_VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
 
@@ -56,8 +55,7 @@ async def put_beside(request: Request, services: ThePageServices, id: Id, name: 
     except Refused as refused:
         if refused.status not in (*MISSED, _STALE):
             raise
-        said = "; ".join(refused.faults.values()) or refused.problem.detail
-        return await _form(request, services, design, name, typed, said, refused.status)
+        return await _form(request, services, design, name, typed, refused.sentence, refused.status)
     return go(f"/designs/{id}")
 
 
@@ -110,13 +108,13 @@ async def _imported(
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
-    job = await begun_import(services, content, id, f"{id[:64] or 'assembly'}.json")
+    job = await FORM.begun(services, content, id, f"{id[:64] or 'assembly'}.json")
     for _ in range(round(PATIENCE / GLANCE)):
         work = await job_of(services, job)
         if work.problem is not None:
             raise Refused(work.problem)
-        if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
-            return {"id": version[1], "version": int(version[2])}
+        if work.state == "done" and (version := imported_version(work.result or "")):
+            return {"id": version[0], "version": version[1]}
         await asyncio.sleep(GLANCE)
     raise Refused.because(503, "the server is busy: the assembly has not been created; send the form again")
 

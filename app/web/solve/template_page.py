@@ -1,4 +1,4 @@
-"""The page that solves a template: which values of one input give a wanted output, with the curve."""
+"""The page that solves a template: values of one input that give a wanted output, and the curve."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from app.web.shared.answers import AnswerOrJob, TemplateQuestion, calculated, st
 from app.web.shared.places import PlaceOption, suggested
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
-from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
+from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, in_words, replied
 from app.web.template.page import inputs_of, typed_in
 from templates.core.language import template as language
 from templates.core.units.quantity import read_any, read_beside
@@ -160,4 +160,14 @@ def _drawing(question: Question, solution: Solution) -> Drawing | None:
     typed = read_beside(raw, scale.text) if scale.difference else read_any(raw)
     wanted = float(np.asarray(scale.from_si(typed.si)))
     roots = [*solution.roots, *solution.touching]
-    return Drawing(question.typed["unknown"], question.typed["output"], wanted, curve, roots, solution.jumps)
+    return Drawing(
+        question.typed["unknown"],
+        question.typed["output"],
+        wanted,
+        curve,
+        solution.finer,
+        roots,
+        solution.jumps,
+        in_words(curve.level),
+        [in_words(one.level) for one in solution.finer],
+    )

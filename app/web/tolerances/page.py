@@ -1,4 +1,4 @@
-"""Tolerances on the design page: whether there are any, and an analysis as a table with its pictures."""
+"""Tolerances on the design page: the toleranced values, and the analysis as a table with pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of variants on the page of a design: what each overrides, in fields, and how it is judged."""
+"""The table of variants on the page of a design: their overrides, in fields, and their verdicts."""
 
 from __future__ import annotations
 

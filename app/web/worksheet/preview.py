@@ -1,4 +1,4 @@
-"""Preview how a worksheet that is not released would change a design; nothing is saved."""
+"""Preview how an unreleased worksheet would change a design; nothing is saved."""
 
 from __future__ import annotations
 
@@ -58,8 +58,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
     except Refused as refused:
         if refused.status not in REFUSED:
             raise
-        reason = "; ".join(refused.faults.values()) or refused.problem.detail
-        return DraftTrial(id, name, is_added, [], reason)
+        return DraftTrial(id, name, is_added, [], refused.sentence)
     return DraftTrial(design.name, name, is_added, list(_changes(preview)))
 
 

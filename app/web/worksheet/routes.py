@@ -74,8 +74,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
     except Refused as refused:
         if refused.status not in MISSED:
             raise
-        said = "; ".join(refused.faults.values()) or refused.problem.detail
-        return await start_page(request, services, typed, said, refused.status)
+        return await start_page(request, services, typed, refused.sentence, refused.status)
     return go(f"/worksheets/{id}")
 
 
@@ -112,8 +111,7 @@ def _unsaved(text: str, refused: Refused) -> UnsavedText:
     if refused.status == STALE:
         notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
         return UnsavedText(text, notice, STALE, is_conflict=True)
-    said = "; ".join(refused.faults.values()) or refused.problem.detail
-    return UnsavedText(text, f"Nothing was saved: {said}", refused.status)
+    return UnsavedText(text, f"Nothing was saved: {refused.sentence}", refused.status)
 
 
 @forms.post("/worksheets/{id}/test")
@@ -179,5 +177,4 @@ async def _act(id: str, action: Awaitable[object], request: Request, services: P
 async def _explained(id: str, request: Request, services: PageServices, refused: Refused) -> Response:
     if refused.status not in MISSED:
         raise refused
-    said = "; ".join(refused.faults.values()) or refused.problem.detail
-    return await editor_page(request, services, id, notice=said, status=refused.status)
+    return await editor_page(request, services, id, notice=refused.sentence, status=refused.status)

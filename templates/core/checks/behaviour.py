@@ -1,4 +1,4 @@
-"""Faults that show when a template calculates its example: refusals, dimensions, description, report."""
+"""Faults that appear when a template calculates its example: refusals, dimensions, description, report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults that show in the text of a template before anything is calculated: docstring, attributes, loops."""
+"""Faults that appear in the text of a template before any calculation: docstring, attributes, loops."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The band of the true value around a value whose relative error is stated, and around an expression.
 
-A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). Several errors may
-contribute to one band; a contribution that is not known leaves the band as wide as the known ones make it,
-and the band is then not known.
+A stated error e means |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). Several errors may
+contribute to one band. If a contribution is unknown, the band includes only the known ones and is marked as
+unknown.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A criterion as judged: its verdict, and the numbers behind it at the worst point or place."""
+"""A judged criterion: its verdict, and the numbers behind it at the worst point or place."""
 
 from __future__ import annotations
 

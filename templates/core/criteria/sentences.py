@@ -1,6 +1,6 @@
-"""Sentences about two values that were compared: what is the case, never what ought to be.
+"""Sentences about two compared values: they state the facts, never the requirement.
 
-Warnings of criteria and of rules are made here, so that no sentence contradicts its own numbers.
+Warnings of criteria and of rules are worded here, so that no sentence contradicts its own numbers.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A record of one calculation: declarations, values by attribute, and what each follows from."""
+"""A record of one calculation: declarations, values by attribute, and the inputs behind each value."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 """The comparisons of a rule, recorded while the rule runs.
 
-A rule reads the values of a template. Here it reads `Operand`s: values that also carry how they were
-calculated. Where two are compared the result is an `Outcome`: a truth that also carries both sides. So a
-report can say how close each compared value is to its limit. Nothing reads the source of the rule.
+A rule reads the values of a template. Here it reads `Operand`s: values that also carry their calculation.
+Comparing two of them gives an `Outcome`: a truth value that also carries both sides. So a report can state
+how close each compared value is to its limit, without parsing the source of the rule.
 
-Rules combine truths by `&`, `|` and `~`. Where Python itself needs a truth (`and`, `or`, `if`), it chooses
-what the rule returns, and only what the rule returns is recorded.
+Rules combine truth values by `&`, `|` and `~`. If a rule uses Python's `and`, `or` or `if`, only the returned
+comparison is recorded.
 """
 
 from __future__ import annotations

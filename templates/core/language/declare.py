@@ -1,11 +1,11 @@
 """Declarations of a template: givens, choices, curves, derived givens, formulas and requirements.
 
-Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
-the formula on paper; its bounds make the check, the schema and the message.
+Each is declared once. Its words give the API name, the label and the line in the report; its symbol gives the
+formula on paper; its bounds give the check, the schema and the message.
 
-There are two kinds of bounds. The *domain* is where a quantity means anything: outside it a value is
-refused. The *published* range is where the source claims its formula: outside it the answer carries a
-warning that names the limit.
+There are two kinds of bounds. The *domain* is the range in which a quantity has a meaning: a value outside it
+is refused. The *published* range is the range for which the source states its formula: outside it the answer
+carries a warning that names the limit.
 """
 
 from __future__ import annotations

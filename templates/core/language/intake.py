@@ -1,4 +1,4 @@
-"""Read typed inputs as the SI values of a template; all faults are collected before any is reported."""
+"""Read typed inputs as the SI values of a template, and collect all faults before reporting them."""
 
 from __future__ import annotations
 

@@ -1,20 +1,19 @@
-"""Levels of fidelity: how wrong each is and what it costs, as measured; which is the cheapest that will do.
+"""Levels of fidelity: their measured errors and costs, and the choice of the cheapest sufficient level.
 
 A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against a converged solution, on a
-grid over two of the template's quantities. The table lies outside the frozen file, so that a version may gain
-a better one.
+script in `benchmarks/` measured: for every level and output the error against a converged solution, on a grid
+over two of the template's quantities. The table is not part of the frozen file, so that a version may get a
+better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
-measured. Two levels may follow two conventions, and then their errors say nothing of each other
-(`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
-(`absolute_error`).
+measured. Two levels may follow different conventions; then their errors cannot be compared
+(`Accuracy.truth`, `next_levels`). The error of a profile is relative to its largest absolute value.
 
-A level may state the error of each answer itself, from what it has computed (`Template.own_error`); the table
-then says under `own` what error to expect before.
+A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
+error under `own`.
 
-Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
-them under `cases`, and `Template.measured_case` says which case its inputs are.
+Errors may be measured separately for several cases of inputs, such as kinds of oil supply: then the table
+holds them under `cases`, and `Template.measured_case` returns the case of the inputs.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ import json
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.origin import file_of
-from templates.core.language.spec import Profile, Text
+from templates.core.language.spec import Text
 from templates.core.language.template import Template
 
 SINGLE = "only"  # how the table of a template without levels calls its one
@@ -226,45 +225,6 @@ def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Arra
         level: {output: np.array(table, dtype=float) for output, table in outputs.items()}
         for level, outputs in levels.items()
     }
-
-
-def truth_of(cls: type[Template], level: str, output: str) -> str | None:
-    """Return the name of the truth of an output's error at a level; None if no error is stated there."""
-    measured = accuracy(cls)
-    return measured.truth(level, output) if measured else None
-
-
-def absolute_error(template: Template, output: str, error: Any) -> Any:
-    """Return the estimated error of an output in its SI unit, from the `error` stated.
-
-    NaN where that says nothing.
-
-    Of a profile it is the same at all its places. See `relative_to` for what errors are relative to.
-    """
-    formula = template.formulas[output]
-    size = np.abs(getattr(template, formula.attribute))
-    if not isinstance(formula, Profile):
-        return error * relative_to(template, output)
-    axes = tuple(range(-formula.axes, 0))
-    return np.broadcast_to(
-        np.asarray(error)[(..., *(None,) * formula.axes)] * size.max(axes, keepdims=True), size.shape
-    )
-
-
-def relative_to(template: Template, output: str) -> Any:
-    """Return the reference [SI] of the error of an output that is not a profile.
-
-    Itself, or what the table names.
-
-    The table's `relative_to` has by output a size [SI] (of an angle, 90°), or a list of outputs, the largest
-    of which counts, or null for a size that is not an output.
-    """
-    measured = accuracy(type(template))
-    others = measured.content.get("relative_to", {}).get(output, [output]) if measured else [output]
-    if not isinstance(others, list):
-        return np.nan if others is None else float(others)
-    sizes = [np.abs(getattr(template, template.formulas[name].attribute)) for name in others]
-    return reduce(np.fmax, sizes)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The meaning of a number: its words, unit, symbol, bounds and source; each declared once."""
+"""The meaning of a number: words, unit, symbol, bounds and source, each declared once."""
 
 from __future__ import annotations
 

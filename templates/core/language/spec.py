@@ -1,6 +1,6 @@
 """Classes of a template's declarations: givens, choices, curves, formulas and requirements.
 
-Authors use the functions of `templates.core.language.declare`, which make them.
+Authors use the functions of `templates.core.language.declare`, which create them.
 """
 
 from __future__ import annotations

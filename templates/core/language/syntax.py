@@ -1,4 +1,4 @@
-"""A formula's source as a syntax tree: what it returns and what it uses."""
+"""A formula's source as a syntax tree: the returned expression and the names that it uses."""
 
 from __future__ import annotations
 

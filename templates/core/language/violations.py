@@ -1,7 +1,7 @@
-"""The sentence for a rule that does not hold: what the values are, made from the comparisons of the rule.
+"""The sentence for a broken rule, which states the values, built from the comparisons of the rule.
 
-The docstring of a rule says what ought to be. Where a rule is violated that would state the opposite of what
-is the case, so nothing here reads it.
+The docstring of a rule states the requirement. For a broken rule it would state the opposite of the facts, so
+this module does not use it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Worksheets: text of an engineer, checked, becomes a template class like one from a file.
+"""Worksheets: an engineer's text is checked and becomes a template class like one from a file.
 
 `read` gives a `Sheet`, or raises `SheetRefused` with all faults; `Sheet.template` makes the class, and
 `run_tests` runs the tests that the worksheet holds. The language: `docs/reference/worksheets.md`.

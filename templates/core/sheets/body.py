@@ -1,4 +1,4 @@
-"""A checked tree in the place of a formula's function: called with a template, it gives the value."""
+"""A checked tree in place of a formula's function: called with a template, it returns the value."""
 
 from __future__ import annotations
 

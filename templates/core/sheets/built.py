@@ -1,4 +1,4 @@
-"""The contents of a worksheet's statements, before they are a class."""
+"""The contents of a worksheet's statements, before they become a class."""
 
 from __future__ import annotations
 

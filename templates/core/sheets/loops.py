@@ -1,4 +1,4 @@
-"""Declarations that follow from themselves."""
+"""Find declarations that depend on themselves."""
 
 from __future__ import annotations
 

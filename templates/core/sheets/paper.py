@@ -1,4 +1,4 @@
-"""The lines of a worksheet as LaTeX."""
+"""Print the lines of a worksheet as LaTeX."""
 
 from __future__ import annotations
 

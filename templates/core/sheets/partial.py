@@ -1,4 +1,4 @@
-"""Operations that give a value not everywhere, and say why: a curve has none outside its points."""
+"""Operations that do not always have a value, and the reason: a curve has none outside its points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A worksheet: text that was read and checked whole, and the template class that it makes."""
+"""A worksheet: text that was read and checked as a whole, and its template class."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`solve x from a to b so that … == …`: the root between two bounds, at all points at once."""
+"""`solve x from a to b so that … == …`: find the root between two bounds, at all points at once."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Expressions of relations and worksheets: from the parser's tree to a checked tree of our own nodes.
+"""Expressions of relations and worksheets: convert the parser's tree to a checked tree of our own nodes.
 
-Both share the grammar of `relation.lark`. A worksheet knows what its names are when it is read, and asks for
-`checked`; a relation of a design learns it later, and asks for `built`. What a scope knows of a name replaces
-the name: a parameter of a function becomes the expression with which the function is called.
+Both share the grammar of `relation.lark`. A worksheet knows the meaning of its names when it is read, and
+calls `checked`; a relation of a design learns it later, and calls `built`. A scope may replace a name by an
+expression: a parameter of a function becomes the argument of the call.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Relations: `= scale * 48 mm`. Parsed to a checked tree, never evaluated as Python.
+"""Relations, such as `= scale * 48 mm`: parsed to a checked tree, never evaluated as Python.
 
-A relation ties a value of a design to others, as a cell of a spreadsheet does. A unit stands after a number
-and one blank and has no blank itself; every other word is a name. Units are checked before anything runs:
-lengths add to lengths, an exponent is a pure number, `degC` is a temperature with a zero of its own and may
-not be added. `loads.main_load_x[2]` is the second item of an array along its first axis, so that of several
-curves it is one curve.
+A relation links a value of a design to others, like a cell of a spreadsheet. A unit follows a number and one
+blank, and contains no blank; every other word is a name. Units are checked before any calculation: a length
+can only be added to a length, an exponent is a pure number, and `degC` is an absolute temperature, which
+cannot be added. `loads.main_load_x[2]` is the second item of an array along its first axis: one curve of
+several.
 """
 
 from __future__ import annotations

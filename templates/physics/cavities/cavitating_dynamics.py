@@ -1,11 +1,12 @@
 """Linear stiffness and damping of a film with mass-conserving cavities, by perturbing its discrete equations.
 
-Which nodes are full is held, and in the full ones the pressure, in the others the void follows the change of
-the gap: a front of re-formation moves with the oil that reaches it. Damping is that of slow motion: the oil
-that cavities store follows the displacement, so its rate is the velocity's. Grooves stand still.
+The set of full nodes is held constant. In full nodes the pressure follows the change of the gap, in the
+others the void does: a front of re-formation moves with the oil that reaches it. The damping holds for slow
+motion: the oil stored in cavities follows the displacement, so its rate of change is proportional to the
+velocity. Grooves stand still.
 
-Axes and scales as in `film_dynamics`; here over psi²/(B D eta omega_h) instead of the load, so that the
-coefficients stay finite as the load vanishes.
+Axes and scales are those of `film_dynamics`, but with psi²/(B D eta omega_h) in place of the load, so that
+the coefficients stay finite as the load vanishes.
 """
 
 from collections.abc import Callable

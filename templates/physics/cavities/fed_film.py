@@ -1,9 +1,9 @@
 """Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude.
 
-The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
-those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
-which their stiffness makes up for what the load still lacks. No answer, where the supply pressure alone lifts
-more than the load, or the search has not come to rest after 20 films.
+A line at the widest gap feeds the film, or grooves that stand still relative to the load. The search solves
+films of `cavitating_film` on 64 × 8 intervals; the result is extrapolated from twice as many intervals, and
+the film's stiffness corrects the remaining difference of load. There is no answer if the supply pressure
+alone lifts more than the load, or if the search does not converge within 20 films.
 """
 
 from contextlib import suppress

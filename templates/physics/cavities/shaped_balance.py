@@ -1,21 +1,22 @@
 """Static position of a journal in a bore of any shape, tilted or not, from its load.
 
-Newton's method on a mesh that stands still while it searches; then the mesh is graded to the place found,
-until both agree, and refined: 32, 64 and 128 intervals around. No step takes more than 70 % of the gap
-anywhere, and none is kept that leaves the force farther from the load. The last two meshes give Richardson's
-extrapolation, the last three an estimate of the error.
+Newton's method searches on a fixed mesh. Then the mesh is graded to the position found, until both agree, and
+refined to 32, 64 and 128 intervals around. No step reduces the gap by more than 70 % anywhere, and a step
+that moves the force away from the load is rejected. The last two meshes give Richardson's extrapolation, the
+last three an estimate of the error.
 
-A mesh of a lobed or grooved bore, graded to one lobe, exerts a force on a journal in the middle. Under a
-light load that force counts, and the meshes are not in their asymptote. So where the last step of refinement
-moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals follows. If the
-steps still do not fall as the square of the mesh, nothing is extrapolated: the finest mesh answers.
+A mesh of a lobed or grooved bore that is graded to one lobe exerts a spurious force on a centred journal.
+Under a light load that force matters, and the meshes are not yet in the asymptotic range. So if the last
+refinement moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals
+follows. If the changes still do not decrease with the square of the mesh size, the result of the finest mesh
+is returned without extrapolation.
 
-Oil comes in where `Feed` has grooves, which stand still relative to the load. Without grooves it comes along
-the joints of a lobed bore, and else along a line opposite the displacement of the journal's middle.
+Oil enters at the grooves of `Feed`, which stand still relative to the load. Without grooves it enters along
+the joints of a lobed bore, or in a plain bore along a line opposite the displacement of the journal's centre.
 
-A balance may lie on either side: supply pressure can lift the journal above the bearing's middle. So the
-search begins where the plain film would have the journal, then near the middle, then on the other sides. A
-balance without resistance to slow displacement, det K ≤ 0, is none.
+The equilibrium may lie on any side: supply pressure can lift the journal above the bearing's centre. So the
+search begins at the position of the plain film, then near the centre, then on the other sides. An equilibrium
+that does not resist slow displacement, det K ≤ 0, is rejected.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -273,7 +274,7 @@ def _searched(
             return film, e
         film, e = _nearer(loaded, film, e, share * step, nodes, pockets)
         if float(film.H.nodes.min()) < LEAST_GAP:
-            raise NoBalance("the film that would support it is thinner than a millionth of the clearance")
+            raise NoBalance("the film that would carry the load is thinner than a millionth of the clearance")
     raise NoBalance("the search for the journal's position does not converge")
 
 

@@ -1,8 +1,8 @@
-r"""Single-zone combustion with Wiebe's burnt share: pressure over a four-stroke cycle, adiabatic walls.
+r"""Single-zone combustion with Wiebe's burnt fraction: pressure over a four-stroke cycle, adiabatic walls.
 
-With one ratio of specific heats the first law integrates: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ from where
-the inlet closes, so the pressure is a quadrature and no differential equation. Angles count from suction;
-the cylinder fires at 360°.
+With one ratio of specific heats the first law integrates: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ from the
+closing of the inlet, so the pressure needs only a quadrature, not a differential equation. Angles are
+measured from the start of suction; the cylinder fires at 360°.
 
 References
 ----------

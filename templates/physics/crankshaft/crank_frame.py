@@ -1,8 +1,9 @@
-r"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs and pins, six unknowns a node.
+r"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs and pins, six unknowns per node.
 
 Measured against finite elements of a whole shaft of four throws (journal 55, pin 48, throw 42, web 18 × 80
-mm) on rigid mains, the reactions to a unit load on a pin err by up to 0.014 of it radially; across, by 0.37
-with St Venant's torsion of the webs and by 0.045 with eight times that, for that throw.
+mm) on rigid mains, the reactions to a unit load on a pin differ by up to 0.014 of the load in the radial
+direction. In the tangential direction they differ by 0.37 with St Venant's torsion of the webs, and by 0.045
+with eight times that torsional stiffness, for that throw.
 
 References
 ----------

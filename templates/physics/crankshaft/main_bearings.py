@@ -1,8 +1,8 @@
-r"""Loads of every main bearing from all loads on the crankshaft, and what balances them.
+r"""Loads of every main bearing from all loads on the crankshaft, and their balance.
 
-Each load is a complex force, x + i y, at a place along the shaft. *Determinate*: every load goes by the
-lever to the two mains of its span, an overhung one to those of the end span. On elastic supports see
-`crank_supports`.
+Each load is a complex force, x + i y, at a position along the shaft. *Determinate*: the lever rule
+distributes every load to the two mains of its span, an overhung load to those of the end span. For elastic
+supports see `crank_supports`.
 """
 
 from __future__ import annotations

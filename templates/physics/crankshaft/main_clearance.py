@@ -1,13 +1,14 @@
-r"""Main bearings with play: an elastic crankshaft on elastic supports that it touches beyond a clearance.
+r"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance.
 
-A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the middle of its bore
-where that exceeds the clearance c, else not at all. The bore's middle may lie off the line of the others.
+A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore
+where that exceeds the clearance c, otherwise not at all. The bore's centre may be offset from the line of the
+others.
 
-By the force method of `crank_supports`: reactions R = R₀ + B x, with sets B that balance themselves. The
-shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap,
-Bᵀ(d + R/k + c R/|R| − o) = 0. That is where a convex energy is least, and damped Newton steps find it, at all
-crank angles at once. |R| is √(R² + ε²), with ε lowered to 1e-7 of the loads: a main that touches nothing
-bears as little as that.
+By the force method of `crank_supports`, the reactions are R = R₀ + B x, with self-balanced sets B. The
+shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap, Bᵀ(d + R/k +
+c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all crank angles
+at once. |R| is √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without contact carries only that
+much.
 """
 
 from __future__ import annotations

@@ -1,13 +1,15 @@
-r"""The film of a journal bearing in a bore of modes, by the balance of `soft_balance`.
+r"""The film of a journal bearing whose bore deforms in modes, by the equilibrium of `soft_balance`.
 
 .. math:: H = 1 - \varepsilon\cos\phi + l\,P + \sum_{i,j} m_i\,C_{ij}\,a_j + \sum_{n>9} g_n\,(\ldots),\quad
     a_j = \overline{m_j P}
 
-m are the modes of `bore_modes`, a_j the mean of pressure times mode over the bore, g_n those of a half plane.
+m are the modes of `bore_modes`, a_j the mean of pressure times mode over the bore, g_n the compliances of a
+half plane.
 
-A ring is alike all around, a housing is not: its modes count from the block, the film from the displacement
-of the journal. The angle between the two, the turn, is that from block to load plus the attitude angle, which
-the film decides. So the balance is solved at a turn, and secants seek the one that its attitude confirms.
+A ring is equal in all directions, a housing is not: its modes are measured from the block, the film from the
+displacement of the journal. The angle between the two, the turn, is the angle from block to load plus the
+attitude angle, which the film determines. So the equilibrium is solved at a trial turn, and a secant method
+finds the turn that agrees with its attitude.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     elastic    the liner as columns, and behind it the bore as a matrix of modes with a half plane above them
 
 As at the other soft levels, the change from stiff to soft is solved on 64 × 8 and 128 × 16 intervals,
-extrapolated, and applied to the film of the map. A bore that does not give way has that film exactly.
+extrapolated, and applied to the film of the map. A rigid bore has that film exactly.
 """
 
 from __future__ import annotations

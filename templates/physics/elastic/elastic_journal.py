@@ -1,12 +1,13 @@
-r"""One journal bearing under static load whose liner, housing and oil give way, at every level.
+r"""A journal bearing under static load with elastic liner and housing, at every level.
 
     rigid    the converged Swift–Stieber film of `film_map`
     liner    the same with the liner as columns
     housing  the same with the liner, and with the housing as a ring that feels the mean pressure across
 
-What elasticity changes is solved by finite volumes twice on one mesh, stiff and soft, and the change is
-applied to the film of the map: so a stiff bearing has that film exactly, and the mesh errs in the change
-alone. 64 × 8 and 128 × 16 intervals are extrapolated. Everything is dimensionless as in `static_journal`.
+The effect of elasticity is the difference of two finite-volume solutions on the same mesh, stiff and soft,
+and is applied to the film of the map. So a stiff bearing has that film exactly, and the mesh error affects
+only the difference. Results of 64 × 8 and 128 × 16 intervals are extrapolated. Everything is dimensionless as
+in `static_journal`.
 """
 
 from dataclasses import dataclass, fields

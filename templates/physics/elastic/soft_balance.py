@@ -1,11 +1,12 @@
-r"""The film under a load with elastic bearing and pressure-dependent oil, by one Newton method for all.
+r"""The film under a load with an elastic bearing and pressure-dependent oil, by a single Newton method.
 
-Unknown are the pressure at the nodes, which of them are in the film (P ≥ 0, loss ≥ 0, P · loss = 0), and the
-eccentricity. The ring couples every node with every other, but by few harmonics, so its part of the matrix
-is of low rank: one sparse factorisation a step with as many right sides (Woodbury's formula).
+The unknowns are the pressures at the nodes, the nodes that belong to the film (P ≥ 0, loss ≥ 0, P · loss =
+0), and the eccentricity. The ring couples all nodes with each other, but through few harmonics, so its part
+of the matrix has low rank: each step takes one sparse factorisation with as many right-hand sides (Woodbury's
+formula).
 
-The search begins at the rigid film and lets the bearing give way by shares, each begun where the last one
-ended; a share that does not settle is halved. The mesh is graded to the least gap found.
+The search begins at the rigid film and increases the compliance in steps, each starting from the previous
+solution; a step that does not converge is halved. The mesh is graded to the least gap found.
 """
 
 from dataclasses import dataclass, replace

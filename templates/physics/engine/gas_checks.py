@@ -1,4 +1,4 @@
-"""Check the data of a gas cycle for completeness and order, for rules of templates."""
+"""Check the data of a gas cycle for completeness and order, for use in rules of templates."""
 
 from __future__ import annotations
 
@@ -45,15 +45,15 @@ def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
     """Return whether combustion ends before the exhaust opens; other rules report missing inputs."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
-    return ~(cycle.v_cut >= cycle.v_opened)
+    return cycle.in_every_cylinder(~(cycle.v_cut >= cycle.v_opened))
 
 
 @units(None, returns="1")
 def pressure_rises(gas: GasCycle) -> Truth:
-    """Return whether combustion does not begin below the pressure of the compression's end."""
+    """Return whether combustion begins at or above the pressure of the compression's end."""
     if not isinstance(gas, Polytropic):
         return True
-    return gas.charge.combustion >= gas.p_compressed * (1 - 1e-12)
+    return gas.in_every_cylinder(gas.charge.combustion >= gas.p_compressed * (1 - 1e-12))
 
 
 @units(None, "rad", "Pa", returns="1")

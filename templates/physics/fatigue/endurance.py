@@ -1,7 +1,7 @@
 r"""Endurance limit and finite-life strength of a steel part: Marin's factors, notch sensitivity.
 
-The factors are those of the 10th edition of Shigley; the 11th has others. None is taken above 1 (the book's
-size factor reaches 1.11 below 7.6 mm).
+The factors are those of the 10th edition of Shigley; the 11th has different ones. All are limited to 1 (the
+book's size factor reaches 1.11 below 7.6 mm).
 
 References
 ----------

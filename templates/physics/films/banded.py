@@ -1,4 +1,4 @@
-"""The matrix of the film equations in banded form, and its solution where the film bears pressure."""
+"""The matrix of the film equations in banded form, and its solution on the nodes of the film."""
 
 from dataclasses import dataclass
 from functools import cache

@@ -2,9 +2,9 @@ r"""Film rupture after Swift and Stieber as a complementarity problem, solved by
 
 .. math:: P \ge 0, \quad A P - b \ge 0, \quad P\,(A P - b) = 0
 
-At each step the nodes of the film solve A P = b by banded Cholesky and the others hold P = 0; then
-nodes with P < 0 leave the film and nodes that gain oil join it. A is an M-matrix, so the pressure
-rises from step to step and the set is final after finitely many. A coarser mesh gives the start.
+At each step the nodes of the film solve A P = b by banded Cholesky factorisation, and the others have P = 0;
+then nodes with P < 0 leave the film and nodes that gain oil join it. A is an M-matrix, so the pressure rises
+from step to step, and the set is final after finitely many steps. A coarser mesh gives the initial set.
 
 References
 ----------

@@ -1,15 +1,16 @@
-r"""One viscosity for a film over a cycle, from what the film heats and what its oil carries off.
+r"""One viscosity for a film over a cycle, from the heat of the film and the heat that its oil removes.
 
 .. math::
     k\,P = \rho c\,(Q + Q_p)(T_{ex} - T_{en}),\quad T = (T_{en} + T_{ex})/2,\quad
     \eta = \eta_\mathrm{Cross}\left(\eta_0(T),\ \dot\gamma\right)
 
-as ISO 7902-1 has it for a steady load, with loss P and side flow Q as means over the cycle. Q_p is what the
-supply pressure drives from a groove over the two lands, with the gap along the orbit; the film's own
-pressure does not hinder it, as in the standard. The shear rate is |U|/h, a mean over circle and cycle.
+This is the balance of ISO 7902-1 for a steady load, with power loss P and side flow Q as means over the
+cycle. Q_p is the flow that the supply pressure drives from a groove over the two lands, with the gap along
+the orbit; as in the standard, the film's own pressure does not reduce it. The shear rate is |U|/h, a mean
+over circle and cycle.
 
-P rises with the viscosity, and so the viscosity that belongs to its heat falls: there is one root in ln(eta).
-The viscosity of the supply is lowered by factors of four until it is too low: that step holds the root.
+P rises with the viscosity, and the film's temperature with P, so there is one root in ln(eta). The viscosity
+at the supply temperature is divided by four repeatedly until it is too low: the last step brackets the root.
 
 References
 ----------

@@ -1,8 +1,9 @@
-"""The heat balance over a cycle with the film of level supplied, which conserves its oil.
+"""The heat balance over a cycle with the mass-conserving film of level `supplied`.
 
-Its side flow is all the oil that leaves by the ends: what the journal displaces and what the supply drives,
-hindered by the film's own pressure, from the ends of grooves and from holes too. A march takes a second or
-more, so the balance begins at that of a cheap level and goes on by secants; three or four marches are enough.
+Its side flow is all the oil that leaves at the ends, displaced by the journal or driven by the supply against
+the film's own pressure, including the oil from groove ends and holes. A march takes a second or more, so the
+balance starts from the result of a cheap level and continues by the secant method; three or four marches are
+enough.
 """
 
 from __future__ import annotations

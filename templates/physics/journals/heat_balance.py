@@ -3,10 +3,10 @@ r"""Temperature of a journal bearing's film by the global heat balance of ISO 79
 .. math:: P(T) = \rho c\,Q(T)\,(T_{out} - T_{supply}) + kA\,(T - T_{ambient}), \quad
     T = (T_{supply}+T_{out})/2
 
-Power loss P and side flow Q are those of the film map (`film_map`) at the viscosity of T, at every level of
-fidelity: so the temperature, and with it the viscosity, is the same for all of them. Whichever of the two
-terms is not given is left out. P falls and what is carried off rises with T: there is one root, and it lies
-between the colder surrounding and 500 °C, or there is none.
+Every level of fidelity uses the power loss P and the side flow Q of the film map (`film_map`) at the
+viscosity of T, so the temperature and the viscosity are the same for all levels. A term that is not given is
+left out. P falls with T and the removed heat rises, so there is at most one root; it lies between the colder
+of the two surroundings and 500 °C.
 
 References
 ----------

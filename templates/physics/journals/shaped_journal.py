@@ -1,9 +1,9 @@
-"""One journal bearing under static load, of any bore, aligned or tilted, at every fidelity that knows it.
+"""One journal bearing under static load with any bore, aligned or tilted, at every level that supports it.
 
-A plain, aligned bearing has the levels of `static_journal`. A bore with lobes or bell mouth, a tilted
-journal, and a plain bearing with grooves or supply pressure are solved by `shaped_balance`: level reynolds
-with rupture after Swift and Stieber, mass_conserving with cavities that conserve mass. Everything is
-dimensionless as there, over the smallest clearance; angles count from the load.
+A plain, aligned bearing has the levels of `static_journal`. `shaped_balance` solves a bore with lobes or bell
+mouth, a tilted journal, and a plain bearing with grooves or supply pressure: at level `reynolds` with rupture
+after Swift and Stieber, at level `mass_conserving` with cavities that conserve mass. Everything is
+dimensionless as there, based on the smallest clearance; angles are measured from the load.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a journal bearing has to do over a cycle and what its film does, in the frame of the load.
+"""The duty of a journal bearing over a cycle and the results of its film, in the frame of the load.
 
 A positive speed turns x to y. Pressure, loss and flow are dimensionless: P = p psi²/(eta Omega), psi the
 diametral clearance over the diameter, Omega the speed of the crank.

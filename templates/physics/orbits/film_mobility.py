@@ -1,9 +1,10 @@
-"""The motion that a load gives a journal, by the full solution: pressure, film and velocity solved together.
+"""The journal velocity under a load, by the full solution: pressure, film and velocity solved together.
 
-The same film as in `moving_film`, whose boundary condition holds; there the motion is given and the load
-follows, here the load is given. On a supposed film pressure is linear in the velocity, so the load gives
-the velocity, and the pressure then determines the film. Valid as `moving_film`; the mesh is graded to the gap
-that lies in the direction of the load, so that separating motion is resolved as well as closing motion.
+The film and its boundary condition are those of `moving_film`; there the motion is given and the load
+follows, here the load is given. On an assumed film extent the pressure is linear in the velocity, so the load
+gives the velocity, and the pressure then determines the extent. The range of validity is that of
+`moving_film`. The mesh is graded to the gap in the direction of the load, so that separating motion is
+resolved as well as closing motion.
 """
 
 from dataclasses import dataclass, replace

@@ -1,13 +1,14 @@
-r"""Mobility of a bearing with a circumferential groove in its sleeve: where the load passes, two lands bear.
+r"""Mobility of a bearing with a circumferential groove in its sleeve, over which two lands carry the load.
 
 .. math:: \vec M = (1-s)\,\vec M(b) + s\,\frac{\vec M\left(b(1-g)/2\right)}{1-g}
 
 b is the width ratio, g the groove's width over the bearing's, and s the share of the 90° around the load's
 direction that the groove covers. M is the finite bearing's mobility (`mobility_map`). With s = 1 this is
-exact: two bearings of half the land side by side, of which each bears half the load. Between, it is a blend.
+exact: two bearings side by side, each with half of the land width, carry half the load each. For s between 0
+and 1 the formula is a blend.
 
-The film is always full of oil, so nothing starves. Compared with level supplied by
-`benchmarks/film_cycle_ensemble.py`.
+The film is always full of oil, so starvation cannot occur. `benchmarks/film_cycle_ensemble.py` compares it
+with level `supplied`.
 """
 
 from dataclasses import dataclass, replace

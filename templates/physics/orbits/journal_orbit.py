@@ -1,13 +1,14 @@
-r"""The orbit of a journal under a load that repeats, by the mobility method; many cases at once.
+r"""The orbit of a journal under a periodic load, by the mobility method; many cases at once.
 
 .. math:: d\vec\epsilon/d\theta = S\,\vec M(\vec\epsilon, \vec S) + w\,\hat z\times\vec\epsilon,
     \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
 
-theta is the crank angle, which turns with Omega; the load on the journal is linear between its points. The
-film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
-is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
-of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
-the smallest gap would err by more than 0.2 per cent; the difference from twice the step gives the error.
+theta is the crank angle, which increases with Omega; the load on the journal is linear between its points.
+The film is massless and always full where it carries, so its history does not matter. All nodes of the cycle
+are solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
+of Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and
+a quarter of that where the smallest gap would err by more than 0.2 per cent; the difference from twice the
+step gives the error.
 
 References
 ----------

@@ -1,8 +1,8 @@
-"""Bound of the error of an orbit's smallest gap by the step: from three rings of nodes, each twice as fine.
+"""Error bound of an orbit's smallest gap from the step size: from three rings of nodes, each twice as fine.
 
 The nodes rarely meet the smallest gap: it lies between them, at the vertex of a parabola through the lowest
 three. The error of that gap falls with the square of the step, once the step is small enough. With the
-changes d1 from ring 4h to 2h and d2 from 2h to h, and r = d1/d2, the error is taken for
+changes d1 from ring 4h to 2h and d2 from 2h to h, and r = d1/d2, the error is estimated as
 
     d2/3, a quarter added        where 3 <= r <= 5.5: the order is seen
     d1/4, or d2 if that is more  where r > 5.5: d2 is small by chance
@@ -10,9 +10,9 @@ changes d1 from ring 4h to 2h and d2 from 2h to h, and r = d1/d2, the error is t
     3 max(d1, d2)                where r <= 1.5: it does not fall
     max(d1, d2)                  where the changes have opposite signs and r > 1.5
 
-three times which is the bound. There is none where the coarse ring has no orbit, or where the changes grow by
-more than rounding: nothing can be read from these. It is an estimate with a margin, not a proof;
-`python -m benchmarks.step_bound` compares it with steps sixteen times as fine on random duties.
+The bound is three times this estimate. There is no bound where the coarse ring has no orbit, or where the
+changes grow by more than rounding. The bound is an estimate with a margin, not a proof; `python -m
+benchmarks.step_bound` compares it with steps sixteen times as fine on random duties.
 """
 
 from collections.abc import Sequence

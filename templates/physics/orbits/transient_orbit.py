@@ -1,8 +1,8 @@
-"""The orbit of a journal with mass-conserving cavities, run in until it repeats: the reference level.
+"""The orbit of a journal with mass-conserving cavities, marched until it repeats: the reference level.
 
 The march starts from the mobility orbit and a full film, and repeats the cycle with `transient_film` at most
-`MOST_CYCLES` times. `benchmarks/film_cycle.py` measures error and cost on big ends, against a mesh twice as
-fine and half the step.
+`MOST_CYCLES` times. `benchmarks/film_cycle.py` measures error and cost on big-end bearings, compared with a
+mesh twice as fine and half the step.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,8 @@
 """Angles of sleeve and journal in the frame of the load, from their speeds over the cycle.
 
-The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. What the cycle brings back to
-its place turns whole times in the frame; a groove in anything else is elsewhere in every cycle.
+The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. A part returns to its
+position after each cycle only if it makes whole turns in the frame; a groove in any other part is elsewhere
+in every cycle.
 """
 
 from dataclasses import dataclass

@@ -1,9 +1,9 @@
-r"""Meshes for the films of plane pads, many at once, graded to the thin film and to all edges.
+r"""Meshes for the films of plane pads, many at once, refined towards the thin film and all edges.
 
-x = 0 (inlet) … 1 (outlet) along the pad, H = a − (a − 1) x; zeta = 2z/b = 0 (middle) … 1 (side).
-The nodes are equally spaced in t, 0 … 1, which maps smoothly to x, so that differences and Richardson's
-extrapolation keep their order. From t to s, tanh crowds the nodes in the two end layers, as thick as the pad
-is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share.
+x = 0 (inlet) … 1 (outlet) along the pad, H = a − (a − 1) x; zeta = 2z/b = 0 (middle) … 1 (side). The nodes
+are equally spaced in t, 0 … 1, which maps smoothly to x, so that differences and Richardson's extrapolation
+keep their order. From t to s, tanh concentrates the nodes in the two end layers, which are as thick as the
+pad is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share of nodes.
 
 References
 ----------

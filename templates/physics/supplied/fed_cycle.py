@@ -1,18 +1,19 @@
 """The film of a journal bearing over a cycle, fed as in an engine, at every level.
 
-Orbit, pressure, loss and flow:
+The levels compute orbit, pressure, power loss and flow:
 
-    mobility_short    Booker's closed form (1971) of the short bearing's half film; knows no supply
-    mobility          the finite bearing's mobility from its map; knows no supply
+    mobility_short    Booker's closed form (1971) of the short bearing's half film; ignores the supply
+    mobility          the finite bearing's mobility from its map; ignores the supply
     mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
                       nowhere else; knows no groove, hole or supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; case after case
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
-clearance over the diameter, Omega the speed of the crank. The load is what the journal pushes with, in a
-frame whose axes sleeve and journal share at crank angle 0; a positive speed turns x to y. A massless journal
-(supplied: nearly so) in a rigid, aligned bearing; isothermal, laminar.
+clearance over the diameter, Omega the speed of the crank. The load is the force that the journal exerts, in a
+frame whose axes coincide with those of sleeve and journal at crank angle 0; a positive speed turns x to y.
+The journal is massless (nearly so at level `supplied`), the bearing rigid and aligned, the film isothermal
+and laminar.
 """
 
 from collections.abc import Callable, Iterator, Sequence

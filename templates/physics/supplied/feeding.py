@@ -1,7 +1,8 @@
-"""Oil supply of a bearing as on a drawing: a groove and a hole in the sleeve, a hole in the pin.
+"""Oil supply of a bearing as drawn: a groove and a hole in the sleeve, a hole in the pin.
 
-Angles count in the sense x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: a hole in
-the pin counts from the throw, groove and hole of a rod's bore from the rod's axis.
+Angles are positive from x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: the angle of
+a hole in the pin is measured from the throw, the angles of groove and hole in a rod's bore from the rod's
+axis.
 """
 
 from collections.abc import Iterator

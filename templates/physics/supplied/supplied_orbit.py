@@ -1,9 +1,9 @@
-"""The orbit of a journal in a film that conserves its oil and is fed by holes and grooves: level `supplied`.
+"""The orbit of a journal in a mass-conserving film fed by holes and grooves: level `supplied`.
 
-The film is marched over cycle after cycle (`supplied_march`) in a mesh that turns with the mean speed of
-journal and sleeve. There the shear flow vanishes, and oil in a cavity stays in its cell: its history is not
-smeared. A coarse mesh is run in until the orbit repeats, or it is clear that the film starves; then a mesh
-whose cells follow the least gap. Measured by `python -m benchmarks.supplied_orbits`.
+The film is marched over several cycles (`supplied_march`) in a mesh that turns with the mean speed of journal
+and sleeve. In this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so its history is not
+smeared. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves; then on a mesh
+whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures it.
 """
 
 from dataclasses import astuple, dataclass, replace
@@ -294,7 +294,7 @@ def _require_return(duty: Duty) -> None:
     missed = return_error(duty)
     if not returns(missed):
         raise ValueError(
-            f"a pocket is {np.degrees(missed):.3g}° off its place in the frame after the cycle: "
+            f"a pocket is {np.degrees(missed):.3g}° away from its initial position after the cycle: "
             "sleeve and journal speed must turn it by whole turns relative to the frame"
         )
 

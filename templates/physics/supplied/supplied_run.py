@@ -1,13 +1,13 @@
-"""Cycles of a supplied film on one mesh, until they repeat or the film is seen to lose its oil.
+"""Cycles of a supplied film on one mesh, until they repeat or the film is found to lose its oil.
 
-A fed bearing forgets its start fast: most repeat after 3 to 6 cycles. Two kinds do not. Where all the oil
-must enter under the load, little does: the film thins like 1/sqrt(n) with the cycle n, or faster (`thins`).
-And where the journal crosses a space without oil and meets the film on the other side, the place of the
-impact may change from cycle to cycle by more than a step, although the least gap does not; so the mean of the
-change over the cycle is taken.
+A fed bearing soon forgets its initial state: most orbits repeat after 3 to 6 cycles. Two kinds do not. If all
+the oil must enter under the load, little enters: the film thins like 1/sqrt(n) with the cycle n, or faster
+(`thins`). And if the journal crosses a space without oil and meets the film on the other side, the position
+of the impact may change from cycle to cycle by more than a step, although the least gap does not change; so
+the test uses the mean change over the cycle.
 
-Where the mesh, and with it the oil, has made half a turn after a cycle, as with cycles of 360°, the film that
-the load meets is that of the last but one cycle: then two changes in a row must be small.
+If the mesh, and with it the oil, makes half a turn per cycle, as with cycles of 360°, the load meets the film
+of the last cycle but one: then two successive changes must be small.
 """
 
 from __future__ import annotations

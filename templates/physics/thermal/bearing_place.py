@@ -1,8 +1,9 @@
-"""Position of a journal in a film of given, varying viscosity, by Newton's method with few films.
+"""Position of a journal in a film of given, varying viscosity, by Newton's method with few film solutions.
 
-Unknown is y, a vector along and ahead of the load as long as atanh(eps), so that near the wall a step of 1
-is one of the load's size. What is brought to zero is the logarithm of the force over the load and its angle
-from the load, which depend on y almost linearly. Slopes by differences once, then by Broyden's rule.
+The unknown is y, a vector along and ahead of the load with length atanh(eps), so that near the wall a step of
+1 changes the force by the order of the load. The residuals are the logarithm of force over load and the angle
+of the force from the load, which depend on y almost linearly. The first slopes come from differences, later
+ones from Broyden's update.
 """
 
 import numpy as np

@@ -1,16 +1,16 @@
-r"""The energy equation of a film, around × across, for the mean over the width.
+r"""The energy equation of a film, around and across, averaged over the width.
 
 .. math::
     \rho c\,(u\,\partial_x T + v\,\partial_y T) = \partial_y(k\,\partial_y T)
     + \eta\left[(\partial_y u)^2 + (\partial_y w)^2\right]
 
-Temperature does not vary across the width, where measured ones differ by little (Dowson, Hudson, Hunter,
-March 1966). Every term is its mean there, so that dissipation is the power that journal and supply put in,
-and what carries it off adds up to it. In a cavity the oil stands in streamers of the film's height:
-everything there counts by their share. Conduction around is left out.
+The temperature is constant along the width, where measured temperatures differ little (Dowson, Hudson,
+Hunter, March 1966). Every term is averaged over the width, so the dissipation equals the power input of
+journal and supply, and the removed heat adds up to it. In a cavity the oil flows in streamers of the film's
+height: every term is multiplied by their share. Circumferential conduction is neglected.
 
 Finite volumes on the strips of `across`: upwind around, exponential across (Scharfetter, Gummel; Patankar).
-All of it is linear in T: one sparse solution, with the temperature of the groove and of the journal.
+The equations are linear in T: one sparse system also gives the temperatures of the groove and of the journal.
 
 In units of T: :math:`\delta = \eta_s\omega/(\rho c\,\psi^2)` for dissipation, :math:`\kappa = k/(\rho c\,
 \omega c_r^2)` for conduction across.

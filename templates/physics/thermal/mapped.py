@@ -1,6 +1,6 @@
-"""The level of one temperature: the heat balance of ISO 7902-1 with the film map, for many points at once.
+"""The one-temperature level: the heat balance of ISO 7902-1 with the film map, for many points at once.
 
-Without groove and supply pressure; air behind the bush counts. It is what `oil_film` does.
+It ignores groove and supply pressure, but includes cooling by air behind the bush, as `oil_film` does.
 """
 
 import numpy as np

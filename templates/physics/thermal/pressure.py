@@ -1,12 +1,12 @@
-r"""Dowson's generalised Reynolds equation with cavities that conserve the oil, on the arc of a film.
+r"""Dowson's generalised Reynolds equation with mass-conserving cavities, on the arc of a film.
 
 .. math::
     \nabla\cdot(12 F_2 H^3\nabla P) = 12\,\partial_\phi\left[(1-\lambda)(1 - F_1/F_0) H\right],\quad
     P \ge 0,\ \lambda \ge 0,\ P\lambda = 0
 
-P = p psi²/(eta_s omega) with the viscosity eta_s of the supply. The groove is full; over the lands at its
-ends its pressure falls evenly. The ends are at ambient pressure, which is that of the cavities. The method is
-`cavitation`'s.
+P = p psi²/(eta_s omega) with the viscosity eta_s of the supply. The groove is full; its pressure falls
+linearly over the lands at its ends. The ends are at ambient pressure, as are the cavities. The method is that
+of `cavitation`.
 
 References
 ----------

@@ -1,8 +1,9 @@
-"""A film and its temperatures in balance with the load: one temperature for all of it, or one at each place.
+"""Equilibrium of a film, its temperatures and the load: with one temperature, or with a temperature field.
 
-The temperatures are a fixed point: they set the viscosity, the viscosity sets the film that bears the load,
-and that film sets the temperatures. Anderson's acceleration takes some ten films. Beside it, on the same mesh
-and with the same feed, stands the film of one effective temperature as ISO 7902-1 has it.
+The temperatures are a fixed point: they determine the viscosity, the viscosity determines the film that
+carries the load, and that film determines the temperatures. Anderson acceleration needs some ten films. For
+comparison, the film with one effective temperature, as in ISO 7902-1, is solved on the same mesh and with the
+same feed.
 """
 
 from collections.abc import Callable

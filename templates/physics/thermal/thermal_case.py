@@ -1,4 +1,4 @@
-"""A journal bearing with its groove, its oil and what surrounds it, in SI."""
+"""A journal bearing with its groove, its oil and its thermal surroundings, in SI."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
