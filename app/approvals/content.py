@@ -11,6 +11,7 @@ from app.approvals.errors import NotReady
 from app.approvals.schemas import Approval, Files, Present, SignedContent
 from app.designs.result_records import results_of
 from app.schemas.approval_steps import ORDER
+from app.schemas.criteria import Criterion
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
 
@@ -31,6 +32,12 @@ def present(session: Session, row: RevisionRow) -> Present:
         results=results_of(session, row).digest,
         files={name: files.get(key, {}) for name, key in builds.items()},
     )
+
+
+def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
+    """Return the criteria of a revision as judged; over variants, each at its worst one."""
+    judged = results_of(session, row).judged.get("criteria")
+    return judged if isinstance(judged, list) else []
 
 
 def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:

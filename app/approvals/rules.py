@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from app.approvals.errors import OutOfOrder, SamePrincipal
+from app.approvals.errors import OutOfOrder, SamePrincipal, Unacknowledged
 from app.designs.releases import last_of
 from app.identity.errors import RoleNeeded
 from app.identity.principal import Principal, Role
 from app.schemas.approval_steps import ORDER, ApprovalState, Step
+from app.schemas.criteria import Criterion
 from app.storage.tables import ApprovalRow, RevisionRow
 
 ROLES: dict[Step, Role] = {
@@ -17,6 +18,45 @@ ROLES: dict[Step, Role] = {
     "released": "checker",
     "withdrawn": "checker",
 }
+
+ACKNOWLEDGING: tuple[Step, ...] = ("checked", "released")
+"""The steps that say that a design is right."""
+MOST_NAMED = 3  # criteria in a refusal
+
+
+def unconfirmed(criteria: Iterable[Criterion]) -> list[str]:
+    """Return the criteria that are not met with a known error and not waived, each in a sentence."""
+    return [
+        f"{one.name}: {one.stated()}"
+        for one in criteria
+        if one.waived is None and not (one.verdict == "met" and one.error_known)
+    ]
+
+
+def require_acknowledgement(
+    step: Step, acknowledged: str | None, sentences: Sequence[str], number: int
+) -> None:
+    """Check that a signer says why criteria that are not confirmed may stand, and only then.
+
+    Raises
+    ------
+    Unacknowledged
+        If the statement is missing or has nothing to be about.
+    """
+    is_due = step in ACKNOWLEDGING and bool(sentences)
+    if is_due and acknowledged is None:
+        more = f"; and {len(sentences) - MOST_NAMED} more" if len(sentences) > MOST_NAMED else ""
+        raise Unacknowledged(
+            f"criteria of revision {number} are not confirmed: {'; '.join(sentences[:MOST_NAMED])}{more}. "
+            "Say in `acknowledged` why it may be signed all the same"
+        )
+    if acknowledged is not None and not is_due:
+        why = (
+            f"every criterion of revision {number} is confirmed"
+            if step in ACKNOWLEDGING
+            else f"{step} needs none"
+        )
+        raise Unacknowledged(f"leave out `acknowledged`: {why}")
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.judgement import Judgement, Place, sentence
 from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
-from templates.core.language.evaluate import Evaluation
+from templates.core.language.evaluate import Evaluation, assumed
 from templates.core.language.ledger import Notice
 from templates.core.language.template import Template
 
@@ -45,7 +45,7 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 def criterion(judgement: Judgement) -> JsonObject:
     """Return one criterion as JSON, without members that do not apply."""
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    shown: JsonObject = {**names, "verdict": judgement.verdict}
+    shown: JsonObject = {**names, "verdict": judgement.verdict, "sentence": sentence(judgement)}
     _show_numbers(judgement, shown)
     if judgement.give:
         shown["give"] = list(judgement.give)
@@ -204,9 +204,15 @@ def evaluation(result: Evaluation) -> JsonObject:
         "level": _plain(result.level),
         "error": errors(result.error),
         "warnings": warnings(result.warnings),
+        "assumed": assumptions(result, result.criteria),
         **rendered(result.criteria),
         "seconds": result.seconds,
     }
+
+
+def assumptions(result: Evaluation, criteria: Iterable[Judgement]) -> list[dict[str, str]]:
+    """Return what an evaluation and its criteria take for granted."""
+    return [vars(one) for one in assumed(result.template, result.outputs, criteria)]
 
 
 def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:

@@ -19,14 +19,21 @@ from templates.core.errors import plain
 @click.option("--revision", type=click.IntRange(1), required=True)
 @click.option("--step", type=click.Choice(ORDER), required=True)
 @click.option("--reason", default=None, help="of a withdrawal, which needs one")
+@click.option("--acknowledge", default=None, help="why criteria that are not confirmed may stand")
 @url_option
 @data_option
 def approve_command(
-    design: str, revision: int, step: Step, reason: str | None, url: str | None, data: Path | None
+    design: str,
+    revision: int,
+    step: Step,
+    reason: str | None,
+    acknowledge: str | None,
+    url: str | None,
+    data: Path | None,
 ) -> None:
     """Take a step of the approval of a revision of DESIGN: calculated, checked, released or withdrawn."""
     with connected(url, data) as client:
-        signed = client.approve(client.approvals(design, revision), step, reason)
+        signed = client.approve(client.approvals(design, revision), step, reason, acknowledged=acknowledge)
     last = signed.steps[-1]
     click.echo(
         plain(f"revision {revision}: {last.step} by {last.name} at {last.at}, digest {last.digest}", 500)

@@ -23,6 +23,7 @@ from app.plain import Raw
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
+from templates.core.language.evaluate import assumed
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
 from templates.core.units.units import unit_symbol
@@ -75,6 +76,8 @@ def evaluate_command(
         click.echo(f"{name:32} {_result(answer)}")
     for warning in evaluation.warnings:
         click.secho(f"warning: {warning.name}: {warning.detail}", fg="yellow", err=True)
+    for one in assumed(evaluation.template, evaluation.outputs, evaluation.criteria):
+        click.secho(f"assumed: {one.detail}", err=True)
 
 
 def _result(answer: Answer) -> str:

@@ -30,11 +30,13 @@ from app.designs.network import (
     read_demands,
     unknown_names_in,
 )
+from app.designs.sizes import in_declared_sizes
 from app.plain import Json, Raw
 from app.reference import Reference
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
+from templates.core.language.intake import other_sizes
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
@@ -398,10 +400,27 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """Return the document with fixed versions.
+    """Return the document with fixed versions, and every size by the name that its step declares.
 
-    `latest` is resolved once, when a step or model is added.
+    Both are resolved once, when a step or model is added.
     """
+    pinned = _pinned(document, catalogues)
+    pairs = {f"{step}.{other}": f"{step}.{name}" for step, other, name in _other_sizes(pinned, catalogues)}
+    return in_declared_sizes(pinned, pairs) if pairs else pinned
+
+
+def _other_sizes(document: Document, catalogues: Catalogues) -> Iterator[tuple[str, str, str]]:
+    """Yield step, name and declared name of each size that a document gives by another name."""
+    overridden = {place for overrides in document.variants.values() for place in overrides}
+    for name, step in document.steps.items():
+        cls, _ = _class(catalogues.templates, name, step.template, step.version)
+        for other, declared in other_sizes(cls) if cls else ():
+            if other in step.inputs or f"{name}.{other}" in overridden:
+                yield name, other, declared
+
+
+def _pinned(document: Document, catalogues: Catalogues) -> Document:
+    """Return the document with every version pinned."""
     versions = [step.version for step in document.steps.values()]
     versions += [model.version for model in document.models.values()]
     if all(isinstance(version, int) for version in versions):

@@ -26,7 +26,6 @@ from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
 from templates.core.language.criteria import warned
-from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import record
 
 VARIANTS = "variants"
@@ -100,20 +99,20 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
     if evaluation.seconds > EXPENSIVE:
         remember(answer, evaluation)
     del answer["seconds"]  # equal revisions are equal
-    answer["warnings"] = _warnings(evaluation, block, criteria)
+    own = _own(block, criteria)
+    answer["warnings"] = json_values.warnings([*evaluation.warnings, *warned(block.cls, own)])
+    answer["assumed"] = json_values.assumptions(evaluation, own)
     return {**answer, "relations": relations, "record": vars(record(evaluation.template))}
 
 
-def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
-    """Return the warnings of a step, with those of criteria as judged in the design."""
+def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
+    """Return the criteria of a step's template, as they were judged in the design, by their own names."""
     prefix = f"{block.name}."
-    own = [
+    return [
         replace(judgement, name=judgement.name.removeprefix(prefix))
         for judgement in criteria
         if judgement.name.startswith(prefix)
     ]
-    notices = [*evaluation.warnings, *warned(block.cls, own)]
-    return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
 def models(calculation: Calculation, outcomes: Iterable[Outcome] = ()) -> list[ModelState]:

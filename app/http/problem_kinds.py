@@ -82,6 +82,12 @@ TABLE: dict[type[Exception], Kind] = {
     designs.DesignReleased: Kind(
         "design-released", 409, "A released revision keeps its design", "archive the design instead"
     ),
+    approvals.Unacknowledged: Kind(
+        "acknowledgement",
+        409,
+        "What is said of unconfirmed criteria is missing, or needless",
+        "send `acknowledged` where the approvals list `unconfirmed`",
+    ),
     approvals.NotReady: Kind(
         "not-ready-to-sign", 409, "The revision cannot be signed as it is", "see `detail`"
     ),

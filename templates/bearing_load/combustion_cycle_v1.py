@@ -12,12 +12,14 @@ from templates.physics.combustion.wiebe import (
     FIRING,
     Burning,
     Closed,
+    Peak,
     burnt_share,
     closed_cylinder,
     closed_work,
     cycle_pressure,
     energy_change,
     four_stroke_angles,
+    highest,
     peak,
     peak_angle,
     released_heat,
@@ -43,6 +45,7 @@ class CombustionCycle(Template):
     the exhaust's opening to there the pressure goes linearly in the crank angle.
     The burnt share is 1 - exp(-a y^(m+1)), y the share of the duration; what is left at its end, exp(-a),
     does not burn.
+    steps says at which angles the curves are returned; the peak does not depend on it.
     Work and energy balance are of the closed part, from inlet closing to exhaust opening.
     energy_balance_error is heat less work less change of inner energy, over the heat and suction pressure
     times swept volume: work is a quadrature of the pressure of its own, so this measures both.
@@ -114,6 +117,11 @@ class CombustionCycle(Template):
             self.n, self.V_h, self.epsilon, self.p_s, self.ic, self.eo, self.gamma, burning
         )
 
+    @shared
+    def highest(self) -> Peak:
+        """The largest pressure, and where it is."""
+        return highest(self.cylinder, self.p_s, self.p_e)
+
     @formula("1", "rod ratio")
     def n(self) -> Array:
         return 2 * self.l / self.s
@@ -138,11 +146,11 @@ class CombustionCycle(Template):
     @formula("bar", "peak pressure", symbol=r"p_\mathrm{max}", published=(None, 400),
              remedy="check the heat and the ratio")  # fmt: skip
     def p_max(self) -> Array:
-        return peak(self.p)
+        return peak(self.highest)
 
     @formula("deg", "peak pressure angle", symbol=r"\theta_\mathrm{max}")
     def theta_max(self) -> Array:
-        return peak_angle(self.p, self.theta)
+        return peak_angle(self.highest)
 
     @formula("J", "burnt heat", symbol=r"Q_{b}", latex=r"Q\left(1-e^{-a}\right)")
     def Q_b(self) -> Array:

@@ -54,6 +54,9 @@ from templates.physics.crankshaft.shaft_loads import (
 )
 
 MAINS = "mains"
+UNEQUAL = (
+    "sections of journals, pins and webs whose stiffnesses differ 1e12-fold cannot be solved: check the units"
+)
 UNLOADED = "no load, or no mains, or no crank"
 
 
@@ -181,9 +184,12 @@ class Engine(ArticulatedEngine):
     l_p: Array = given("mm", "crankpin length", optional=True, single=True, gt=0, le=1e4)
     t_s: Array = given("mm", "web thickness", optional=True, single=True, gt=0, le=1e4)
     b_s: Array = given("mm", "web width", optional=True, single=True, gt=0, le=1e4)
-    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10)
-    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
-    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
+    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10,
+                       assumed="the mains have no clearance")  # fmt: skip
+    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along x")  # fmt: skip
+    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along y")  # fmt: skip
     E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
     nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
     f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
@@ -290,15 +296,15 @@ class Engine(ArticulatedEngine):
     def i_m(self) -> Array:
         return governing(self.mains)
 
-    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
+    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}", remedy=UNEQUAL)
     def F_ex(self) -> Array:
         return along_x(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
+    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}", remedy=UNEQUAL)
     def F_ey(self) -> Array:
         return along_y(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
+    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}", remedy=UNEQUAL)
     def F_e_max(self) -> Array:
         return greatest(self.elastic_mains)
 

@@ -25,8 +25,9 @@ class CrankMechanism(Template):
     s: Array = given("mm", "stroke", gt=0, le=1e5)
     n: Array = given("1", "rod ratio", gt=1, le=1e6, remedy="rod length over crank radius, half the stroke")
     D: Array = given("mm", "bore", ge=0, le=1e5)
-    m_cp: Array = given("kg", "crankpin mass", symbol="m_{cp}", default="0 kg", ge=0)
-    m_w: Array = given("kg", "crank mass", default="0 kg", ge=0)
+    m_cp: Array = given("kg", "crankpin mass", symbol="m_{cp}", default="0 kg", ge=0,
+                        assumed="the crankpin weighs nothing")  # fmt: skip
+    m_w: Array = given("kg", "crank mass", default="0 kg", ge=0, assumed="the webs weigh nothing")
     g_w: Array = given("mm", "crank centre", default="0 mm")
     m_cb: Array = given("kg", "counterweight mass", symbol="m_{cb}", default="0 kg", ge=0)
     g_cb: Array = given("mm", "counterweight centre", symbol="g_{cb}", default="0 mm", ge=0)

@@ -17,15 +17,18 @@ from templates.core.language.template import (
 )
 from templates.physics.engine.gas_checks import (
     CYCLES,
+    GAUGE,
     GIVEN_PEAK,
     POLYTROPIC,
+    absolute_crankcase,
+    absolute_table,
     angles_rise,
     burns_before_exhaust,
     crankcase_is_filled,
+    end_of_compression,
     full_cycle,
     known_for,
-    pressure_rises,
-    pressures_are_of_one_kind,
+    lowest_of_table,
     table_closes,
     table_is_known,
     valves_in_order,
@@ -59,7 +62,7 @@ class CylinderGas(Template):
                            alternative=True, ge=-720, le=1440)  # fmt: skip
     p_t: Array = curve("bar", "pressure", along="pressure_angle", alternative=True, ge=-1.1, le=1000,
                        remedy="check its unit")  # fmt: skip
-    p_0: Array = given("bar", "crankcase pressure", default="0 bar", ge=0, le=100)
+    p_0: Array = given("bar", "crankcase pressure", default="0 bar", ge=0, le=100, assumed=GAUGE)
 
     @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
     def p_e(self) -> Array:
@@ -131,7 +134,7 @@ class CylinderGas(Template):
     @require("combustion_pressure", warning="pressure_falls", remedy="check pressures, ratio and exponent")
     def pressure_rises(self) -> Truth:
         """Combustion does not begin below the pressure at the end of compression."""
-        return pressure_rises(self.gas)
+        return (self.p_3 >= self.p_2) | (self.gas_cycle not in GIVEN_PEAK)
 
     @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
              remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
@@ -143,7 +146,8 @@ class CylinderGas(Template):
              remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
     def pressures_are_of_one_kind(self) -> Truth:
         """The pressures of the table and of the crankcase are both absolute, or both gauge."""
-        return pressures_are_of_one_kind(self.gas_cycle, self.p_t, self.p_0)
+        is_gauge = (self.p_low < self.p_absolute) | (self.p_0 > 0)
+        return is_gauge & ((self.p_low >= 0) | (self.p_0 < self.p_ambient))
 
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:
@@ -154,6 +158,26 @@ class CylinderGas(Template):
     def steps(self) -> Array:
         """Number of steps of a cycle."""
         return steps_in(self.strokes, self.step)
+
+    @shared(unit="bar")
+    def p_2(self) -> Array:
+        """Greatest pressure at the end of compression."""
+        return end_of_compression(self.gas_cycle, lambda: self.gas)
+
+    @shared(unit="bar")
+    def p_low(self) -> Array:
+        """Lowest pressure of the table."""
+        return lowest_of_table(self.gas_cycle, self.p_t)
+
+    @shared(unit="bar")
+    def p_absolute(self) -> Array:
+        """Least pressure of a table that is taken for absolute."""
+        return np.asarray(absolute_table())
+
+    @shared(unit="bar")
+    def p_ambient(self) -> Array:
+        """Least pressure of a crankcase that is taken for absolute."""
+        return np.asarray(absolute_crankcase())
 
     @shared
     def charge(self) -> Charge:

@@ -30,7 +30,7 @@ class CylinderSizes(Template):
     I_3: Array = curve("kg*m**2", "rod inertia", along=EACH, constant=True, alternative=True, ge=0, le=1e6)
     m_4: Array = curve("kg", "piston mass", along=EACH, constant=True, ge=0, le=1e5)
     U_c: Array = curve("kg*mm", "crank unbalance", along=EACH, constant=True, default="0 kg*mm", ge=-1e8,
-                       le=1e8)  # fmt: skip
+                       le=1e8, assumed="the throws have no unbalance")  # fmt: skip
     f_p: Array = curve("1", "pressure factor", along=EACH, constant=True, default="1", ge=0, le=100)
 
     @require("stroke", "crank_radius", remedy="give one of them, in mm", missing=True)

@@ -50,7 +50,7 @@ class Oil(Template):
 
     T_film: Array  # a formula of the template: the temperature of its film [K], NaN without one
 
-    grade: str = choice(*grades(), words="oil grade", default="sae_15w_40")
+    grade: str = choice(*grades(), words="oil grade", default="sae_15w_40", assumed="the oil is SAE 15W-40")
     T_1: Array = given("degC", "temperature 1", default="40 degC", ge=-100, le=500)
     T_2: Array = given("degC", "temperature 2", default="100 degC", ge=-100, le=500)
     law: str = choice("walther", "vogel", words="viscosity law", default="walther")

@@ -18,6 +18,7 @@ from templates.core.language.template import (
     shared,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import film_parameter, regime_of_contact
 from templates.physics.journals.mixed_journal import (
@@ -94,6 +95,7 @@ class MixedFriction(Oil):
     ISO 7902-1:1998, for the transition.
     """
 
+    assumptions = (RIGID, PARALLEL, ISOTHERMAL)
     levels = LEVELS
     default_level = MAP
     most_points = {"map": 5_000, "averaged": 100}
@@ -171,6 +173,12 @@ class MixedFriction(Oil):
     def clearance_within_bearing(self) -> Truth:
         """The diametral clearance is smaller than the bearing diameter."""
         return self.c < self.D
+
+    @require("journal_roughness", "bearing_roughness", "diametral_clearance",
+             remedy="check the unit of the roughness, in um")  # fmt: skip
+    def roughness_within_clearance(self) -> Truth:
+        """The radial clearance is three times the composite roughness at least; else no film is full."""
+        return self.c / 2 >= FULL_FILM * self.sigma
 
     @formula("um", "composite roughness", symbol=r"\sigma")
     def sigma(self) -> Array:

@@ -20,6 +20,7 @@ from templates.core.language.template import (
     text,
 )
 from templates.groups.fed_bearing import FedBearing
+from templates.groups.film_assumptions import FULL, ISOTHERMAL, PARALLEL, RIGID, SMOOTH
 from templates.physics.elastic.elastic_journal import deflection_in_steel
 from templates.physics.numerics.reserve import above, below
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
@@ -134,6 +135,7 @@ class OilFilmCycle(FedBearing):
     Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, ISOTHERMAL, FULL)
     levels = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied")
     default_level = "mobility"
     most_points = {

@@ -23,6 +23,7 @@ from templates.core.language.template import (
     table,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, RIGID
 from templates.groups.journal import ISO, Journal
 from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import WarmOil
@@ -149,6 +150,7 @@ class OilFilm(WarmOil, Journal):
     Lubrication, 1966, for the viscosity; SAE J300 and ISO 3448 for the grades.
     """
 
+    assumptions = (RIGID, ISOTHERMAL)
     levels = ("short_bearing", "fit", "map", "reynolds", "mass_conserving")
     default_level = "map"
     most_points = {"reynolds": 100, "mass_conserving": 20}
@@ -176,11 +178,13 @@ class OilFilm(WarmOil, Journal):
     phi_l: Array = given("deg", "lobe angle", symbol=r"\varphi_{l}", default="0 deg", ge=-360, le=720)
     s_m: Array = given("um", "bell mouth depth", default="0 um", ge=0)
     l_m: Array = given("mm", "bell mouth length", default="0 mm", ge=0)
-    tilt_x: Array = given("mrad", "tilt along load", symbol=r"\gamma_{x}", default="0 mrad")
-    tilt_y: Array = given("mrad", "tilt across load", symbol=r"\gamma_{y}", default="0 mrad")
+    tilt_x: Array = given("mrad", "tilt along load", symbol=r"\gamma_{x}", default="0 mrad",
+                          assumed="the journal does not tilt along the load")  # fmt: skip
+    tilt_y: Array = given("mrad", "tilt across load", symbol=r"\gamma_{y}", default="0 mrad",
+                          assumed="the journal does not tilt across the load")  # fmt: skip
     start_line: str = choice(*START_LINES, words="start line", default="fixed")
-    R_J: Array = given("um", "journal roughness", optional=True, ge=0)
-    R_B: Array = given("um", "bearing roughness", optional=True, ge=0)
+    R_J: Array = given("um", "journal roughness", optional=True, ge=0, assumed="the journal is smooth")
+    R_B: Array = given("um", "bearing roughness", optional=True, ge=0, assumed="the bore is smooth")
 
     @derived("1", "lobe offset", symbol=r"\alpha_{l}", ge=0, le=1)
     def alpha(self) -> Array:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Truth, formula, given, require, shared
+from templates.groups.film_assumptions import ISOTHERMAL
 from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.journals.oil import by_law, viscosity_at
@@ -53,6 +54,7 @@ class ThrustBearing(Oil):
 
     precision = 1e-8
 
+    assumptions = (ISOTHERMAL, "pads and collar are rigid and smooth", "every pad bears its share")
     example = {
         "load": "20 kN",
         "outer_diameter": "200 mm",

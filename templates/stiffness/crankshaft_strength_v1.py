@@ -65,7 +65,8 @@ class CrankshaftStrength(Template):
         return self.R_H
 
     D_o: Array = given("mm", "oil bore", symbol="D_o", optional=True, ge=4, le=500, remedy=SMALLEST)
-    manufacture: str = choice(*MANUFACTURES, words="manufacture", default="free_form_forged")
+    manufacture: str = choice(*MANUFACTURES, words="manufacture", default="free_form_forged",
+                              assumed="the shaft is free-form forged")  # fmt: skip
 
     @formula("1", "manufacture factor", symbol="K", source=M53)
     def K(self) -> Array:

@@ -50,6 +50,7 @@ READS = {  # by POST: nothing of a design or a worksheet changes
     "POST /api/v1/designs/{id}/tolerance",
     "POST /api/v1/verify",
     "POST /tables",
+    "POST /verdicts",
 }
 CHECKS = {
     f"POST {place}/worksheets/{{id}}/{step}"

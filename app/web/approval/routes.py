@@ -39,8 +39,7 @@ async def sign(id: Id, number: Number, request: Request, services: ThePageServic
     """Take a step of the approval."""
     typed = await fields(request)
     said = {"step": typed.get("step", "")}
-    if typed.get("reason", "").strip():
-        said["reason"] = typed["reason"]
+    said |= {name: typed[name] for name in ("reason", "acknowledged") if typed.get(name, "").strip()}
     seen = f'"{typed.get("seen", "")}"'
 
     async def signed() -> None:

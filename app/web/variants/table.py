@@ -277,6 +277,6 @@ def _governing(out: VariantsOut) -> str:
     if judged is None:
         return ""
     about = line(judged)
-    where = f"{about.step}: {about.title}" if about.step else about.title
+    place = f"{about.place}: " if about.place else ""
     used = f", {about.used} used" if about.used else ""
-    return f"{where} {about.compared}: {about.verdict_words}{used}".replace("  ", " ")
+    return f"{place}{about.sentence}{used}"

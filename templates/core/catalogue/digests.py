@@ -26,7 +26,7 @@ from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # versions whose digests are kept, by the text of their files: every page quotes them

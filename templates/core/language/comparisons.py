@@ -28,7 +28,7 @@ Sign = Literal["<", "<=", ">", ">="]
 Mask = NDArray[np.bool_]
 
 _SIGNS: dict[Any, Sign] = {np.less: "<", np.less_equal: "<=", np.greater: ">", np.greater_equal: ">="}
-_OPPOSITE: dict[Sign, Sign] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+OPPOSITE: dict[Sign, Sign] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 _OPERATORS: dict[Any, type[ast.operator]] = {
     np.add: ast.Add, np.subtract: ast.Sub, np.multiply: ast.Mult, np.true_divide: ast.Div, np.power: ast.Pow,
 }  # fmt: skip
@@ -115,7 +115,7 @@ class Comparison:
     @property
     def actual(self) -> Sign:
         """Return the sign that is true of the values: the opposite one where the comparison does not hold."""
-        return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else _OPPOSITE[self.sign]
+        return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else OPPOSITE[self.sign]
 
     @property
     def ordered(self) -> tuple[Operand, Operand]:
@@ -184,7 +184,7 @@ class Outcome(_RecordingValue):
     def negated(self) -> Outcome:
         """Return the opposite truth: `<` becomes `>=`, "all" becomes "any"."""
         value, one = np.logical_not(self.value), self.comparison
-        opposite = one and replace(one, sign=_OPPOSITE[one.sign], holds=value)
+        opposite = one and replace(one, sign=OPPOSITE[one.sign], holds=value)
         parts = tuple(part.negated() for part in self.parts)
         return Outcome(value, opposite, parts, not self.needs_all, self.equated)
 

@@ -95,6 +95,9 @@ class _Record:
 
 def _quantity(template: Template, name: str) -> Any:
     declared, value = template.declarations.get(name), getattr(template, name)
+    between = template.intermediates.get(name)
+    if between is not None and between.unit:
+        return registry.Quantity(value, unit(between.unit).base)
     if declared is None or isinstance(declared, (Choice, Table)) or isinstance(value, str):
         return value
     return registry.Quantity(value, declared.meaning.scale.base)

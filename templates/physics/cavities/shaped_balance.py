@@ -42,6 +42,8 @@ SETTLED = 0.01
 """Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
 SAFETY = 1.25
 """What a stated error is over the change by refinement, after Roache 1994 [-]."""
+EXTRAPOLATED = 1.5
+"""What is stated more of film, place and pressure where they are extrapolated [-]."""
 OFF_ORDER = 0.5
 """Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
 LEAST_GAP = 1e-6
@@ -135,17 +137,18 @@ class Balance:
     def place_error(self) -> float:
         """Return how far the journal may lie from where it is said to, over its displacement [-]."""
         step, previous = (float(np.hypot(*step)) for step in self._steps)
-        return SAFETY * max(step, min(previous / 4, _SUDDEN * step)) / max(self.fine.lie.eps, 1e-300)
+        moved = max(step, min(previous / 4, _SUDDEN * step))
+        return self._trust * SAFETY * moved / max(self.fine.lie.eps, 1e-300)
 
     @property
     def gap_error(self) -> float:
         """Return how far the least gap may be off, relative [-]."""
-        return self._error(lambda refined: refined.gap, 2)
+        return self._trust * self._error(lambda refined: refined.gap, 2)
 
     @property
     def pressure_error(self) -> float:
         """Return how far the largest pressure may be off, relative [-]."""
-        return self._error(lambda refined: refined.film.peak[0], 2)
+        return self._trust * self._error(lambda refined: refined.film.peak[0], 2)
 
     @property
     def flow_error(self) -> float:
@@ -157,6 +160,11 @@ class Balance:
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
+
+    @property
+    def _trust(self) -> float:
+        """Return the factor on the error of what is extrapolated by the order of the last steps [-]."""
+        return EXTRAPOLATED if self.is_asymptotic else 1.0
 
     @property
     def _steps(self) -> tuple[Array, Array]:

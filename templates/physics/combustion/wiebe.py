@@ -24,6 +24,7 @@ from templates.physics.engine.slider_crank import Motion
 
 FIRING = 2 * np.pi
 _PANELS = 240  # of the combustion, and of each part of the work
+_DEGREES, _CLOSER, _AROUND = 720, 5, 41  # angles of the first search for the peak, searches, angles of others
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -178,16 +179,46 @@ def energy_change(cylinder: Closed) -> Array:
     return ((energy[1] - energy[0])[..., 0] / (cylinder.gamma - 1))[()]
 
 
-@units("Pa", returns="Pa")
-def peak(p: Array) -> Array:
-    """Return the largest pressure of the curve [Pa]."""
-    return np.asarray(p.max(axis=-1))[()]
+@dataclass(frozen=True)
+class Peak:
+    """The largest pressure of a cycle [Pa] and its crank angle [rad]."""
+
+    pressure: Array
+    angle: Array
 
 
-@units("Pa", "rad", returns="rad")
-def peak_angle(p: Array, theta: Array) -> Array:
-    """Return the angle of the curve's largest pressure [rad]."""
-    return np.asarray(theta[np.argmax(p, axis=-1)])[()]
+def highest(cylinder: Closed, p_s: Array, p_e: Array) -> Peak:
+    """Return the largest pressure of the cycle, whatever the angles at which the curve is returned.
+
+    It is sought at each degree and at the ends of the combustion, then nearer and nearer to the best of them.
+    """
+    b = cylinder.burning
+    shape = np.broadcast_shapes(*map(np.shape, (b.start, b.duration, cylinder.closes, p_s, p_e, b.heat)))
+    whole = np.broadcast_to(np.linspace(0, 2 * FIRING, _DEGREES, endpoint=False), (*shape, _DEGREES))
+    ends = [np.broadcast_to(_column(at), (*shape, 1)) for at in (b.start, b.start + b.duration)]
+    theta, reach = np.concatenate([whole, *ends], axis=-1), 2 * FIRING / _DEGREES
+    best, p = theta[..., :1], np.empty(0)
+    for _ in range(_CLOSER):
+        p = cycle_pressure(cylinder, theta, p_s, p_e)
+        theta = np.broadcast_to(theta, p.shape)
+        best = np.take_along_axis(theta, np.nan_to_num(p).argmax(axis=-1)[..., None], axis=-1)
+        theta = np.clip(best + reach * np.linspace(-1, 1, _AROUND), 0, 2 * FIRING)
+        reach *= 2 / (_AROUND - 1)
+    return Peak(np.asarray(p.max(axis=-1))[()], best[..., 0][()])
+
+
+@on_paper("the largest pressure of the cycle")
+@units(None, returns="Pa")
+def peak(highest: Peak) -> Array:
+    """Return the largest pressure [Pa]."""
+    return highest.pressure
+
+
+@on_paper("where the pressure is largest")
+@units(None, returns="rad")
+def peak_angle(highest: Peak) -> Array:
+    """Return its crank angle [rad]."""
+    return highest.angle
 
 
 @units("1", returns="rad")

@@ -126,7 +126,7 @@ def governing(forces: Vectors) -> Array:
         return np.array(np.nan)
     most = np.abs(forces).max(axis=-1)
     near = most >= most.max(axis=-1, keepdims=True) * (1 - 1e-9)
-    return np.asarray(np.argmax(near, axis=-1) + 1.0)[()]
+    return np.where(near.any(axis=-1), np.argmax(near, axis=-1) + 1.0, np.nan)[()]
 
 
 @units(None, None, returns="1")

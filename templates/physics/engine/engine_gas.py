@@ -29,6 +29,10 @@ class OffsetPolytropic(Polytropic):
         """Return whether something holds in every cylinder, of which the last axis is."""
         return np.all(holds, axis=-1)
 
+    def greatest(self, value: Array) -> Array:
+        """Return the greatest value of all cylinders, of which the last axis is."""
+        return np.max(value, axis=-1)
+
     def way(self, angle: Array | float) -> Array:
         """Return the way of each piston from its highest place at an angle, over its stroke."""
         turned = np.asarray(angle + self.crank.top)[..., None]

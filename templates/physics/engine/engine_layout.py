@@ -119,7 +119,7 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
     """
     if cycle < 1.5 * TURN:
         return base
-    if not listed(order) or np.ndim(order) > 1:
+    if not listed(order) or np.ndim(order) > 1 or not np.isfinite(base).all():
         return np.full(base.size, np.nan)
     places = np.rint(order).astype(int) - 1
     if sorted(places) != list(range(base.size)):

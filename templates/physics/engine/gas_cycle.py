@@ -75,6 +75,10 @@ class Polytropic(GasCycle):
         """Return whether something holds in every cylinder; here there is one."""
         return holds
 
+    def greatest(self, value: Array) -> Array:
+        """Return the greatest value of all cylinders; here there is one."""
+        return value
+
     def pressure(self, theta: Array, travel: Array) -> Array:
         """Return the pressure by the event in which each angle lies."""
         c = self.charge

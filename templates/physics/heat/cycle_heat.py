@@ -167,10 +167,9 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
 def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     """Return the viscosity of every point at which heat and viscosity agree."""
     shape = np.broadcast_shapes(
-        *(np.shape(getattr(oil, field.name)) for field in fields(oil)), np.shape(bearing.duty.scale),
+        *(np.shape(getattr(oil, field.name)) for field in fields(oil)), bearing.duty.points,
         *(np.shape(getattr(bearing.feeding, field.name)) for field in fields(bearing.feeding)),
-        np.shape(bearing.pressure), np.shape(bearing.duty.F_x)[:-1], np.shape(bearing.clearance),
-        np.shape(bearing.duty.omega_J)[:-1],
+        np.shape(bearing.pressure), np.shape(bearing.clearance),
     )  # fmt: skip
     top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
 

@@ -36,6 +36,13 @@ class Duty:
     ratio: Array
     """Width over diameter B/D, (...) [-]."""
 
+    @property
+    def points(self) -> tuple[int, ...]:
+        """Return the shape of the points."""
+        curves = (self.F_x, self.F_y, self.omega_J, self.omega_B, self.omega_F)
+        values = (self.Omega, self.scale, self.ratio)
+        return np.broadcast_shapes(*(np.shape(one)[:-1] for one in curves), *map(np.shape, values))
+
 
 @dataclass(frozen=True)
 class CycleFilm:
