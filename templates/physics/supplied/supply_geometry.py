@@ -126,6 +126,22 @@ def supply_kind(feeding: SupplyGeometry) -> str:
     return next((kind for kind, holds in kinds.items() if np.all(holds)), "")
 
 
+def sleeve_motion(duty: Duty) -> str:
+    """Return how the sleeve of all points moves in the block: fixed, swinging, or empty if otherwise.
+
+    A swinging one, such as a rod, comes to rest in the mean. The crank turns with the journal, in the mean,
+    and the load's axes do not turn.
+    """
+    journal, sleeve = (np.mean(np.atleast_1d(speed), axis=-1) for speed in (duty.omega_J, duty.omega_B))
+    slow = 1e-3 * duty.Omega
+    if np.any(duty.omega_F) or not np.all(
+        (np.abs(np.abs(journal) - duty.Omega) <= slow) & (np.abs(sleeve) <= slow)
+    ):
+        return ""
+    swings = np.ptp(np.atleast_1d(duty.omega_B), axis=-1) > slow
+    return "swinging" if np.all(swings) else "" if np.any(swings) else "fixed"
+
+
 def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
     """Return whether a groove or hole leaves a land at the ends and goes around once at most."""
     inside = (length <= LONGEST * W) & ~(arc > np.pi * D)
