@@ -222,7 +222,7 @@ def _only_reads(methods: Iterable[str]) -> bool:
     return bool(methods) and methods <= READING
 
 
-class Guarded:
+class RoleGuard:
     """A route's or a router's way to handle a request, behind the check of the role."""
 
     def __init__(self, handle: ASGIApp, needed: Needs) -> None:
@@ -237,6 +237,6 @@ class Guarded:
 def install(app: FastAPI) -> None:
     """Guard all present routes of an app, and unknown paths."""
     for route in app.router.routes:
-        if not isinstance(route.handle, Guarded):
-            route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]
-    app.router.default = Guarded(app.router.default, SIGNED_IN)
+        if not isinstance(route.handle, RoleGuard):
+            route.handle = RoleGuard(route.handle, needs_of(route))  # type: ignore[method-assign]
+    app.router.default = RoleGuard(app.router.default, SIGNED_IN)
