@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from benchmarks.film_cycle_ensemble import bound
 from templates import get
+from templates.core.criteria.bands import CONVENTION, relative_error
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import SINGLE, accuracy_file
@@ -237,7 +238,7 @@ def _part(ensemble: Ensemble, raw: Raw, truth: Mapping[str, Numbers]) -> Sample:
         seconds[level] = process_time() - start
         with np.errstate(invalid="ignore", divide="ignore"):
             errors[level] = {
-                n: np.abs(values[n] - truth[n]) / _scale(ensemble, truth, n) for n in ensemble.outputs
+                n: relative_error(values[n], truth[n], _scale(ensemble, truth, n)) for n in ensemble.outputs
             }
         size = next(iter(values.values())).shape
         places[level] = [
@@ -318,6 +319,7 @@ def table(ensemble: Ensemble, sample: Sample, other: Sample) -> dict[str, Any]:
         "made_by": f"python -m benchmarks.film_ensembles write {ensemble.id}",
         "truth": words,
         "truths": {name: words},
+        "convention": CONVENTION,
         "error": "one-sided tolerance bound from random bearings: the 95 % quantile at 95 % confidence, which"
         " takes 59 in a cell; relative to the truth; null: outside the cells, or fewer than 59",
         "ensemble": {

@@ -21,7 +21,7 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.physics.cavities import shaped_balance
 from templates.physics.cavities.fed_film import Feed
-from templates.physics.cavities.shaped_balance import Balance, Loaded, balance
+from templates.physics.cavities.shaped_balance import Balance, BearingCase, balance
 from templates.physics.cavities.shaped_film import shaped_film
 from templates.physics.cavities.shaped_network import shaped_nodes
 from templates.physics.films.film_map import mapped_load
@@ -48,7 +48,7 @@ STATED = {
 PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0)))
 
 
-def drawn(number: int, seed: int = SEED) -> Loaded:
+def drawn(number: int, seed: int = SEED) -> BearingCase:
     """Return a random bearing, lobed, grooved or both, at So 1e-3 to 10 and B/D 0.2 to 1.6."""
     rng = np.random.default_rng([seed, number])
     lobes = int(rng.choice([1, 2, 3, 4]))
@@ -64,10 +64,10 @@ def drawn(number: int, seed: int = SEED) -> Loaded:
         places = [np.pi / 2, -np.pi / 2] * kind
     ratio, So = 10 ** rng.uniform(-0.7, 0.2), 10 ** rng.uniform(-3, 1)
     feed = Feed(0.0, tuple((place, width) for place in places))
-    return Loaded(So, ratio, bore, np.zeros(2), feed, bool(rng.random() < 0.6))
+    return BearingCase(So, ratio, bore, np.zeros(2), feed, bool(rng.random() < 0.6))
 
 
-def stated(loaded: Loaded) -> tuple[Balance, dict[str, Any]]:
+def stated(loaded: BearingCase) -> tuple[Balance, dict[str, Any]]:
     """Return the balance, and the fields of `StaticFilm` that `shaped_journal` states."""
     balanced = balance(loaded)
     return balanced, measured_film(balanced, loaded.bore, loaded.tilt, 1.0)
@@ -80,7 +80,7 @@ def values_of(film: dict[str, Any]) -> dict[str, Array]:
             "side_flow": np.array(film["side_flow"])}  # fmt: skip
 
 
-def truth_of(loaded: Loaded, balanced: Balance) -> dict[str, Array]:
+def truth_of(loaded: BearingCase, balanced: Balance) -> dict[str, Array]:
     """Return the film extrapolated to from a mesh twice as fine each way as the answer's finest."""
     mesh = {128: (256, 32), 256: (512, 64)}[around(balanced)]
     fine = balanced.fine
@@ -187,7 +187,9 @@ def _borne(angle: float, pressure: float, eps: float) -> str:
 
 def _force(angle: float, pressure: float, eps: float, attitude: float) -> Array:
     lie = Lie(eps * np.array([np.cos(attitude), np.sin(attitude)]), np.zeros(2))
-    loaded = Loaded(0.0, 0.5, Bore(), lie.tilt, Feed(pressure, ((np.radians(angle), np.radians(20)),)), False)
+    loaded = BearingCase(
+        0.0, 0.5, Bore(), lie.tilt, Feed(pressure, ((np.radians(angle), np.radians(20)),)), False
+    )
     pockets = loaded.pockets(0.0)
     nodes = shaped_nodes(loaded.bore, lie, loaded.ratio, pockets, 64, 8)
     return shaped_film(nodes, loaded.bore, lie, pockets, conserving=True).force

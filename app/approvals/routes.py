@@ -49,7 +49,7 @@ def sign_revision(
 ) -> Response:
     """Take a step: `calculated` by its author, `checked` and `released` by two other principals.
 
-    After the first step the revision is locked and never changes. Any checker can withdraw a release that
+    After the first step the revision is locked and never changes. Every checker can withdraw a release that
     proves wrong, with a reason (`withdrawn`); the revision stays unchanged.
     """
     if if_match is None:

@@ -10,8 +10,8 @@ import click
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
-from app.identity import audit_rows, chain
-from app.identity.audit_rows import AuditFilter
+from app.identity import audit, chain
+from app.identity.audit import AuditFilter
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file
 from app.settings import Settings
@@ -42,7 +42,7 @@ def list_command(
 ) -> None:
     """Print changes, newest first."""
     with _reading(data) as session:
-        for row in audit_rows.page(session, limit, None, AuditFilter(object, principal, action))[:limit]:
+        for row in audit.page(session, limit, None, AuditFilter(object, principal, action))[:limit]:
             seal = f"{row.seq}" if row.seq is not None else "not sealed"
             click.echo(plain(f"{row.at}  {row.name}  {row.action}  {row.object}  ({seal})", 500))
 

@@ -323,7 +323,7 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Standing:
+class RegenerationState:
     """The state of a design's regeneration, and the newest event that it includes."""
 
     number: int
@@ -338,7 +338,7 @@ def note_revision(session: Session, events: Events, design: str, revision: int, 
     events.note(session, Event(topic, "revision", data), Event(topic, state, data))
 
 
-def standing(session: Session, id: str) -> Standing:
+def standing(session: Session, id: str) -> RegenerationState:
     """Return the newest revision of a design, and the state of its regeneration.
 
     Raises
@@ -348,7 +348,7 @@ def standing(session: Session, id: str) -> Standing:
     """
     newest = head(session, id)
     number = design(session, id).event
-    return Standing(number, newest.number, newest.state, newest.problem)
+    return RegenerationState(number, newest.number, newest.state, newest.problem)
 
 
 def can_resume(session: Session, id: str, last: int | None) -> bool:

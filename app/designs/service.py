@@ -42,7 +42,7 @@ BYTES = 128
 """Taken for one character of a document: of the designs in the gallery 36 to 104 bytes of its calculation."""
 
 
-class Prepared(NamedTuple):
+class DocumentCalculation(NamedTuple):
     """A document as it was read, and what could be calculated of it."""
 
     document: Document
@@ -59,14 +59,14 @@ class CalculationCache:
     def __init__(self, cache: Cache | None = None) -> None:
         self._cache = cache or Cache(MEGABYTES)
 
-    def keep(self, plain: Mapping[str, Json], prepared: Prepared) -> None:
+    def keep(self, plain: Mapping[str, Json], prepared: DocumentCalculation) -> None:
         """Store the calculation of a document, which is also given as JSON."""
         text = canonical_json(plain).encode()
         self._cache.keep(_digest(text), prepared, BYTES * len(text))
 
-    def find(self, plain: Mapping[str, Json]) -> Prepared | None:
+    def find(self, plain: Mapping[str, Json]) -> DocumentCalculation | None:
         """Return the calculation of a document that was saved lately."""
-        prepared: Prepared | None = self._cache.get(_digest(canonical_json(plain).encode()))
+        prepared: DocumentCalculation | None = self._cache.get(_digest(canonical_json(plain).encode()))
         return prepared
 
 
@@ -331,7 +331,7 @@ class Designs:
             bool(outcomes) and any(outcome.is_deferred for outcome in outcomes)
         )
         if pending and not calculation.deferred:
-            self.calculation_cache.keep(plain, Prepared(document, calculation))
+            self.calculation_cache.keep(plain, DocumentCalculation(document, calculation))
         written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 

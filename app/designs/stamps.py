@@ -33,6 +33,7 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
         materials=_materials(build) if build else {},
         variant=model.variant,
         is_only=len(document["models"]) == 1,
+        mass=build.measurements["measures"]["mass"] if build else None,
     )
 
 
@@ -42,7 +43,6 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
     After the submission the author keeps the name of that time, as in a report.
     """
     revision = repository.lean(session, model.design_id, model.number)
-    build = rows.build(session, model.build_key or "")
     of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number
     names = {row.step: row.name for row in session.scalars(select(ApprovalRow).where(*of_revision))}
     author = session.get(PrincipalRow, revision.author) if revision.author not in (None, LOCAL.id) else None
@@ -53,7 +53,6 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
         checker=names.get("checked", ""),
         approver=names.get("released", ""),
         status=next((step for step in reversed(ORDER) if step in names), "unsigned"),
-        mass=build.measurements["measures"]["mass"] if build else None,
     )
 
 

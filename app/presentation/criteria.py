@@ -32,7 +32,7 @@ class Amount(Protocol):
         """Return its unit."""
 
 
-class Between(Protocol):
+class ValueRange(Protocol):
     """Two ends with one unit; null where an end is infinite."""
 
     @property
@@ -60,7 +60,7 @@ class JudgedCriterion(Protocol):
     @property
     def limit(self) -> Amount | None: ...  # noqa: D102
     @property
-    def band(self) -> Between | None: ...  # noqa: D102
+    def band(self) -> ValueRange | None: ...  # noqa: D102
     @property
     def relative_error(self) -> float | None: ...  # noqa: D102
     @property

@@ -36,7 +36,7 @@ ROUNDS = 4
 def checked(text: str, id: str | None) -> bytes:
     """Return the answer to `check` as JSON.
 
-    Where statements are faulty, the lines show what the others give without them.
+    The lines show the results of valid statements without the faulty ones.
     """
     try:
         answer = _sound(read(text), id or UNNAMED)
@@ -60,9 +60,9 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """Return the sheet that the sound statements make, each in its line; None where even these make none.
+    """Return the sheet of the valid statements, each in its line; None if there is none.
 
-    Statements that use a faulty one are faulty without it, so the text is read at most `ROUNDS` times more.
+    Statements that use a faulty one become faulty too, so the text is read up to `ROUNDS` more times.
     """
     for _ in range(ROUNDS):
         try:
@@ -135,7 +135,7 @@ def _example(cls: type[Template]) -> _Example:
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
-    """Return inputs and outputs of an evaluation by name, as answers hold them."""
+    """Return inputs and outputs of an evaluation by name, as in answers."""
     answer = json_values.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 

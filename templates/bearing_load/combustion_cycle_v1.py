@@ -10,8 +10,8 @@ import numpy as np
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
 from templates.physics.combustion.wiebe import (
     FIRING,
-    Burning,
-    Closed,
+    ClosedCylinder,
+    HeatRelease,
     Peak,
     burnt_share,
     closed_cylinder,
@@ -110,9 +110,9 @@ class CombustionCycle(Template):
         return FIRING + self.t_s + self.t_d <= self.eo
 
     @shared
-    def cylinder(self) -> Closed:
+    def cylinder(self) -> ClosedCylinder:
         """The cylinder with closed valves."""
-        burning = Burning(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
+        burning = HeatRelease(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
         return closed_cylinder(
             self.n, self.V_h, self.epsilon, self.p_s, self.ic, self.eo, self.gamma, burning
         )

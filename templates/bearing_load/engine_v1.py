@@ -32,7 +32,7 @@ from templates.physics.crankshaft.main_bearings import (
     mains_ascend,
 )
 from templates.physics.crankshaft.main_clearance import (
-    Supported,
+    SupportReactions,
     Supports,
     flexibilities,
     law_residual,
@@ -249,7 +249,7 @@ class Engine(ArticulatedEngine):
         return supports_of(self.z_m, self.k_s, self.c_m, self.o_x, self.o_y)
 
     @shared
-    def played(self) -> Supported | None:
+    def played(self) -> SupportReactions | None:
         """Loads of mains with play; none where they have none, or the crank is not given."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,

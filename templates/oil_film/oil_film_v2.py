@@ -27,7 +27,7 @@ from templates.groups.film_assumptions import ISOTHERMAL, RIGID
 from templates.groups.journal import ISO, Journal
 from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import WarmOil
-from templates.physics.journals.heat_balance import HeatBalance, Running, heat_balance
+from templates.physics.journals.heat_balance import HeatBalance, OperatingPoint, heat_balance
 from templates.physics.journals.journal_coefficients import Linear
 from templates.physics.journals.journal_motion import mass_of_weight, whirl_speed
 from templates.physics.journals.lubrication_regime import (
@@ -291,7 +291,7 @@ class OilFilm(WarmOil, Journal):
     def balance(self) -> HeatBalance:
         """The heat balance, if one is requested."""
         return heat_balance(
-            Running(
+            OperatingPoint(
                 F=self.F, D=self.D, W=self.W, psi=self.psi, omega_m=self.omega_h, omega_s=self.omega_s,
                 A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V), b=self.b_V, offset=self.c_V,
                 eta=self.as_given("eta"), rho_ref=self.rho_ref, T_ref=self.T_ref,

@@ -34,7 +34,7 @@ from templates.physics.fatigue.damage import (
     RAINFLOW,
     SIGNED,
     YES,
-    Counted,
+    CycleCounts,
     compression_used,
     counted_cycles,
     damages,
@@ -239,7 +239,7 @@ class FatigueLife(SteelEndurance):
         return superposed(self.loads, self.stresses)
 
     @shared
-    def counted(self) -> Counted:
+    def counted(self) -> CycleCounts:
         """Cycles of every point."""
         return counted_cycles(self.history, self.criterion, self.level, self.k_F, self.credit)
 

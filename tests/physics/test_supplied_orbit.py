@@ -14,7 +14,7 @@ from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
-    Meshing,
+    MeshSettings,
     SuppliedOrbit,
     Verdict,
     supplied_orbit,
@@ -25,7 +25,9 @@ QUICK = (replace(COARSE, around=48), replace(COARSE, step=np.radians(3.0)))
 ANGLE = np.arange(72) * np.pi / 36
 
 
-def constant(S: float, ratio: float, supply: Supply, meshes: tuple[Meshing, ...] = QUICK) -> SuppliedOrbit:
+def constant(
+    S: float, ratio: float, supply: Supply, meshes: tuple[MeshSettings, ...] = QUICK
+) -> SuppliedOrbit:
     """The orbit under a load at rest along x, the sleeve at rest too."""
     load = CyclicLoad(
         ANGLE, 2 * np.pi, np.array([S, 0.0])[:, None, None] * np.ones(72), np.full((1, 72), 0.5)
@@ -198,7 +200,7 @@ def test_a_hole_that_does_not_come_back_is_refused() -> None:
 def test_converges_in_mesh_and_step(number: int) -> None:
     """The change of the least gap from mesh to mesh falls, and the default is within 2 % of the finest."""
     duty = random_duty(7, number)
-    ladder = [Meshing(int(96 * k), int(6 * k), np.radians(2 / k), 12) for k in (1, 4 / 3, 2, 8 / 3)]
+    ladder = [MeshSettings(int(96 * k), int(6 * k), np.radians(2 / k), 12) for k in (1, 4 / 3, 2, 8 / 3)]
     gaps = np.array([
         supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, (COARSE, mesh)).least_gap
         for mesh in ladder
@@ -232,7 +234,7 @@ def test_extrapolated_the_static_film_is_met_to_two_parts_in_a_thousand() -> Non
     So, attitude = (2 * getattr(films[1], name) - getattr(films[0], name) for name in ("So", "attitude"))
     supply = Supply((replace(pocket, centre=pocket.centre + attitude),), pressure)
     coarse, fine = (
-        constant(So, ratio, supply, (COARSE, Meshing(96 * k, 6 * k, np.radians(2 / k), 12))).gap.mean()
+        constant(So, ratio, supply, (COARSE, MeshSettings(96 * k, 6 * k, np.radians(2 / k), 12))).gap.mean()
         for k in (1, 2)
     )
     assert 2 * fine - coarse == pytest.approx(1 - eps, rel=2e-3)

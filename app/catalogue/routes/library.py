@@ -17,7 +17,7 @@ from app.catalogue.schemas.library import (
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from templates.library.reading import CitedValue, Row
+from templates.library.csv_tables import CitedValue, Row
 from templates.library.tables import Column, Table, table, tables
 
 router = APIRouter(prefix="/api/v1/library", tags=["library"], route_class=StrictRoute)

@@ -31,7 +31,7 @@ Measured = Callable[[CadModel], Measures | None]
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
 NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
 DEFERRED: Literal["deferred"] = "deferred"
-Prepared = Evaluation | Literal["deferred"]
+DocumentCalculation = Evaluation | Literal["deferred"]
 """The evaluation of a step that is shared with other designs, or that nobody waited for it."""
 
 
@@ -94,7 +94,7 @@ class Calculation:
     changed: Mapping[Reference, Column] = field(default_factory=dict)
     values: dict[str, Column] = field(default_factory=dict)
     typed: dict[str, TypedQuantity] = field(default_factory=dict)
-    prepared: dict[str, Prepared] = field(default_factory=dict)
+    prepared: dict[str, DocumentCalculation] = field(default_factory=dict)
     evaluations: dict[str, Evaluation] = field(default_factory=dict)
     steps: dict[str, StepRows] = field(default_factory=dict)
     shapes: dict[str, CadModel] = field(default_factory=dict)

@@ -16,6 +16,7 @@ import numpy as np
 from app.designs.engine.columns import Column, aligned, stacked
 from app.designs.network import Cell, Graph
 from templates.core.errors import FaultyText
+from templates.core.units.evaluation import LISTWISE, check_ranks, listwise
 from templates.core.units.items import item_of
 from templates.core.units.lists import ITEM, LIST
 from templates.core.units.nodes import Apply, Constant, Item, Name, Node, Operation, Word
@@ -23,7 +24,6 @@ from templates.core.units.operations import OPERATORS
 from templates.core.units.quantity import TypedQuantity
 from templates.core.units.relation import Relation
 from templates.core.units.tolerance import Tolerance
-from templates.core.units.walking import LISTWISE, check_ranks, listwise
 
 MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
 MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design

@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
 from app.api.event_streams import LastEvent, allowed, identity, listening
-from app.designs.repository import Standing, can_resume, standing
+from app.designs.repository import RegenerationState, can_resume, standing
 from app.designs.routes.designs import Id, show_design
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
@@ -43,7 +43,7 @@ async def watch_design(
             yield ServerSentEvent(id=identity(event.number), event=name, data=event.message)
 
 
-def _start(database: Database, id: str, last: int | None) -> Standing | None:
+def _start(database: Database, id: str, last: int | None) -> RegenerationState | None:
     """Return the state of a design; None if the reader can continue after its last event."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

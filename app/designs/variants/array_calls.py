@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.designs.engine.calculation import DEFERRED, Prepared
+from app.designs.engine.calculation import DEFERRED, DocumentCalculation
 from app.designs.engine.steps import memory
 from app.designs.network import Block, Graph
 from app.plain import Raw
@@ -61,12 +61,12 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
     return shape if len(shape) == int(is_curve) else None
 
 
-def evaluations(asked: Sequence[StepInputs]) -> list[Prepared | None]:
+def evaluations(asked: Sequence[StepInputs]) -> list[DocumentCalculation | None]:
     """Return the evaluation of each variant, `DEFERRED` if no caller waits for it.
 
     It is None if the variant must be calculated alone.
     """
-    results: list[Prepared | None] = [None] * len(asked)
+    results: list[DocumentCalculation | None] = [None] * len(asked)
     groups: dict[Hashable, list[int]] = {}
     for place, one in enumerate(asked):
         if (form := one.form()) is not None:
@@ -89,7 +89,7 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
         yield places[start : start + size]
 
 
-def _shared(asked: Sequence[StepInputs]) -> Sequence[Prepared | None]:
+def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]:
     """Return the rows of one array call; if the call refuses, those of its halves."""
     if len(asked) < 2:
         return [None] * len(asked)  # alone it is calculated as it always is

@@ -12,7 +12,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.results import Outcome
-from app.designs.service import Prepared
+from app.designs.service import DocumentCalculation
 from app.designs.variants.outcome import outcome_of
 from app.jobs.service import JobContext
 from app.plain import JsonObject
@@ -35,7 +35,7 @@ MOST_CRASHES = 2  # of the process that builds one solid
 Describe = Callable[[Exception], JsonObject]
 """Turns an error into a problem (RFC 9457)."""
 
-Settle = Callable[[Prepared, JobContext], Calculation]
+Settle = Callable[[DocumentCalculation, JobContext], Calculation]
 """Completes the calculation of a design: builds, measures, iterates."""
 
 
@@ -105,7 +105,7 @@ class VariantSolids:
     def _completed(self, outcome: Outcome, document: Document, calculation: Calculation) -> Outcome:
         """Return a variant that is a separate design, with all values that depend on its solids."""
         try:
-            complete = self.settle(Prepared(document, calculation), self.context)
+            complete = self.settle(DocumentCalculation(document, calculation), self.context)
         except FAILURES as error:
             return replace(outcome, problem=self.describe(error))
         return outcome_of(outcome.name, outcome.places, document, complete)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.approvals.schemas import ApprovalIn, CommentIn
 from app.web.design.page import design_page
-from app.web.revision.page import revision_page
+from app.web.revision.routes import revision_page
 from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go

@@ -22,7 +22,7 @@ from app.reference import Reference
 from app.web.design.declarations import change_of
 from app.web.design.page import design_page
 from app.web.gallery.gallery import GALLERY
-from app.web.new_step.page import NewStep, address, beside, new_step, step_page, versioned
+from app.web.new_step.routes import NewStep, address, beside, new_step, step_page, versioned
 from app.web.shared.blocks import Refusal
 from app.web.shared.forms import Patch, fields, forms_only, inner, kept, patch_of
 from app.web.shared.paths import Id, Number

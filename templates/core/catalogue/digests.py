@@ -22,8 +22,8 @@ from typing import Any
 
 from templates.core.catalogue.modules import text_of
 from templates.core.language.origin import file_of
-from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
 MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})

@@ -12,9 +12,9 @@ from typing import Any
 from templates.core.checks.faults import FileFault
 from templates.core.errors import FaultyText
 from templates.core.language.body import Body
-from templates.core.language.parsing import lines_of, parse
 from templates.core.language.spec import Derived, Formula, Requirement, Shared
 from templates.core.language.syntax import lines_of_attributes, returned
+from templates.core.language.syntax_trees import lines_of, parse
 from templates.core.language.template import Template
 from templates.core.nearest import nearest
 

@@ -175,23 +175,22 @@ class PlainText(NamedTuple):
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
     """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
-    typed: dict[str, TypedQuantity | str] = {}
-    values = left_out.values.copy()
-    missing: set[str] = set()
-    for name, declared in cls.inputs.items():
-        given = raw.get(name)
-        if given is None:
-            if name in left_out.needed:
-                return None
-            if declared.attribute in left_out.missing:
-                missing.add(declared.attribute)
-        elif type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
+    if not left_out.needed <= raw.keys():
+        return None
+    inputs, typed = cls.inputs, dict[str, TypedQuantity | str]()
+    values, missing = left_out.values.copy(), left_out.missing.copy()
+    for name, given in raw.items():
+        declared = inputs.get(name)
+        if declared is None:
+            return None
+        if type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
         elif isinstance(given, TypedQuantity) and (value := _plain_value(declared, given)) is not None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
-    return Plain(typed, values, missing) if len(typed) == len(raw) else None
+        missing.discard(declared.attribute)
+    return Plain(typed, values, missing)
 
 
 class LeftOut(NamedTuple):

@@ -7,13 +7,17 @@ better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
 measured. Two levels may follow different conventions; then their errors cannot be compared
-(`Accuracy.truth`, `next_levels`). The error of a profile is relative to its largest absolute value.
+(`next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
+value: `templates.core.criteria.bands.CONVENTION`, which the file repeats.
 
 A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
 error under `own`.
 
-Errors may be measured separately for several cases of inputs, such as kinds of oil supply: then the table
-holds them under `cases`, and `Template.measured_case` returns the case of the inputs.
+Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
+them under `cases`, and `Template.measured_case` says which case its inputs are. Where an error varies much
+within a cell, `powers` has by case, level and output exponents of attributes of the template: the error is
+that of the cell times those powers, within the range of each attribute that `within` has by case. The
+attributes follow from the inputs alone, and are the same at all levels.
 """
 
 from __future__ import annotations
@@ -23,6 +27,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -123,6 +128,8 @@ class Accuracy:
         measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
+        if measured and "powers" in self.content:
+            estimates = {name: e * self._power(template, level, name) for name, e in estimates.items()}
         errors: dict[str, Any] = estimates
         if len(estimates) < len(names):
             none = np.zeros(template.shape_of_points())[()]
@@ -130,6 +137,14 @@ class Accuracy:
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
         return {name: error + self._added(there, name) for name, error in errors.items()}
+
+    def _power(self, template: Template, level: str, output: str) -> Any:
+        """Return by what the powers of attributes multiply an error; NaN out of the range of one of them."""
+        case = template.measured_case()
+        exponents = self.content["powers"].get(case, {}).get(level, {}).get(output, {})
+        within = self.content.get("within", {}).get(case, {})
+        factors = (_within(getattr(template, name), within.get(name)) ** e for name, e in exponents.items())
+        return prod(factors)
 
     def _added(self, template: Template, output: str) -> float:
         """Return what the conditions that hold add to the error of an output."""
@@ -169,6 +184,13 @@ def _same_at_all_levels(template: Template, output: str) -> bool:
     if isinstance(formula, Text):
         return False
     return "level" not in template.ancestors(formula.attribute)
+
+
+def _within(value: Any, limits: tuple[float, float] | None) -> Any:
+    """Return a value; NaN outside of limits."""
+    if limits is None:
+        return value
+    return np.where((value >= limits[0]) & (value <= limits[1]), value, np.nan)[()]
 
 
 def _looked_up(table: Array, cell: Any) -> Any:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from templates.core.language.body import Body
-from templates.core.language.parsing import parse
+from templates.core.language.syntax_trees import parse
 
 
 def returned(function: Callable[..., Any]) -> ast.expr:

@@ -7,7 +7,7 @@
 from templates.core.sheets.faults import SheetFault, SheetRefused
 from templates.core.sheets.names import KnownName
 from templates.core.sheets.sheet import Sheet, Statement, read
-from templates.core.sheets.testing import SheetTest, TestResult, run_tests
+from templates.core.sheets.worksheet_tests import SheetTest, TestResult, run_tests
 
 __all__ = [
     "KnownName", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult", "read",

@@ -12,7 +12,7 @@ from graphlib import TopologicalSorter
 from typing import Any
 
 from templates.core.language.spec import Derived, Formula, Requirement
-from templates.core.sheets.built import Built
+from templates.core.sheets.contents import Built
 from templates.core.sheets.faults import SheetFault
 from templates.core.units.operations import Apply
 

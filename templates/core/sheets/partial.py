@@ -10,9 +10,9 @@ import numpy as np
 
 from templates.core.language.ledger import Mask
 from templates.core.units.closures import closure
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.lists import ITEM
 from templates.core.units.operations import Apply, Operation
-from templates.core.units.walking import nodes_of
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -17,6 +17,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText, excerpt, unknown_name
 from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.lists import ITEM, LIST, OVER_LISTS
 from templates.core.units.nodes import kind_of
 from templates.core.units.operations import (
@@ -34,7 +35,6 @@ from templates.core.units.operations import (
 from templates.core.units.rules import as_compared
 from templates.core.units.sorts import Part, Sort, applied
 from templates.core.units.units import Unit, is_rate, unit
-from templates.core.units.walking import nodes_of
 
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
 

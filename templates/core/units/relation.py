@@ -21,12 +21,12 @@ from templates.core import definition_cache
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.conditions import CONDITIONS, IS
 from templates.core.units.conformity import misfit, turns_remark
+from templates.core.units.evaluation import LISTWISE, applied_in, nodes_of, value_of
 from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
 from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
 from templates.core.units.sorts import sorted_by
 from templates.core.units.units import Value, forget_units, unit
-from templates.core.units.walking import LISTWISE, applied_in, nodes_of, value_of
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 

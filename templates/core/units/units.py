@@ -326,6 +326,7 @@ def _measured(scale: Unit) -> str:
     return next(same, str(dimensions))
 
 
+@lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
     """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 

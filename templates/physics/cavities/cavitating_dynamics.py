@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.cavities.cavitating_film import SolvedRing, force
+from templates.physics.cavities.cavitating_film import RingSolution, force
 from templates.physics.cavities.cavitating_network import perturbed_flows
-from templates.physics.cavities.column_scaled import ColumnScaledSum
+from templates.physics.cavities.scaled_sum import ColumnScaledSum
 from templates.physics.films.film_equations import midpoints
 from templates.physics.films.film_mesh import gap
 
@@ -43,7 +43,7 @@ class LinearFilm:
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
 
 
-def linear_film(film: SolvedRing) -> LinearFilm:
+def linear_film(film: RingSolution) -> LinearFilm:
     """Return the force, stiffness and damping of a solved film."""
     ring, P, fill = film.ring, film.solution.P, 1 - film.solution.void
     phi, middle = ring.phi, midpoints(ring.phi)
@@ -58,7 +58,7 @@ def linear_film(film: SolvedRing) -> LinearFilm:
     return LinearFilm(force(ring, P), np.array(columns[::2]).T, np.array(columns[1::2]).T)
 
 
-def _response(film: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
+def _response(film: RingSolution) -> Callable[[Array], tuple[Array, Array]]:
     """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0

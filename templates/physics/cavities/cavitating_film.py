@@ -23,7 +23,7 @@ _COARSEST = 16, 6
 
 
 @dataclass(frozen=True)
-class SolvedRing:
+class RingSolution:
     """A solved film on its nodes."""
 
     ring: Ring
@@ -71,8 +71,8 @@ def solved_ring(
     ambient: float = 0.0,
     around: int = 128,
     across: int = 16,
-    near: SolvedRing | None = None,
-) -> SolvedRing:
+    near: RingSolution | None = None,
+) -> RingSolution:
     """Solve the static film with cavities, from a film nearby or from coarse meshes to the requested one.
 
     Parameters
@@ -107,12 +107,12 @@ def solved_ring(
         ring = grooved_ring(eps, ratio, grooves, n, m)
         network, fed = fed_network(ring, grooves, ambient)
         solution = cavitation(network, None if solved is None else _interpolated(solved, ring))
-        solved = SolvedRing(ring, network, solution, fed)
+        solved = RingSolution(ring, network, solution, fed)
     assert solved is not None
     return solved
 
 
-def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
+def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
     """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
     ring = solved.ring
     around, across = _between(ring.phi, finer.phi[:-1]), _between(ring.zeta, finer.zeta)
@@ -139,7 +139,7 @@ def force(ring: Ring, P: Array) -> Array:
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
 
 
-def measured(solved: SolvedRing) -> CavitatingFilm:
+def measured(solved: RingSolution) -> CavitatingFilm:
     """Integrate load, friction and flow."""
     ring, solution, fed = solved.ring, solved.solution, solved.fed
     P, void = ring.closed(solution.P), ring.closed(solution.void)

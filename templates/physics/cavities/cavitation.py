@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from templates.core.arrays import Array, Mask
-from templates.physics.cavities.column_scaled import ColumnScaledSum
+from templates.physics.cavities.scaled_sum import ColumnScaledSum
 
 _MOST_STEPS = 200
 _ACCURACY = 1e-11

@@ -13,7 +13,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.cavities.cavitating_dynamics import LinearFilm, linear_film
-from templates.physics.cavities.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
+from templates.physics.cavities.cavitating_film import CavitatingFilm, RingSolution, measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.films.film_map import mapped_film, mapped_load
 from templates.physics.films.film_map_inverse import mapped_eccentricity
@@ -161,7 +161,7 @@ class Search:
     feed: Feed
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-    def balance(self) -> tuple[Place, SolvedRing] | None:
+    def balance(self) -> tuple[Place, RingSolution] | None:
         """Return the place and its film on the coarse mesh, by Newton's method.
 
         Steps are halved when it turns back.
@@ -194,7 +194,7 @@ class Search:
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
-    def solved(self, place: Place, mesh: tuple[int, int], near: SolvedRing | None) -> SolvedRing:
+    def solved(self, place: Place, mesh: tuple[int, int], near: RingSolution | None) -> RingSolution:
         """Return the film at a place, from one nearby if there is one that leads to it."""
         grooves = self.feed.placed(place.attitude)
         if near is not None:
@@ -225,7 +225,7 @@ class Search:
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
         return missing, np.array([max(along, -0.9 * place.eps), 0.0])
 
-    def extrapolated(self, place: Place, ring: SolvedRing) -> FedFilm:
+    def extrapolated(self, place: Place, ring: RingSolution) -> FedFilm:
         """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
 
         Load and peak converge with order 2, shear and flow, which see the front, with 1.

@@ -68,7 +68,7 @@ class NoBalance(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class Loaded:
+class BearingCase:
     """A bearing whose journal's place is wanted."""
 
     So: float
@@ -101,7 +101,7 @@ class Loaded:
 
 
 @dataclass(frozen=True)
-class Refined:
+class MeshEquilibrium:
     """The film that bears a load on one mesh."""
 
     film: ShapedFilm
@@ -114,10 +114,10 @@ class Refined:
 class Balance:
     """The film that bears a load, on the last meshes, coarse to fine."""
 
-    before: Refined | None
+    before: MeshEquilibrium | None
     """None where only two meshes bear it."""
-    coarse: Refined
-    fine: Refined
+    coarse: MeshEquilibrium
+    fine: MeshEquilibrium
 
     @property
     def is_settled(self) -> bool:
@@ -155,7 +155,7 @@ class Balance:
         """Return how far the side flow, which converges irregularly, may be off, relative [-]."""
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
-    def _error(self, value: Callable[[Refined], float], order: int) -> float:
+    def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
         """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
@@ -173,7 +173,7 @@ class Balance:
         return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
 
-def balance(loaded: Loaded) -> Balance:
+def balance(loaded: BearingCase) -> Balance:
     """Find where the journal lies.
 
     Raises
@@ -190,7 +190,7 @@ def balance(loaded: Loaded) -> Balance:
     raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
-def _ladders(loaded: Loaded) -> list[Sequence[tuple[int, int]]]:
+def _ladders(loaded: BearingCase) -> list[Sequence[tuple[int, int]]]:
     """Return meshes to refine over.
 
     In a bore of lobes also without the coarsest, which may miss some of them.
@@ -198,7 +198,7 @@ def _ladders(loaded: Loaded) -> list[Sequence[tuple[int, int]]]:
     return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
 
 
-def _starts(loaded: Loaded) -> Iterator[Array]:
+def _starts(loaded: BearingCase) -> Iterator[Array]:
     """Yield the displacements from which to search."""
     eps = float(np.nan_to_num(mapped_eccentricity(np.array(loaded.So), np.array(loaded.ratio)), nan=0.999))
     eps = min(max(eps, SMALLEST), ECCENTRICITY_LIMIT)
@@ -212,7 +212,7 @@ def _starts(loaded: Loaded) -> Iterator[Array]:
             yield _inside(loaded, 0.6 * np.array([cos, sin]))
 
 
-def _inside(loaded: Loaded, e: Array) -> Array:
+def _inside(loaded: BearingCase, e: Array) -> Array:
     """Return the displacement, shortened until the journal is free everywhere."""
     for _ in range(60):
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
@@ -221,9 +221,9 @@ def _inside(loaded: Loaded, e: Array) -> Array:
     raise NoBalance("the tilted journal touches the bore in every position")
 
 
-def _refined(loaded: Loaded, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
+def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
     """Return the balance on the meshes, each begun at that of the coarser one, and on `FINER` if needed."""
-    films: list[Refined] = []
+    films: list[MeshEquilibrium] = []
     for mesh in meshes:
         films.append(
             stable_film(loaded, films[-1].lie.e if films else e, mesh, films[-1].film if films else None)
@@ -238,16 +238,18 @@ def _refined(loaded: Loaded, e: Array, meshes: Sequence[tuple[int, int]]) -> Bal
     return Balance(balanced.coarse, balanced.fine, finer)
 
 
-def stable_film(loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None) -> Refined:
+def stable_film(
+    loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
+) -> MeshEquilibrium:
     """Return the balance on one mesh, which resists slow displacement."""
     film, lie = _agreed(loaded, e, mesh, near)
     if np.linalg.det(film.linear[0]) <= 0:
         raise NoBalance("the equilibrium position found is not stable")
-    return Refined(film, lie, narrowest(loaded.bore, lie)[0])
+    return MeshEquilibrium(film, lie, narrowest(loaded.bore, lie)[0])
 
 
 def _agreed(
-    loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
     """Return the balance on a mesh graded to it, whose line of supply lies opposite it."""
     line = loaded.lie(e).attitude
@@ -266,7 +268,7 @@ def _agreed(
 
 
 def _searched(
-    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Array]:
     """Return Newton's method on one mesh."""
     film = _solved(loaded, e, nodes, pockets, near)
@@ -287,7 +289,7 @@ def _searched(
 
 
 def _nearer(
-    loaded: Loaded, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
+    loaded: BearingCase, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
 ) -> tuple[ShapedFilm, Array]:
     """Return the film after a step, which is halved until the force is nearer to the load than before."""
     wanted = np.array([loaded.So, 0.0])
@@ -304,7 +306,7 @@ def _nearer(
 
 
 def _solved(
-    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> ShapedFilm:
     """Return the film at a displacement, begun from a near one if there is any."""
     start = None if near is None else _carried(near, nodes)

@@ -33,7 +33,7 @@ def _column(value: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Burning:
+class HeatRelease:
     """Wiebe's law: heat [J], start and duration [rad], efficiency constant and shape [1], for each point."""
 
     heat: Array
@@ -49,7 +49,7 @@ class Burning:
 
 
 @dataclass(frozen=True)
-class Closed:
+class ClosedCylinder:
     """A cylinder with closed valves: rod over crank radius, volumes [m³], pressure [Pa], angles [rad].
 
     `gamma` is the ratio of specific heats [1].
@@ -62,7 +62,7 @@ class Closed:
     closes: Array
     opens: Array
     gamma: Array
-    burning: Burning
+    burning: HeatRelease
 
     def volume(self, theta: Array) -> Array:
         """Return the volume [m³] at crank angles [rad], (…, K)."""
@@ -129,15 +129,15 @@ def _hermite(t: Array, ends: list[Array], slopes: list[Array]) -> Array:
 
 def closed_cylinder(
     n: Array, swept: Array, epsilon: Array, p_1: Array, closes: Array, opens: Array, gamma: Array,
-    burning: Burning,
-) -> Closed:  # fmt: skip
+    burning: HeatRelease,
+) -> ClosedCylinder:  # fmt: skip
     """Return the cylinder with its compression ratio."""
-    return Closed(n, swept, swept / (epsilon - 1), p_1, closes, opens, gamma, burning)
+    return ClosedCylinder(n, swept, swept / (epsilon - 1), p_1, closes, opens, gamma, burning)
 
 
 @on_paper("by quadrature of the first law with closed valves; constant in suction and exhaust")
 @units(None, "rad", "Pa", "Pa", returns="Pa")
-def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Array:
+def cycle_pressure(cylinder: ClosedCylinder, theta: Array, p_s: Array, p_e: Array) -> Array:
     """Return the pressure over the whole cycle [Pa], (…, K); from the exhaust's opening linear to 540°."""
     closes, opens = _column(cylinder.closes), _column(cylinder.opens)
     inside = np.clip(theta, closes, opens)
@@ -150,27 +150,27 @@ def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Ar
 
 
 @units(None, "rad", returns="1")
-def burnt_share(cylinder: Closed, theta: Array) -> Array:
+def burnt_share(cylinder: ClosedCylinder, theta: Array) -> Array:
     """Return the burnt share over the cycle [1], (…, K); 0 in the next suction."""
     return cylinder.burning.share(theta)
 
 
 @on_paper("by quadrature over the closed part of the cycle")
 @units(None, returns="J")
-def closed_work(cylinder: Closed) -> Array:
+def closed_work(cylinder: ClosedCylinder) -> Array:
     """Return the work of the gas with closed valves [J]."""
     return np.asarray(cylinder.work())[()]
 
 
 @units(None, returns="J")
-def released_heat(cylinder: Closed) -> Array:
+def released_heat(cylinder: ClosedCylinder) -> Array:
     """Return the heat that is burnt until the end of the duration [J]."""
     b = cylinder.burning
     return b.heat * -np.expm1(-b.a)
 
 
 @units(None, returns="J")
-def energy_change(cylinder: Closed) -> Array:
+def energy_change(cylinder: ClosedCylinder) -> Array:
     """Return the inner energy at the opening less that at the closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
     energy = [
         cylinder.pressure(_column(at)) * cylinder.volume(_column(at))
@@ -187,7 +187,7 @@ class Peak:
     angle: Array
 
 
-def highest(cylinder: Closed, p_s: Array, p_e: Array) -> Peak:
+def highest(cylinder: ClosedCylinder, p_s: Array, p_e: Array) -> Peak:
     """Return the largest pressure of the cycle, whatever the angles at which the curve is returned.
 
     It is sought at each degree and at the ends of the combustion, then nearer and nearer to the best of them.

@@ -80,7 +80,7 @@ def flexibilities(
 
 
 @dataclass(frozen=True)
-class Supported:
+class SupportReactions:
     """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative, (…, K)."""
 
     forces: Vectors
@@ -89,7 +89,7 @@ class Supported:
 
 def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
-) -> Supported:
+) -> SupportReactions:
     """Return the loads of mains with play; each point of the loads has the one shaft, or its own."""
     turn = np.exp(1j * theta)[..., None, :]
     shape = loads.forces.shape[:-2]
@@ -109,7 +109,7 @@ def with_play(
         ]
         split, left = np.array([one.forces for one in each]), np.array([one.residual for one in each])
         shape = shape if len(points) == len(shafts) else (len(shafts),)
-    return Supported(split.reshape(*shape, *split.shape[-2:]) * turn, left.reshape(*shape, theta.size))
+    return SupportReactions(split.reshape(*shape, *split.shape[-2:]) * turn, left.reshape(*shape, theta.size))
 
 
 class _Play:
@@ -123,16 +123,16 @@ class _Play:
         self.give = shaft.mains + np.diag(np.repeat(1 / supports.stiffness, 2))
         self.clearance = supports.clearance[:, None]
 
-    def reactions(self, forces: Vectors, offsets: Vectors) -> Supported:
+    def reactions(self, forces: Vectors, offsets: Vectors) -> SupportReactions:
         """Return reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
         parts = [
             self._some(forces[:, at : at + _COLUMNS], offsets[:, at : at + _COLUMNS])
             for at in range(0, forces.shape[-1], _COLUMNS)
         ]
         together = np.concatenate([part.forces for part in parts], axis=-1)
-        return Supported(together, np.concatenate([part.residual for part in parts]))
+        return SupportReactions(together, np.concatenate([part.residual for part in parts]))
 
-    def _some(self, forces: Vectors, offsets: Vectors) -> Supported:
+    def _some(self, forces: Vectors, offsets: Vectors) -> SupportReactions:
         rows, bores = _rows(forces), _rows(offsets)
         first = self.start @ rows
         free = self.give @ first + self.shaft.loads @ rows - bores
@@ -147,7 +147,7 @@ class _Play:
         moved = np.abs(free).max(axis=0) + np.max(self.clearance)
         left = np.abs(slope).max(axis=0, initial=0.0) / moved
         pairs = (first + B @ x).reshape(-1, 2, rows.shape[-1])
-        return Supported(pairs[:, 0] + 1j * pairs[:, 1], left)
+        return SupportReactions(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
         """Return Newton's method from x, damped by the energy at each crank angle for itself."""
@@ -224,7 +224,7 @@ def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Tru
 
 
 @units(None, None, returns="1")
-def law_residual(forces: Vectors, supported: Supported | None) -> Array:
+def law_residual(forces: Vectors, supported: SupportReactions | None) -> Array:
     """Return the residual of the supports' law, relative; 0 below 1e-8, none without mains."""
     if not np.ndim(forces):
         return _NONE

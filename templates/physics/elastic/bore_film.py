@@ -24,7 +24,7 @@ from templates.core.arrays import Array, Mask
 from templates.physics.elastic.bore_modes import BENDING, MODES, modes_along, modes_around
 from templates.physics.elastic.soft_balance import (
     MESHES,
-    Balanced,
+    FilmEquilibrium,
     NoBalance,
     carried,
     rigid_balance,
@@ -124,7 +124,7 @@ class BoreFilm(SoftFilm):
 
 
 def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, to_load: float) -> list[
-    tuple[Balanced, Balanced]
+    tuple[FilmEquilibrium, FilmEquilibrium]
 ]:  # fmt: skip
     """Return the films of a load in a rigid and in a soft bore on each of `MESHES`.
 
@@ -144,8 +144,8 @@ def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, t
     NoBalance
         If no film was found.
     """
-    pairs: list[tuple[Balanced, Balanced]] = []
-    soft: Balanced | None = None
+    pairs: list[tuple[FilmEquilibrium, FilmEquilibrium]] = []
+    soft: FilmEquilibrium | None = None
     for mesh in MESHES:
         rigid = rigid_balance(So, ratio, eps, *mesh)
         if soft is None:
@@ -169,7 +169,7 @@ def attitude(film: SoftFilm) -> float:
     return float(np.arctan2(-ahead, along))
 
 
-def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
+def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibrium:
     """Return the film whose attitude is the one at which its bore was turned, from one nearby.
 
     Raises
@@ -191,7 +191,7 @@ def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
     raise NoBalance("the direction of the journal does not converge")
 
 
-def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
+def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> FilmEquilibrium:
     """Return the balance after a step of the turn, or after as much of it as settles."""
     for _ in range(_SHORTER):
         try:
@@ -201,7 +201,7 @@ def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
     return _turned(found, So, turn + step)
 
 
-def _turned(found: Balanced, So: float, turn: float) -> Balanced:
+def _turned(found: FilmEquilibrium, So: float, turn: float) -> FilmEquilibrium:
     """Return the balance at another turn, on a mesh graded to its gap."""
     film = replace(found.film, softness=replace(_softness(found), turn=turn))
     film = replace(film, eps=film.eps + float(found.film.H.min() - film.H.min()))
@@ -211,7 +211,7 @@ def _turned(found: Balanced, So: float, turn: float) -> Balanced:
     return carried(after, So, *(size - 1 for size in after.film.P.shape))
 
 
-def _softness(found: Balanced) -> BoreSoftness:
+def _softness(found: FilmEquilibrium) -> BoreSoftness:
     softness = found.film.softness
     assert isinstance(softness, BoreSoftness)
     return softness

@@ -11,7 +11,7 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.engine.engine_layout import TURN, Layout
 from templates.physics.engine.gas_cycle import AT_DEAD_CENTRES, Charge, Polytropic, Valves, ideal, wrapped
-from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycle, one_cycle
 from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
 
 _HALVINGS = 60
@@ -58,7 +58,7 @@ class OffsetPolytropic(Polytropic):
 
 
 @dataclass(frozen=True)
-class OffsetTabulated(Tabulated):
+class OffsetTabulatedCycle(TabulatedCycle):
     """A table of pressures with the volumes of an offset crank; angles count from top dead centre."""
 
     crank: OffsetCrank
@@ -92,7 +92,7 @@ def engine_gas(
     if name == "none":
         return NoGas(np.asarray(p_c)[..., None])
     if name == "table":
-        return OffsetTabulated(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle, crank)
+        return OffsetTabulatedCycle(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle, crank)
     if name != "four_stroke":
         charge, valves = ideal(name, charge), AT_DEAD_CENTRES
     each = Charge(*_for_each(charge))

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
-from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycle, one_cycle
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
 _SAME = 1e-9
@@ -214,7 +214,7 @@ def gas_cycle(
     if name == "none":
         return NoGas(np.asarray(p_c))
     if name == "table":
-        return Tabulated(*one_cycle(angle, p, cycle), n, cycle)
+        return TabulatedCycle(*one_cycle(angle, p, cycle), n, cycle)
     if name != "four_stroke":
         charge, valves = ideal(name, charge), AT_DEAD_CENTRES
     if strokes == 2:

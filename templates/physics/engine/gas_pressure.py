@@ -55,7 +55,7 @@ class NoGas(GasCycle):
 
 
 @dataclass(frozen=True)
-class Tabulated(GasCycle):
+class TabulatedCycle(GasCycle):
     """Pressures p [Pa], (…, M), at angles [rad], (M,), linear between them and periodic; n = l/r, (…)."""
 
     angle: Array

@@ -42,7 +42,7 @@ from templates.physics.supplied.fed_cycle import (
     fed_film,
     fed_orbit,
 )
-from templates.physics.supplied.feeding import Feeding
+from templates.physics.supplied.supply_geometry import SupplyGeometry
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 """Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
@@ -103,7 +103,7 @@ class CycleBearing:
     level: str
     duty: Duty
     """Its scale is that of 1 Pa s."""
-    feeding: Feeding
+    feeding: SupplyGeometry
     pressure: Array
     """Supply pressure, NaN without a groove [Pa]."""
     clearance: Array
@@ -136,7 +136,7 @@ class CycleHeat:
 
 
 @dataclass(frozen=True)
-class Warmed:
+class FilmState:
     """What a film of some viscosity does."""
 
     loss: Array
@@ -145,7 +145,7 @@ class Warmed:
     rate: Array
 
 
-def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
+def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, FilmState]:
     """Return orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
     duty = bearing.duty
     fed = bearing.fed(eta)
@@ -160,7 +160,7 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
     gap = orbit.gap
     with np.errstate(invalid="ignore"):
         rate = (sliding / np.sqrt(gap * (2 - gap))) @ mean * D / (2 * c)
-    return orbit, Warmed(loss, side, film.feed_flow * W * D * c * Omega, rate)
+    return orbit, FilmState(loss, side, film.feed_flow * W * D * c * Omega, rate)
 
 
 @on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
@@ -233,7 +233,7 @@ def heaviest(duty: Duty) -> Array:
     return np.asarray(np.hypot(duty.F_x, duty.F_y).max(axis=-1) * duty.scale)
 
 
-def temperature(oil: CycleOil, film: Warmed) -> Array:
+def temperature(oil: CycleOil, film: FilmState) -> Array:
     """Return the mean of supply and outlet, by the heat that the oil carries off [K]."""
     with np.errstate(invalid="ignore", divide="ignore"):
         rise = oil.share * film.loss / (oil.heat_capacity * (film.side_flow + film.feed_flow))

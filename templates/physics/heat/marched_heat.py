@@ -19,7 +19,7 @@ from templates.physics.heat.cycle_heat import (
     CycleBearing,
     CycleHeat,
     CycleOil,
-    Warmed,
+    FilmState,
     cycle_heat,
     heated_film,
     temperature,
@@ -75,7 +75,7 @@ def following(rounds: list[tuple[float, float]]) -> float:
     return x + float(np.clip(step, -FARTHEST, FARTHEST))
 
 
-def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, float]:
+def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, float]:
     """Return the film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
     film = heated_film(bearing, eta)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -83,7 +83,7 @@ def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, flo
     return film, float(np.ravel(lack)[0])
 
 
-def _balanced(oil: CycleOil, film: Warmed, eta: Array, lack: float) -> CycleHeat:
+def _balanced(oil: CycleOil, film: FilmState, eta: Array, lack: float) -> CycleHeat:
     unknown = np.full(np.shape(eta), np.nan)
     values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
     residual = np.full(np.shape(eta), np.expm1(lack))

@@ -29,7 +29,7 @@ _REPORTED = 30  # steps between two reports of progress
 
 
 @dataclass(frozen=True)
-class Marching:
+class MarchSettings:
     """Mesh and step."""
 
     around: int = 144
@@ -56,7 +56,7 @@ class TransientOrbit:
 
 
 def transient_orbit(
-    load: CyclicLoad, ratio: float, start: Array, marching: Marching
+    load: CyclicLoad, ratio: float, start: Array, marching: MarchSettings
 ) -> TransientOrbit | None:
     """March one case until it repeats; None where the search for the film fails or the orbit does not repeat.
 

@@ -22,7 +22,7 @@ _NEWTON_STEPS = 12
 
 
 @dataclass(frozen=True)
-class Grading:
+class NodeMap:
     """The map between t and x for pads (..., 1)."""
 
     logarithm: Array
@@ -53,7 +53,7 @@ class Grading:
         return np.clip(0.5 + np.arctanh((2 * u - 1) * np.tanh(self.stretch / 2)) / self.stretch, 0, 1)
 
 
-def grading(a: Array, width: Array) -> Grading:
+def grading(a: Array, width: Array) -> NodeMap:
     """Return the map for pads of film ratio a ≥ 1 and width b/l.
 
     Parameters
@@ -67,7 +67,7 @@ def grading(a: Array, width: Array) -> Grading:
     outlet = _layer_slope(width / np.pi * np.expm1(logarithm) / logarithm)
     inlet = _layer_slope(width / np.pi * -np.expm1(-logarithm) / logarithm)
     stretch = _stretch(-np.log(outlet * inlet) / 2)
-    return Grading(logarithm[..., None], np.sqrt(outlet / inlet)[..., None], stretch[..., None])
+    return NodeMap(logarithm[..., None], np.sqrt(outlet / inlet)[..., None], stretch[..., None])
 
 
 def _layer_slope(layer: Array) -> Array:

@@ -29,7 +29,7 @@ from templates.core.language.declare import units
 from templates.physics.numerics.arrays import require
 from templates.physics.numerics.arrays import spread as spread
 from templates.physics.pads.pad_equations import solved_pads
-from templates.physics.pads.pad_mesh import Grading, grading
+from templates.physics.pads.pad_mesh import NodeMap, grading
 from templates.physics.pads.slider import (
     centre_of_pressure_Rayleigh_1918,
     film_velocity,
@@ -201,7 +201,7 @@ def _infinite(a: Array) -> InfinitePad:
 class FinitePad(PadFilm):
     """A solved pad of finite width, with its pressure at mid-width."""
 
-    mesh: Grading
+    mesh: NodeMap
     """Where its nodes stand."""
     P: Array
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""

@@ -29,7 +29,7 @@ from templates.core.progress import part_of_progress
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty, cycle_of, weights
 from templates.physics.orbits.grooved_mobility import (
     Groove,
-    Passing,
+    GroovePassage,
     grooved_film_under_load,
     grooved_orbit,
     lift_of,
@@ -38,18 +38,18 @@ from templates.physics.orbits.grooved_mobility import (
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw, ShortLaw
 from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
+from templates.physics.orbits.rotation import turning
 from templates.physics.orbits.short_mobility import short_film_under_load
 from templates.physics.orbits.transient_orbit import (
-    Marching,
+    MarchSettings,
     TransientOrbit,
     along_march,
     sampled_orbit,
     transient_orbit,
 )
-from templates.physics.orbits.turning import turning
-from templates.physics.supplied.feeding import AROUND, Feeding, supplies_of
 from templates.physics.supplied.supplied_orbit import NEAR_HOLES, SuppliedOrbit, Verdict, supplied_orbit
 from templates.physics.supplied.supply import Supply
+from templates.physics.supplied.supply_geometry import AROUND, SupplyGeometry, supplies_of
 
 MOBILITY = ("mobility_short", "mobility", "mobility_grooved")
 LEVELS = (*MOBILITY, "flooded", "supplied")
@@ -204,7 +204,7 @@ def _of_points(texts: Sequence[str]) -> str:
 class _Cases:
     """The points of a duty in one row, dimensionless."""
 
-    passing: Passing
+    passing: GroovePassage
     ratio: Array
     """(C,) width over diameter; 1 where the level does not take it, and the load has no speed then."""
     sliding: Array
@@ -316,7 +316,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
     return up_to(start + extent - centre) - up_to(start - centre)
 
 
-def fed_duty(level: str, duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
+def fed_duty(level: str, duty: Duty, feeding: SupplyGeometry, pressure: Array) -> FedDuty:
     """Return a duty with what feeds it at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supplies = supplies_of(feeding, pressure) if level == "supplied" else None
@@ -343,7 +343,7 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     S = np.stack([x, y])
     if level == "mobility_grooved":
         S = S - lifting(lift_of(groove.share, groove.extent, pressure), rests, whole, duty.angle)
-    passing = Passing(CyclicLoad(duty.angle, period, S, w), rests, whole)
+    passing = GroovePassage(CyclicLoad(duty.angle, period, S, w), rests, whole)
     return _Cases(passing, np.where(taken, ratio, 1.0), journal - sleeve, pressure, points)
 
 
@@ -363,7 +363,7 @@ def _flooded_orbit(cases: _Cases) -> FedOrbit:
     ratio = cases.ratio
     start, flooded = periodic_orbit(cases.load, MapLaw(ratio)), None
     if np.isfinite(start.least_gap).all():
-        flooded = transient_orbit(cases.load, float(ratio[0]), start.eps[:, 0, 0], Marching())
+        flooded = transient_orbit(cases.load, float(ratio[0]), start.eps[:, 0, 0], MarchSettings())
     return replace(_shaped(sampled_orbit(flooded, cases.load), cases), flooded=flooded)
 
 

@@ -20,7 +20,7 @@ beside it; any other column has 1 + r, and r times these. So its banded factoris
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.numerics.compiled import compiled
+from templates.physics.numerics.machine_code import compiled
 from templates.physics.supplied.supplied_mesh import Mesh
 
 MOST = 25

@@ -82,7 +82,7 @@ def gap_of(arc: Arc, y: Array, fluidity: Array, edges: Array, feed: tuple[float,
 
 
 @dataclass(frozen=True)
-class Pressed:
+class PressureSolution:
     """A solved film."""
 
     gap: Gap
@@ -120,7 +120,7 @@ class Pressed:
         return float(drag.sum() + (gap.H_faces * gap.faces.carried * pushed).sum())
 
 
-def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
+def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> PressureSolution:
     """Solve for pressure and void, from those (n + 1, m + 1) of a nearby film.
 
     Raises
@@ -133,7 +133,7 @@ def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
     solution = cavitation(_network(gap), near)
     P, void = solution.P.reshape(shape), solution.void.reshape(shape).copy()
     void[1:-1, -1] = void[1:-1, -2]
-    return Pressed(gap, P, void)
+    return PressureSolution(gap, P, void)
 
 
 def _network(gap: Gap) -> Network:

@@ -9,7 +9,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.thermal.mapped import mapped_values
+from templates.physics.thermal.one_temperature import mapped_values
 from templates.physics.thermal.thermal_balance import FIELD, FINE, OneTemperature, Warm, both
 from templates.physics.thermal.thermal_case import ThermalCase
 

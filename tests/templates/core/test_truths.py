@@ -1,8 +1,11 @@
 """Truths: against what an error was measured, and which levels are nearer to the same truth."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from templates.core.criteria.bands import CONVENTION
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.level_choice import reachable
@@ -13,6 +16,7 @@ from templates.door import built_in
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_v2 import OilFilm
 
+ROOT = Path(__file__).parents[3]
 MEASURED = [cls for cls in built_in() if accuracy(cls)]
 
 
@@ -87,6 +91,14 @@ class TestTruth:
                 truth = measured.truth(level, output)
                 assert truth or not np.isfinite(cells).any(), (level, output)
                 assert truth is None or measured.content["truths"][truth]
+
+    @pytest.mark.parametrize("cls", MEASURED, ids=lambda cls: f"{cls.id}_{cls.version}")
+    def test_property_every_table_is_relative_to_the_truth(self, cls):
+        """And the script that wrote it measures so."""
+        content = accuracy(cls).content
+        assert content["convention"] == CONVENTION
+        script = ROOT / f"{content['made_by'].split()[2].replace('.', '/')}.py"
+        assert "CONVENTION" in script.read_text(encoding="utf-8")
 
     def test_property_two_conventions_of_friction_are_two_truths(self):
         """Power loss of the example: `map` 657.9 W by shear all around, `mass_conserving` 530.7 W."""
