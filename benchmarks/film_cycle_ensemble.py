@@ -229,6 +229,7 @@ def write() -> None:
             for level in (*CHEAP, "flooded", "supplied")
         },
         "cases": admitted(measured_tables, held),
+        "expected_seconds": {"supplied": expected_seconds(first)},
     }
     FILE.write_text(json.dumps(page, indent=None, ensure_ascii=False) + "\n", encoding="utf-8")
     for kind, levels in held.items():
@@ -248,6 +249,17 @@ def costs(level: str, lines: list[Line]) -> dict[str, float]:
     for _ in range(times):
         fed_film(level, asked, fed_orbit(level, asked))
     return {"single": round((process_time() - begin) / times, 5)}
+
+
+def expected_seconds(lines: list[Line]) -> dict[str, list[list[float | None]]]:
+    """Return the median time of a march in each band, by the kind of supply [s]; null without any."""
+
+    def median(kind: str, i: int, j: int) -> float | None:
+        own = [x["seconds"] for x in lines if x["kind"] == kind and band(x["S"], x["b"]) == (i, j)]
+        return float(f"{np.median(own):.2g}") if own else None
+
+    bands = range(len(LOADS) - 1), range(len(WIDTHS) - 1)
+    return {kind: [[median(kind, i, j) for j in bands[1]] for i in bands[0]] for kind in KINDS}
 
 
 def ratios() -> None:

@@ -167,13 +167,13 @@ class DifferenceRows:
         return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
 
     def _check_cost(self) -> None:
-        """Refuse rows that take long, or many operations in relations between lists."""
+        """Refuse rows that take long, by their estimate, or many operations in relations between lists."""
         count, wanted = self._points.count, self.asked.wanted
         seconds = self._engine.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
         values = count * sum(self._engine.design.sizes(wanted).values())
         if seconds > EXPENSIVE:
             raise self._refused(
-                "expensive", f"{count} rows would take about {seconds:.1g} s{self._at()}; {STUDY}"
+                "expensive", f"{count} rows would take too long to wait for{self._at()}; {STUDY}"
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(

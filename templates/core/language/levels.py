@@ -136,6 +136,20 @@ class Accuracy:
         """Return what the conditions that hold add to the error of an output."""
         return sum(one.added(template, output) for one in self._conditions if one.holds(template))
 
+    def seconds(self, template: Template, level: str) -> float | None:
+        """Return the processor time to expect of all points at a level [s].
+
+        `expected_seconds` of the table has that of a point by level and case, in each cell or in all of them.
+        None where it states none.
+        """
+        by_case = self.content.get("expected_seconds", {}).get(level, {})
+        if (stated := by_case.get(template.measured_case() if self.cases else "")) is None:
+            return None
+        table = np.array(stated, dtype=float)
+        one = _looked_up(table, self._cell(template)) if table.ndim else table
+        each = np.broadcast_to(one, template.shape_of_points())
+        return float(each.sum()) if np.isfinite(each).all() else None
+
     def truth(self, level: str, output: str) -> str | None:
         """Return the name of the solution against which an output was measured; None if none is stated."""
         truths: Mapping[str, str] = self.content.get("levels", {}).get(level or SINGLE, {}).get("truth", {})
