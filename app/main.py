@@ -1,4 +1,4 @@
-"""The application: `create_app(settings)`. Everything it holds is made in `lifespan` and ends there."""
+"""The application: `create_app(settings)`. `lifespan` creates everything that it holds, and closes it."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 def opened_traces(settings: Settings) -> Traces | None:
     """Return the sender of traces, if the settings name a collector.
 
-    Its packages belong to the extra `traces`.
+    The packages belong to the extra `traces`.
     """
     if settings.traces_url is None:
         return None
@@ -186,9 +186,9 @@ def opened_traces(settings: Settings) -> Traces | None:
 
 @contextmanager
 def spared_by_collections() -> Iterator[None]:
-    """Keep what the program has loaded out of Python's full collections, during which all threads wait.
+    """Exclude loaded objects from Python's full garbage collections, during which all threads wait.
 
-    Half a million objects that live as long as the program make every collection a tenth of a second long.
+    With half a million permanent objects, every collection takes a tenth of a second.
     """
     if gc.isenabled():
         gc.collect()

@@ -4,7 +4,7 @@
     python -m benchmarks.estimates studies [template …]
 
 `levels`: one step at each level whose cost is stated, alone and as a table of 4 rows, as `decide` estimates
-a climb; the costs of `oil_film_cycle` at level supplied are compared with marches of another seed.
+a climb; the costs of `oil_film_cycle` at level supplied are compared with marches of fresh engines.
 `studies`: samples and sensitivities over the example of each template, as their form and page estimate them.
 
 Inputs are the examples, each single quantity multiplied by a random factor. Ratios are of processor time, so
@@ -28,7 +28,7 @@ from app.pool.cost import level_seconds
 from app.studies.chunks import explored
 from app.studies.plan import planned
 from app.studies.task import Task
-from benchmarks import film_cycle_ensemble
+from benchmarks import film_cycle_duties, film_cycle_ensemble
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs, TemplateError
 from templates.core.language.evaluate import evaluate
@@ -133,15 +133,15 @@ def _ratios(cls: type[Template], level: str, listed: str, random: np.random.Gene
 
 
 def marches() -> None:
-    """Print how the costs of level supplied hold for the marches of the seed that did not make them."""
-    lines = film_cycle_ensemble.kept()
-    costs = film_cycle_ensemble.expected_seconds([x for x in lines if x["seed"] == film_cycle_ensemble.SEED])
+    """Print how the times to expect of level supplied hold for the engines that did not make them."""
+    lines = film_cycle_ensemble.fresh_engines()
+    expected = film_cycle_ensemble.expected_seconds(film_cycle_ensemble.first_duties())["cases"]
     ratios = []
     for line in lines:
-        if line["seed"] == film_cycle_ensemble.OTHER_SEED:
-            i, j = film_cycle_ensemble.band(line["S"], line["b"])
-            ratios.append((costs[line["kind"]][i][j] or np.nan) / line["seconds"])
-    report(f"oil_film_cycle 1 supplied, marches of seed {film_cycle_ensemble.OTHER_SEED}", ratios)
+        if case := film_cycle_ensemble.case_of(line):
+            i, j = film_cycle_duties.band(line["S"], line["b"])
+            ratios.append(expected[case][i][j] / line["seconds"])
+    report("oil_film_cycle 1 supplied, fresh engines", ratios)
 
 
 def studies(wanted: Collection[str]) -> None:

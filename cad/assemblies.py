@@ -1,10 +1,10 @@
-"""Assemblies that a team makes: a model of this program with fixed parts beside it, or fixed parts alone.
+"""Assemblies that a team defines: a model of this program with fixed parts beside it, or fixed parts alone.
 
-The class of an assembly is that of its model with six more parameters for each fixed part: its position on
-its datum. The model's own parts pass the usual checks. A fixed part is the shape of a STEP file, and its
-volume is measured. No fixed part may take space of another part, unless its description allows that.
+The class of an assembly is the class of its model with six more parameters for each fixed part: its position
+on its datum. The model's own parts pass the usual checks. A fixed part is the shape of a STEP file, and its
+volume is measured. No fixed part may interfere with another part, unless its description allows that.
 
-This module imports the kernel only where it draws.
+This module imports the kernel only to draw.
 """
 
 from __future__ import annotations

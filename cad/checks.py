@@ -1,4 +1,4 @@
-"""Check that a finished solid is the requested one, because OpenCASCADE calls some wrong solids valid."""
+"""Check that a finished solid is the requested one, because OpenCASCADE accepts some wrong solids."""
 
 from __future__ import annotations
 

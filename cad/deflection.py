@@ -1,8 +1,8 @@
 """Deflection: the largest distance of mesh facets from the true surface, as a user requests it.
 
-A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`. Deflections
-have steps, six in a decade, and a mesh has the step that is not coarser than what its user asked for. So a
-solid has at most 19 meshes of a kind, however many different lengths are asked for.
+A kind of file with a deflection is written `stl@0.05mm`, and is stored beside `stl`. Deflections are rounded
+down to steps, six in a decade. So a solid has at most 19 meshes of a kind, however many different deflections
+are requested.
 """
 
 from __future__ import annotations

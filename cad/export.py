@@ -1,4 +1,4 @@
-"""Files derived from a finished STEP file, on request only: meshes, pictures, drawings."""
+"""Files derived from a finished STEP file on request: meshes, pictures, drawings."""
 
 from __future__ import annotations
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.judgement import Judgement, Place, sentence
 from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
-from templates.core.language.evaluate import Evaluation
+from templates.core.language.evaluate import Evaluation, assumed
 from templates.core.language.ledger import Notice
 from templates.core.language.template import Template
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 def rendered(ordered: Sequence[Judgement]) -> JsonObject:
-    """Return `criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
+    """Return `criteria`, worst first, and the overall `verdict`; an empty result without criteria."""
     if not ordered:
         return {}
     return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}
 
 
 def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
-    """Return the verdict over all criteria, which stand in order."""
+    """Return the verdict over all criteria, which must be in order."""
     summary = summarised(ordered)
     return {
         "verdict": summary.verdict,
@@ -43,7 +43,7 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 
 def criterion(judgement: Judgement) -> JsonObject:
-    """Return one criterion as JSON, without the members that do not apply."""
+    """Return one criterion as JSON, without members that do not apply."""
     unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
     parts = {
         "value": None if value is None else _quantity(value, unit),
@@ -68,7 +68,7 @@ def criterion(judgement: Judgement) -> JsonObject:
     }
     present = {name: part for name, part in parts.items() if part is not None}
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    return {**names, "verdict": judgement.verdict, **present}
+    return {**names, "verdict": judgement.verdict, "sentence": sentence(judgement), **present}
 
 
 def _quantity(value: float, unit: str) -> dict[str, object] | None:
@@ -80,7 +80,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
 
 
 def _where(places: Sequence[Place]) -> dict[str, object]:
-    """Return places by name; what has no unit is a name, such as that of a variant."""
+    """Return places by name; a place without a unit is a name, such as that of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
         for place in places
@@ -99,7 +99,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Return the version that calculated: id, version and the digest of its code."""
+    """Return the version of the calculation: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
@@ -109,12 +109,12 @@ def identity(cls: type[Template]) -> Identity:
 
 
 def quantity(value: object, unit: str | None) -> dict[str, object]:
-    """Return a value with its unit; a text has none."""
+    """Return a value with its unit; a text has no unit."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
-    """Return the outputs; what does not exist is null with its reason."""
+    """Return the outputs; a missing value is null with its reason."""
     shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
@@ -127,7 +127,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
 
 
 def _array(output: Answer) -> dict[str, object]:
-    """Return an output of several points or places; each that does not exist is null with its reason."""
+    """Return an output of several points or places; each missing value is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -137,7 +137,7 @@ def _array(output: Answer) -> dict[str, object]:
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
     """Return the values as objects, None where there is none.
 
-    A profile, which has one reason, is one object.
+    A profile has a single reason, so it is one object.
     """
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
@@ -150,7 +150,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
 
 
 def _plain(value: object) -> object:
-    """Return a single value or an array as JSON; what was not measured is null."""
+    """Return a single value or an array as JSON; unmeasured values are null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
     if value.ndim == 1:
@@ -167,7 +167,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
 
 
 def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
-    """Return the inputs as they were used."""
+    """Return the inputs that the calculation used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
         unit = {} if used.unit is None else {"unit": used.unit}
@@ -176,7 +176,7 @@ def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
 
 
 def evaluation(result: Evaluation) -> JsonObject:
-    """Return the whole answer to `evaluate`."""
+    """Return the complete answer of `evaluate`."""
     return {
         "template": identity(type(result.template)),
         "inputs": inputs(result.inputs),
@@ -184,9 +184,15 @@ def evaluation(result: Evaluation) -> JsonObject:
         "level": _plain(result.level),
         "error": errors(result.error),
         "warnings": warnings(result.warnings),
+        "assumed": assumptions(result, result.criteria),
         **rendered(result.criteria),
         "seconds": result.seconds,
     }
+
+
+def assumptions(result: Evaluation, criteria: Iterable[Judgement]) -> list[dict[str, str]]:
+    """Return what an evaluation and its criteria take for granted."""
+    return [vars(one) for one in assumed(result.template, result.outputs, criteria)]
 
 
 def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
@@ -195,7 +201,7 @@ def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
 
 
 def solution(result: Solution) -> JsonObject:
-    """Return the whole answer to `solve`."""
+    """Return the complete answer of `solve`."""
     return {
         "unknown": quantity(result.unknown, result.unit),
         "warnings": warnings(result.warnings),

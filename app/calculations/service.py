@@ -19,7 +19,7 @@ MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 
 def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
-    """Evaluate a template, as `evaluated`."""
+    """Evaluate a template, as in `evaluated`."""
     return json_values.evaluation(evaluated(cls, body))
 
 
@@ -29,7 +29,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     TooManyValues
         If the answer would be too large.
     """
@@ -54,7 +54,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     TooManyValues
         If the answer would be too large.
     """
@@ -70,7 +70,7 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     """
     read_question(
         cls,
@@ -101,9 +101,9 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     Unreachable
-        With the range that can be reached.
+        With the reachable range.
     """
     solution = solve(
         cls,

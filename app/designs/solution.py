@@ -1,4 +1,4 @@
-"""The answer to a question of solving: read, calculated in a process, and written for the interface."""
+"""Answer a question of `solve`: read it, calculate it in a process, and return its answer."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     Raises
     ------
     InvalidInputs
-        With what is wrong with the question or the design.
+        With the faults of the question or the design.
     Unreachable
         If no value between the bounds gives the target.
     """
@@ -105,7 +105,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
 
 
 def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: str, name: str) -> float:
-    """Return one value [SI] as typed."""
+    """Return one typed value [SI]."""
     try:
         value = read_as(raw, unit).si
     except FaultyText as error:
@@ -156,7 +156,7 @@ class _SolutionText:
         )
 
     def _missed_tolerance(self) -> Iterator[Warning]:
-        """Yield a warning if the error of a solution is above the tolerance asked for."""
+        """Yield a warning if the error of a solution exceeds the requested tolerance."""
         tolerance, worst = self.solution.tolerance, 0.0
         for root in (*self.solution.roots.roots, *self.solution.roots.touching):
             worst = max(worst, math.inf if root.error is None else root.error) if root.confirmed else worst
@@ -169,7 +169,7 @@ class _SolutionText:
         yield Warning(code="tolerance_unmet", name=self.curve.y.name, detail=f"{detail}{self._kept_level()}")
 
     def _kept_level(self) -> str:
-        """Return why the step of the target has no finer level: the design names the one it has."""
+        """Return why the step of the target has no finer level: the design fixes its level."""
         step = self.document.steps.get(self.solution.scanned.target.block)
         level = step.level if step else None
         return f": the design names level {level} for {self.solution.scanned.target.block}" if level else ""
@@ -194,7 +194,7 @@ class _SolutionText:
     def _judgements(self, value: float) -> list[Judgement]:
         """Return every criterion as judged with one value of the unknown.
 
-        What needs a solid is not checked.
+        Criteria that need a solid are not checked.
         """
         own = applied(self.document, {self.curve.x.name: {"value": value, "unit": self.x}})
         graph, faults = build_graph(own, self.catalogues)

@@ -1,7 +1,7 @@
-"""Solve a design: every value of one parameter or input between two bounds that gives a wanted output.
+"""Solve a design: find every value of an input between two bounds that gives a wanted output.
 
-The curve between the bounds is a few array calls of the whole design, every step at one level. Each crossing
-is confirmed at the levels of the design, or at those that a tolerance requires.
+The curve between the bounds takes a few array calls of the whole design, with each step at one level. Each
+crossing is then confirmed at the levels of the design, or at those that a tolerance requires.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class DesignCurve(SampledCurve):
 
     @property
     def level(self) -> str | None:
-        """Return the level of the step whose output it is."""
+        """Return the level of the step that has the output."""
         return self.levels.get(self.target.block)
 
     @property
@@ -61,11 +61,11 @@ class DesignCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """Number of samples that one call takes at these levels."""
+        """Return the number of samples in one call at these levels."""
         return self.engine.rows_at_once([self.target], self.levels)
 
     def at_level(self, level: str) -> DesignCurve:
-        """Return the same curve, with the step whose output it is at one level."""
+        """Return the same curve, with the step of its output at one level."""
         return replace(self, levels={**self.levels, self.target.block: level})
 
     def is_at_levels_of(self, other: Self) -> bool:
@@ -128,7 +128,7 @@ def _levels(
 ) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels of the curve, and those of its solutions.
 
-    None of the first is finer than the second.
+    No level of the curve is finer than that of the solutions.
     """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
     cheap = engine.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
@@ -147,5 +147,5 @@ def _coarser(engine: DesignEngine, step: str, one: str | None, other: str | None
 
 
 def _meaning(engine: DesignEngine, reference: Reference) -> Meaning:
-    """Return a name of the design as messages call it, with its declared unit."""
+    """Return a name of the design as messages use it, with its declared unit."""
     return Meaning(words=str(reference), unit=engine.unit(reference), name=str(reference))

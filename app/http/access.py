@@ -1,4 +1,4 @@
-"""Who sends a request: its principal, its client, and the role that its route needs.
+"""Identify who sends a request: the principal, the client, and the role that the route needs.
 
 Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
 If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the
@@ -97,7 +97,7 @@ class Access:
             await self.app(scope, receive, send)
 
     async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
-        """Return whether a request would be let in as the same principal now.
+        """Return whether a request would still be admitted as the same principal.
 
         A stream may outlive its key.
         """
@@ -118,7 +118,7 @@ class Access:
 
 
 def _has_key_in_address(scope: Scope) -> bool:
-    """Return whether a key stands in path or query."""
+    """Return whether path or query contain a key."""
     query: bytes = scope["query_string"]
     if len(scope["path"]) >= LENGTH and MARK in scope["path"] and holds_key(scope["path"]):
         return True
@@ -141,12 +141,12 @@ def is_session(text: str) -> bool:
 
 
 async def get_client(request: Request) -> str:
-    """Return the client of a request; its prefix says how: `principal:`, `name:`, `session:` or `address:`.
+    """Return the client of a request, with a prefix: `principal:`, `name:`, `session:` or `address:`.
 
     Raises
     ------
     InvalidInputs
-        If the header is not a name.
+        If the header is not a valid name.
     """
     if (who := request.scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
@@ -162,7 +162,7 @@ async def get_client(request: Request) -> str:
 
 
 def from_whom(scope: Scope) -> str:
-    """Return the client of a request as `get_client` has it; a name that is none counts as none."""
+    """Return the client of a request like `get_client`; an invalid name is ignored."""
     if (who := scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
     headers = Headers(scope=scope)
@@ -189,7 +189,7 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route; the gate has read the declaration."""
+        """Do nothing as a dependency of a route; the access layer has read the declaration."""
 
     def check(self) -> None:
         """Check the role of the acting principal.
@@ -197,7 +197,7 @@ class Needs:
         Raises
         ------
         NotSignedIn, RoleNeeded
-            If it may not.
+            If the principal may not use the route.
         """
         if self.is_public:
             return
@@ -217,7 +217,7 @@ VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
 
 
 def needs(*roles: Role) -> params.Depends:
-    """Declare that a route needs one of these roles; without roles, that it needs a signed-in sender."""
+    """Declare that a route needs one of these roles; without roles it only needs a signed-in sender."""
     return params.Depends(Needs(roles))
 
 
@@ -242,7 +242,7 @@ def _only_reads(methods: Iterable[str]) -> bool:
     return bool(methods) and methods <= READING
 
 
-class Guarded:
+class RoleGuard:
     """A route's or a router's way to handle a request, behind the check of the role."""
 
     def __init__(self, handle: ASGIApp, needed: Needs) -> None:
@@ -255,8 +255,8 @@ class Guarded:
 
 
 def install(app: FastAPI) -> None:
-    """Guard all present routes of an app, and unknown paths. All apps share the routes."""
+    """Guard all present routes of an app, and unknown paths."""
     for route in app.router.routes:
-        if not isinstance(route.handle, Guarded):
-            route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]
-    app.router.default = Guarded(app.router.default, SIGNED_IN)
+        if not isinstance(route.handle, RoleGuard):
+            route.handle = RoleGuard(route.handle, needs_of(route))  # type: ignore[method-assign]
+    app.router.default = RoleGuard(app.router.default, SIGNED_IN)

@@ -1,4 +1,4 @@
-"""Limits on every request: the sizes of head and body, how slowly the body may come, the end of the service.
+"""Limits on every request: the sizes of head and body, the speed of the body, the shutdown of the service.
 
 FastAPI reads the cookies of every request by a function of the standard library whose time is quadratic in
 the length of a quoted cookie; none of ours is quoted, so quoted ones are dropped. FastAPI's own limit on
@@ -94,7 +94,7 @@ class RequestLimits:
         await self._passed(scope, self._counted(receive) if length == b"0" else receive, send)
 
     async def _passed(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, or answer in the application's stead if the request is cancelled before its answer."""
+        """Pass the request on, or answer for the application if it is cancelled before its answer."""
         has_begun = False
 
         async def noted(message: Message) -> None:
@@ -111,7 +111,7 @@ class RequestLimits:
             await self.refuse(stopping)(scope, receive, send)
 
     def _excess(self, scope: Scope, length: bytes) -> HttpError | None:
-        """Return the error of a head or of a stated length beyond the limits; None within them."""
+        """Return the error for a head or a stated length beyond the limits; None within them."""
         headers, query = scope["headers"], scope["query_string"]
         size = sum(len(name) + len(value) for name, value in headers) + len(query)
         if size + len(scope.get("raw_path") or b"") > LONGEST_HEAD:
@@ -128,7 +128,7 @@ class RequestLimits:
         return BodyTooLarge(f"a body may have at most {self.body.size / 2**20:g} MiB")
 
     def _counted(self, receive: Receive) -> Receive:
-        """Raise once a body of unknown length grows beyond the limit."""
+        """Raise once a body of unknown length exceeds the limit."""
         size = 0
 
         async def counted() -> Message:
@@ -142,7 +142,7 @@ class RequestLimits:
         return counted
 
     def _timed(self, receive: Receive) -> Receive:
-        """Time only what is waited for: while the service does something else, the client may wait."""
+        """Time only the waiting for the client, not the time in which the service is busy."""
         waited, size, whole = 0.0, 0, False
 
         async def timed() -> Message:
@@ -177,7 +177,7 @@ def _has_body(scope: Scope) -> bool:
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:
-    """Yield the headers without cookies in quotes, which take quadratic time to read."""
+    """Yield the headers without quoted cookies, which take quadratic time to parse."""
     for name, value in headers:
         yield name, (_plain_cookies(value) if name == b"cookie" and b'"' in value else value)
 

@@ -1,4 +1,4 @@
-"""Imports of models as jobs: the file is kept by its hash, examined, and becomes a version of a model."""
+"""Import models as jobs: store the file by its hash, examine it, and make it a version of a model."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class ModelImports:
         Raises
         ------
         UnreadableModel
-            If the file is empty, or of no kind that is taken.
+            If the file is empty, or of an unsupported kind.
         ProgramMissing
-            If the program that draws it is not here.
+            If the program that draws it is missing.
         ModelIdTaken, InvalidInputs
             If no imported model may have the id.
         QueueFull
@@ -87,7 +87,7 @@ class ModelImports:
         Raises
         ------
         JobFailed
-            The file is not taken, or the id is taken meanwhile.
+            If the file is refused, or the id is in use by now.
         """
         id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
         try:
@@ -105,7 +105,7 @@ class ModelImports:
         return completion
 
     def available(self) -> tuple[str | None, str | None]:
-        """Return the reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
+        """Return the reason why FreeCAD cannot draw here, or None; and its folder."""
         try:
             return None, self.programs.freecad.warm.find().modules
         except ProgramMissing as error:
@@ -127,7 +127,7 @@ def kind_of(content: bytes) -> Kind:
     Raises
     ------
     UnreadableModel
-        If it is none that is taken.
+        If the kind is not supported.
     """
     if content.startswith(b"PK\x03\x04"):
         return "freecad"

@@ -15,7 +15,7 @@ from app.storage.idempotency import Once
 
 
 def last_name(file: str) -> str:
-    """Return the name of a file without the folders in which it was, of either kind of path."""
+    """Return a file name without folders, for both kinds of paths."""
     return PurePath(file.replace("\\", "/")).name
 
 
@@ -28,21 +28,21 @@ def queue_upload(
     once: Once,
     check: Callable[[Session], object] = lambda session: None,
 ) -> str:
-    """Keep a file by its hash, queue the job that imports it, and return the job.
+    """Store a file by its hash, queue the job that imports it, and return the job.
 
     A repeated request returns the job of the first.
 
     Parameters
     ----------
     about
-        What the job is told, besides the file and the client.
+        The data for the job, besides the file and the client.
     check
-        Raises what refuses the import, in the unit of work that queues it.
+        Called in the unit of work that queues the import; raises to refuse it.
 
     Raises
     ------
     QueueFull, LimitReached
-        As `Jobs.enqueue`.
+        As raised by `Jobs.enqueue`.
     """
     payload = {"file": store.put(content), **about, "client": once.client}
 

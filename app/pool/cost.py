@@ -1,6 +1,6 @@
-"""Estimate how long a calculation will take, from measured costs of the levels and the number of points.
+"""Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate is an order of magnitude, known before the calculation, and rather too high than too low. An
+The estimate is an order of magnitude, and errs on the high side. An
 expensive calculation leaves the server's process (see `app.pool.pool`).
 """
 

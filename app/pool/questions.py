@@ -1,10 +1,10 @@
-"""A question is answered at once if that is cheap, else by a job.
+"""Answer a question at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
 solutions, explanations with sensitivities, analyses of tolerances, single variants and the impact of
 versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
-artifact, which the client fetches later. A job is known by the key of its question, so an equal question
-finds its job, or the answer itself.
+artifact, which the client fetches later. A job is stored under the key of its question, so an equal question
+finds the job or its answer.
 """
 
 from __future__ import annotations

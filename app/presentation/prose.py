@@ -1,4 +1,4 @@
-"""Prose of users as HTML: Markdown without HTML and pictures, links to http, https and mailto alone."""
+"""Render users' prose as HTML: Markdown without HTML and pictures; links only to http, https and mailto."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Analyses of CAD models on their own, outside of any design."""
+"""Analyses of CAD models outside of any design."""
 
 from __future__ import annotations
 

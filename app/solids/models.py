@@ -1,4 +1,4 @@
-"""CAD models on their own, and the files of builds."""
+"""CAD models outside of designs, and the files of builds."""
 
 from __future__ import annotations
 

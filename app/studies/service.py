@@ -1,4 +1,4 @@
-"""Operations on studies: begin, look, choose a row, cancel, remove."""
+"""Operations on studies: begin, show, choose a row, cancel, delete."""
 
 from __future__ import annotations
 

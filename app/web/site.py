@@ -1,4 +1,4 @@
-"""The pages as a part of the app: routes, files, errors, compression."""
+"""Add the pages to the app: routes, files, errors, compression."""
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ from app.web.template import routes as template
 from app.web.tolerances import routes as tolerances
 from app.web.upgrade import routes as upgrade
 from app.web.variants import routes as variants
+from app.web.verdict import routes as verdict
 from app.web.worksheet import routes as worksheet
 from app.web.worksheet_import import routes as worksheet_import
 
@@ -64,6 +65,7 @@ ROUTERS = (
     approval.router,
     variants.router,
     columns.router,
+    verdict.router,
     study.router,
     study.forms,
     worksheet_import.router,  # before the worksheets: `import` is not the id of one

@@ -1,4 +1,4 @@
-"""The operations of every worker."""
+"""The interface that every worker implements."""
 
 import sys
 import threading

@@ -1,4 +1,4 @@
-"""The processes that descend from the server, from /proc: what they use, and their end; Linux only."""
+"""The processes that descend from the server, from /proc: show their usage, and end them. Linux only."""
 
 import ctypes
 import os

@@ -1,7 +1,7 @@
 """The process from which job processes are forked: it has imported the geometry kernel and does nothing else.
 
-A fork of it is ready in milliseconds, where an import takes seconds. It is a plain process of its own: the
-children of `multiprocessing`'s would import the server's main module again.
+A fork of it is ready in milliseconds, whereas an import takes seconds. It is a plain process, because
+children of `multiprocessing`'s fork server would import the server's main module again.
 
 The server's lifeline kills it and its children when the server dies, even in the middle of an import. On
 systems without that signal, it ends when it notices that its channel has closed.

@@ -1,4 +1,4 @@
-"""The life of a job process, from the fork to its end."""
+"""The main loop of a job process, from the fork to its exit."""
 
 import ctypes
 import gc

@@ -1,7 +1,8 @@
-"""The worker of a server on one machine: several functions of a job in one process, which ends with the job.
+"""The worker of a server on one machine: the functions of a job share one process, which ends with the job.
 
-The process of a job that ran nothing but marked functions (`app.workers.base.may_share`) is kept for the next
-such job. A process costs more than a small solid: the fork, and what the kernel loads at first use.
+If a job ran only marked functions (`app.workers.base.may_share`), its process is kept for the next such job.
+Starting a process costs more than building a small solid: the fork, and the parts that the kernel loads at
+first use.
 """
 
 import logging

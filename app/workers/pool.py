@@ -1,4 +1,4 @@
-"""Processes that take one request after another, for work that is short beside a fork."""
+"""Processes that serve one request after another, for work that is short compared with a fork."""
 
 import threading
 from collections.abc import Callable, Mapping, Sequence

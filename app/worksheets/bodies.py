@@ -1,4 +1,4 @@
-"""Bodies of the calls of worksheets."""
+"""Request bodies of worksheets."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Check a text: its faults; without any, every line on paper with the example's numbers.
+"""Check a text and report its faults; if it has none, print every line with the example's numbers.
 
-It runs in a calculation process, as everything that reads a user's text does.
+It runs in a calculation process, like all code that reads a user's text.
 """
 
 from __future__ import annotations

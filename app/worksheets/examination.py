@@ -1,4 +1,4 @@
-"""Examine a text; runs in a calculation process, because the text is a user's.
+"""Examine a text in a calculation process, because a user wrote it.
 
 The language limits bytes, statements and operations, and has no loops. The process limits time and memory.
 """

@@ -1,4 +1,4 @@
-"""STEP bytes → the requested outputs of an analysis, each with its error; a pure function of its inputs."""
+"""Compute the requested outputs of an analysis of a STEP file, each with its error; a pure function."""
 
 from __future__ import annotations
 

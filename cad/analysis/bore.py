@@ -1,17 +1,17 @@
 """Compliance of a split bore under the pressure of an oil film, as a matrix between pressure modes.
 
-A mode is a pressure, and a radial displacement, over the whole bore: 1, cos nθ or sin nθ up to n = 9, even
-along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square of 1. A unit
-pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's pressure on it over
-the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
+A mode is a distribution of pressure, or of radial displacement, over the whole bore: 1, cos nθ or sin nθ up
+to n = 9, uniform along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square
+of 1. A unit pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's
+pressure on it over the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
 
-θ counts from +y, the block of a housing or the shank of a rod, towards -x.
+θ is measured from +y, the block of a housing or the shank of a rod, towards -x.
 
 The halves of the solid are joined, because bolts keep the joint closed. Rows c1 and s1 hold the motion of the
 whole bore with its support; an oil film sees it as eccentricity. A pressure in c1 or s1 still bends the bore,
 by the other rows.
 
-The solid has to mirror itself in z = 0; half of it is meshed. Lengths in mm, forces in N, stresses in MPa.
+The solid must be symmetric about z = 0; one half is meshed. Lengths in mm, forces in N, stresses in MPa.
 
 References
 ----------
@@ -84,7 +84,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
         whole = whole + other
     half = _upper_half(list(whole.solids))
     if half is None:
-        raise AnalysisError("no_bore", "the bore's solids are not one body that mirrors itself in z = 0")
+        raise AnalysisError("no_bore", "the bore's solids are not one body that is symmetric about z = 0")
     for face in half.faces:
         face.name = _name(face, place)
     for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):

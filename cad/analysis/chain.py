@@ -1,7 +1,8 @@
-"""A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
+"""A crankshaft as a chain of throws: matrices of single throws, rotated by their pin angles and assembled.
 
-The first end is held. In a guided chain each main stays on the axis, as in a bearing, and may turn; otherwise
-nothing else is held. A series of separately computed throw stiffnesses neglects the bearings between them.
+The first end is held. In a guided chain each main stays on the axis, as in a bearing, but may rotate;
+otherwise nothing else is held. A series of separately computed throw stiffnesses neglects the bearings
+between them.
 """
 
 from __future__ import annotations
@@ -97,9 +98,3 @@ def turned(angle: float) -> Array:
     plane = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
     space = block_diag(plane, np.eye(1))
     return np.asarray(block_diag(space, space, space, space, plane))
-
-
-def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
-    """Return the stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
-    alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
-    return 1 / sum(1 / stiffness for stiffness in alone)

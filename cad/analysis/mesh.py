@@ -2,12 +2,12 @@
 
 Elements are isoparametric. With a lower order of curvature, a cylinder is 0.2 % too stiff; with a higher
 order, the elements cannot represent a rotation. So a mesh can be much coarser than a mesh for display. Three
-measures make that safe. Each curved edge has a least number of segments, else a bore's rim would be spanned
-by one chord through its middle. Along sharp inner edges, where stress has no limit and a higher order gains
-little, elements are small (`cad.analysis.corners`). And the curving of the surface is led into the inside by
-harmonic functions: Netgen curves surface elements only, which folds thin elements under a fillet (of 2 000
-elements in a throw 46 so, 6 with it). The remaining folded elements only add stiffness, which the estimated
-error includes.
+measures make that safe. Each curved edge has a minimum number of segments; otherwise one chord through the
+middle could span a bore's rim. Along sharp inner edges, where stress is unbounded and a higher order gains
+little, elements are small (`cad.analysis.corners`). Harmonic functions extend the curvature of the surface
+into the interior: Netgen curves only surface elements, which folds thin elements under a fillet (46 of 2 000
+elements in a throw; 6 with this measure). The remaining folded elements only add stiffness, which the
+estimated error includes.
 """
 
 from __future__ import annotations

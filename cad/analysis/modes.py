@@ -1,8 +1,8 @@
 """The first torsional natural frequency of a held shaft.
 
 The number of a mode does not say whether it is torsional: a throw bends first. A mode φ of unit mass has the
-effective inertia (rᵀ M φ)², r being the rigid rotation about z; over all modes they add up to that of the
-solid.
+effective inertia (rᵀ M φ)², where r is the rigid rotation about z; over all modes they add up to the inertia
+of the solid.
 """
 
 from __future__ import annotations

@@ -1,11 +1,10 @@
 """The surface of an analysed solid as data for a picture: points, displacements, stresses.
 
-From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
-into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is
-closed. Of a solid that was halved by its symmetry the other half is added, with the signs that the load
-requires (see `cad.analysis.elastic`); faces within the mirror plane are not part of the surface. It is a
-picture: `cad.analysis.analyse` computes outputs with their errors, `cad.analysis.stress` the greatest
-stresses.
+The data come from the response of one mesh, of one order, to a load of 1 N·m. Every curved surface element is
+divided into plane triangles, so that a shaft looks round; triangles share their points, so the surface is
+closed. If the solid was halved by symmetry, the other half is added with the signs that the load requires
+(see `cad.analysis.elastic`); faces in the mirror plane are omitted. The data serve pictures only:
+`cad.analysis.analyse` computes outputs with their errors, `cad.analysis.stress` the greatest stresses.
 
 Twist is the local rotation about z, (∂u_y/∂x − ∂u_x/∂y)/2: it needs no axis, so it is as accurate on the
 axis of the shaft as on a pin far from it, and for a circular shaft it is Coulomb's angle of the section.

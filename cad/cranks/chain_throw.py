@@ -1,6 +1,6 @@
 """Single throws of a shaft as STEP files, from mid-main to mid-main, for finite elements.
 
-They have no oil drilling: the section at mid-main would cut the mouth of the drilling of the throw before it.
+They have no oil drilling: the section at mid-main would cut the mouth of the previous throw's drilling.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Counterweight radii of the webs: one number, or one for each web; what the rules of shafts ask of them."""
+"""Counterweight radii of the webs, one number or one for each web, and the rules of shafts about them."""
 
 from __future__ import annotations
 

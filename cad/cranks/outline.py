@@ -1,7 +1,7 @@
 """Outline of a crank web, seen along the shaft [mm]: its body, and a counterweight if there is one.
 
-The body runs from half a width below the journal's axis to half a width above the pin's, its ends round or
-square. The counterweight is a sector about the journal's axis, on the side away from the pin, as thick as the
+The body runs from half a width below the journal's axis to half a width above the pin's, with round or square
+ends. The counterweight is a sector about the journal's axis, on the side away from the pin, as thick as the
 web. Areas and moments here are closed forms; the kernel computes nothing here.
 """
 

@@ -1,7 +1,7 @@
-"""Rules for which a crank is refused, always by the names of the parameters and with a way out.
+"""Rules that refuse a crank; each names the parameters and a remedy.
 
 The rules are a little stricter than geometry requires (by some per cent), so that edges keep clear of each
-other and the kernel draws whatever they accept; and what they accept, the closed form of the volume covers.
+other. The kernel can draw every crank that they accept, and the closed form of the volume covers it.
 """
 
 from __future__ import annotations

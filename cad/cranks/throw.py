@@ -4,7 +4,7 @@ z is the axis of the main journals, x points from it to the crankpin, z = 0 is t
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
 
 Journals and pins are turned from one outline with their fillets, and the webs are plates. So the parts meet
-only in flat faces, and the kernel can unite them reliably. Only bores, drilling and inclined faces are cut.
+only at flat faces, and the kernel can fuse them reliably. Only bores, drilling and inclined faces are cut.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Volume of a crank throw [mm³], from its dimensions alone: a second method beside the kernel.
+"""Volume of a crank throw [mm³] from its dimensions alone: an independent check of the kernel.
 
-The parts touch in faces, so their volumes add. Each cut lies inside one part or crosses a part completely;
-the rules of the models ensure that. Fillets follow Pappus. The drilling is summed over its chords: at a
-distance y from the plane of the crank each has the same length, whatever its height in the drill, as both of
-its mouths lie in cylinders along z. The bores that it crosses shorten it likewise.
+The parts touch only at faces, so their volumes add. The rules of the models ensure that each cut lies inside
+one part or crosses it completely. Fillets follow Pappus's theorem. The drilling is integrated over its
+chords: at a distance y from the plane of the crank all have the same length, because both of its mouths lie
+in cylinders along z. The bores that it crosses shorten the chords in the same way.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Draw a crankshaft of any number of throws, in millimetres, and compute its volume in closed form.
 
-z runs along the shaft; z = 0 is the middle of the first main journal, and the middle of each next one lies a
-pitch further on. x is the line of reference from which the angles of the pins count, towards y. The nose is
-at -z, the flange at +z.
+z runs along the shaft; z = 0 is the middle of the first main journal, and the middle of each following one is
+one pitch further. x is the reference line from which the pin angles are measured, towards y. The nose is at
+-z, the flange at +z.
 
 Each throw is drawn as `crank_throw` is, then turned and shifted. Journals and pins are turned from one
 outline, and the parts meet only in flat faces, so their volumes add. Bores, drillings and bolt holes are cut

@@ -1,4 +1,4 @@
-"""Broken-out sections (ISO 128-3): around a hole that no section shows, a view is cut open to its axis.
+"""Broken-out sections (ISO 128-3): a view is cut open to the axis of a hole that no section shows.
 
 Of several equal holes, the one farthest to the right in the view is opened. The cut is a box, whose sides
 are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).

@@ -1,7 +1,7 @@
 """Geometric tolerances in frames, datums and surface textures, at free places with leaders to their faces.
 
-Frames stand as ISO 1101 has them, datums as ISO 5459, on the dimension line of a feature whose axis they are;
-textures as ISO 21920-1.
+Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; a datum axis stands on the
+dimension line of its feature.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Curves on the paper: straight lines, true arcs, and lines of points where neither fits.
+"""Curves on the paper: straight lines, true arcs, and polylines where neither fits.
 
-The kernel projects edges in pieces, and draws what lies behind one another several times. Here pieces of one
-line or one circle are joined, each is drawn once, and a hidden line gives way to a visible one (ISO 128-2).
+The kernel projects edges in pieces, and draws coincident edges several times. This module joins the pieces of
+each line or circle, draws each once, and omits a hidden line behind a visible one (ISO 128-2).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Where dimensions and their words stand, so that no words overlap and none lie across a view.
+"""The layout of dimensions and their texts: no texts overlap, and none lies across a view.
 
-Dimensions beside a view run in lanes, each in the first one in which it has room. Those of arcs, oblique
-holes and angles have words at the nearest free place outside the views, and a leader to them.
+Dimensions beside a view run in lanes, each in the first lane with room. Dimensions of arcs, oblique holes and
+angles have their text at the nearest free place outside the views, with a leader.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Width of letters: an upper bound over the fonts in which a browser or a typesetter shows a drawing.
+"""Width of letters: an upper bound over the fonts in which browsers and typesetters show a drawing.
 
-The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; a CAD program's
-ISO lettering is narrower than all of them.
+The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; the ISO lettering
+of CAD programs is narrower than all of them.
 """
 
 from __future__ import annotations

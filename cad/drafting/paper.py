@@ -1,4 +1,4 @@
-"""The drawing as PDF: its SVG on a page of its size, by Typst; vectors and letters, no pixels."""
+"""The drawing as PDF: its SVG, placed by Typst on a page of the same size; vectors and letters, no pixels."""
 
 from __future__ import annotations
 

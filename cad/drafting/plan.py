@@ -1,4 +1,4 @@
-"""The sheet: its areas, the scale at which everything has room, and where the views stand."""
+"""Plan the sheet: its areas, the scale at which everything has room, and the positions of the views."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cut shapes by a plane: the faces in the plane, the solids behind it, and their edges as curves on paper."""
+"""Cut shapes by a plane: the faces in the plane, the solids behind it, and their edges on paper."""
 
 from __future__ import annotations
 

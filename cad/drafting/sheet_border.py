@@ -1,15 +1,16 @@
-"""Border, title block, notes and the table of parameters of a sheet."""
+"""The border, title block, notes and parameter table of a sheet."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from cad.drafting.formats import COLUMN, EDGE, LEFT
 from cad.drafting.frames import Frame
+from cad.drafting.labels import deviations, number_of
 from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.page import APP, Page
+from cad.drafting.parameter_match import size_of
 from cad.drafting.symbols import basic_texture, first_angle, texture
 from cad.drafting.title import (
     CAPTION,
@@ -23,11 +24,11 @@ from cad.drafting.title import (
 )
 from cad.header import Header
 from cad.stamp import MARK
+from cad.tolerances import Limits, limits_of
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
-_BOTH_WAYS = re.compile(r"^(\S+ \S+ )\+(\S+)/-\2(?= )")  # equal deviations: ±0.1 mm
 _MOST_LINES = 3  # of one value in the table
 
 
@@ -140,10 +141,12 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
+    page.write("mm", left + _NAMES, top, _LETTERS)
+    limits = limits_of(parameters)
     rows = [
         (name.replace("_", " ") + (" *" if name in unseen else "") if number == 0 else "", line)
         for name, text in parameters.items()
-        for number, line in enumerate(_wrapped(_BOTH_WAYS.sub(r"\1±\2", text), COLUMN - _NAMES - 6))
+        for number, line in enumerate(_wrapped(_value(text, limits.get(name)), COLUMN - _NAMES - 6))
     ]
     room = top - (EDGE + HEIGHT) - 3.0
     row = min(_ROW, room / max(len(rows), 1))
@@ -152,6 +155,20 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
         y = top - row * number
         page.write(clipped(name, _NAMES - 2, size), left, y, size)
         page.write(text, left + _NAMES, y, size)
+
+
+def _value(text: str, limits: Limits | None) -> str:
+    """Return a length in mm with its deviations, an angle in degrees, and other values as they are."""
+    size = size_of(text)
+    if size is None:
+        return text
+    value, is_angle = size
+    if is_angle:
+        return f"{number_of(value, 6)}°"
+    if limits is None:
+        return number_of(value, 6)
+    ends = "/".join(filter(None, deviations(limits)))
+    return " ".join(filter(None, (number_of(value, 6), limits.zone, ends)))
 
 
 def _wrapped(text: str, width: float) -> list[str]:

@@ -1,6 +1,7 @@
 """The drawing as SVG: the entities of its DXF, one after another, at the size of its sheet.
 
-An arc is an arc, not a line of points. No style attributes, which the pages' policy forbids, and no scripts.
+An arc stays an arc, not a polyline. The SVG has no style attributes, which the pages' policy forbids, and no
+scripts.
 """
 
 from __future__ import annotations

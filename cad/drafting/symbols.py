@@ -1,7 +1,7 @@
 """Symbols of a drawing as lines: projection, surface texture, geometric tolerances, datums, cutting arrows.
 
-All sizes are millimetres on paper, from the symbol's own origin. A symbol is lines, circles and filled
-corners, not letters of a font: so it looks the same in every program.
+All sizes are millimetres on paper, from the symbol's own origin. A symbol consists of lines, circles and
+filled corners, not of letters of a font, so it looks the same in every program.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The title block of a drawing (ISO 7200): its fields, where they stand, and how long their texts may be."""
+"""The title block of a drawing (ISO 7200): its fields, their positions and maximum text lengths."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-The section takes one of two planes through the shaft: one that is not a joint, and then the one that holds
-the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
-first-angle projection, stands the view from the left. Balls, shafts and round bars are not cut lengthwise
-(ISO 128-3): they are drawn whole, a shaft with its hidden lines.
+The section uses one of two planes through the shaft: one that is not a joint, and of these the one that
+contains the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
+first-angle projection, is the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO
+128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cad.drafting.breaks import breaks, opened
 from cad.drafting.curves import Curve, Point, Round, curves_of, joined
 from cad.drafting.section import CLEAR, Arc, Cut, Frame, arc_of, cut_of, faces_across, half_behind, reach_of
 from cad.step import Body
-from cad.surfaces import Surface, X, Y, Z, faces_of, look
+from cad.surfaces import Surface, X, Y, Z, look
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
 _LITTLE = 0.02  # of the depth on the other side: what is less is no side of its own
@@ -153,10 +153,8 @@ def _is_ball(shape: Shape) -> bool:
 
 def _is_bar(shape: Shape) -> bool:
     """Return whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
-    faces = faces_of(shape)
-    return sorted(face.kind for face in faces) == ["cylinder", "plane", "plane"] and any(
-        face.kind == "cylinder" and face.surface.about(Z) for face in faces
-    )
+    seen = look(shape)
+    return (len(shape.Faces()), len(seen.planes), len(seen.about(Z))) == (3, 2, 1)
 
 
 def _upright(bodies: Sequence[Body]) -> Vector:

@@ -19,7 +19,7 @@ from templates.core.language.template import (
     text,
 )
 from templates.physics.orbits.cyclic_film import Duty, cycle_length, largest_load, mean_speed
-from templates.physics.supplied.feeding import Feeding, is_back, supply_kind, within_bearing
+from templates.physics.supplied.supply_geometry import SupplyGeometry, is_back, supply_kind, within_bearing
 
 FED = (
     "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
@@ -153,9 +153,9 @@ class FedBearing(Template):
         return self.W / self.D
 
     @shared
-    def feeding(self) -> Feeding:
+    def feeding(self) -> SupplyGeometry:
         """Groove and holes."""
-        return Feeding(
+        return SupplyGeometry(
             self.D, self.W, self.W_g, self.phi_g, self.ext_g,
             self.l_B, self.a_B, self.phi_B, self.l_J, self.a_J, self.phi_J,
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What the static film of a journal bearing is held to: criteria that versions of `oil_film` share."""
+"""Criteria of the static film of a journal bearing, shared by the versions of `oil_film`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ def hot_oil(temperature: str) -> dict[str, object]:
         "require": f"{temperature} <= 125 degC",
         "words": "the oil is no hotter than plain bearings run with, in exceptional cases too",
         "source": "DIN 31652-3, largest value in its table of temperatures, as textbooks quote it",
-        "unverified": "no public copy of DIN 31652-3 was at hand",
+        "unverified": "customary, source not verified: no public copy of DIN 31652-3 was at hand",
         "warning": "oil_too_hot",
     }
 
@@ -19,7 +19,8 @@ CRITERIA: dict[str, dict[str, object]] = {
         "require": "minimum_film_thickness >= smallest_permissible_film",
         "words": "the smallest film is not thinner than the smallest permissible one",
         "source": "ISO 7902-3:1998, table 1, as textbooks quote it",
-        "unverified": "no public copy of ISO 7902-3 was at hand, and copies of its table differ",
+        "unverified": "customary, source not verified: no public copy of ISO 7902-3 was at hand, and copies"
+        " of its table differ",
     },
     "own_film": {
         "require": "minimum_film_thickness >= permissible_film",

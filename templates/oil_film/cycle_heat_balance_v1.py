@@ -1,7 +1,8 @@
-"""Heat balance of a journal bearing's film over an engine cycle: its effective viscosity and what follows.
+"""Heat balance of a journal bearing's film over an engine cycle: effective viscosity and dependent results.
 
-Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the temperature
-of the supply give one viscosity; the orbit and the smallest film are those of that viscosity.
+One viscosity follows from the power loss and side flow of the film over the cycle, from the flow that the
+supply pressure drives, and from the supply temperature; the orbit and the smallest film are calculated at
+that viscosity.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from templates.core.language.template import (
     shared,
 )
 from templates.groups.fed_bearing import FedBearing
+from templates.groups.film_assumptions import FULL, PARALLEL, RIGID, SMOOTH
 from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
@@ -91,7 +93,8 @@ class CycleHeatBalance(Oil, FedBearing):
     that is there in the loss, and leaves the rate as it is.
     A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
-    No error of the model is stated: no measured cycle with all its inputs was at hand.
+    No level states an error: no ensemble against level supplied was made, and no measured cycle with all its
+    inputs was at hand.
 
     References
     ----------
@@ -102,6 +105,7 @@ class CycleHeatBalance(Oil, FedBearing):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, FULL, "the oil has one temperature over the cycle")
     levels = MARCHED_LEVELS
     default_level = "mobility"
     most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500, "supplied": 1}
@@ -174,7 +178,7 @@ class CycleHeatBalance(Oil, FedBearing):
     rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
     k: Array = given("1", "heat share", default="1", ge=0, le=1)
     eta_H: Array = given("mPa*s", "HTHS viscosity", symbol=r"\eta_\mathrm{HTHS}", name="hths_viscosity",
-                         alternative=True, gt=0)  # fmt: skip
+                         alternative=True, gt=0, assumed="shear does not thin the oil")  # fmt: skip
     r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
     n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
 

@@ -1,6 +1,6 @@
 """Hydrostatic pad: a circular or annular step pad with a recess, fed by a pump (MEC 315).
 
-The pump lifts the load at any speed, and at rest: the film follows from the load, the lands and the
+The pump lifts the load at any speed, even at rest: the film follows from the load, the lands and the
 restrictor. Closed forms; laminar, isothermal, incompressible, parallel rigid faces, a deep recess.
 """
 
@@ -60,6 +60,7 @@ class HydrostaticPad(Template):
     Course MEC 315, hydrodynamic and hydrostatic lubrication.
     """
 
+    assumptions = ("the faces are parallel, rigid and smooth", "the oil does not thin as it warms")
     example = {
         "load": "60 kN",
         "outer_diameter": "100 mm",
@@ -109,7 +110,7 @@ class HydrostaticPad(Template):
             "require": "temperature_rise <= 60 K",
             "words": "oil supplied at 40 degC leaves at 100 degC at most; it is much thinner there",
             "source": "ISO 7902-3, 100 degC as the general limit with pressure feed, as textbooks quote it",
-            "unverified": "no public copy of ISO 7902-3 was at hand",
+            "unverified": "customary, source not verified: no public copy of ISO 7902-3 was at hand",
             "warning": "oil_too_hot",
         },
     }
@@ -257,7 +258,7 @@ class HydrostaticPad(Template):
     def eta_P(self) -> Array:
         return self.eta * (1 / self.K) ** (1 / 2)
 
-    @formula("cm**2", "pad area", symbol="A")
+    @formula("cm**2", "pad area", symbol="A", gt=0)
     def A(self) -> Array:
         return pad_area(self.D, self.d)
 

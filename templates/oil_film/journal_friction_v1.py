@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID
 from templates.groups.journal_criteria import CRITERIA
 from templates.physics.journals.loaded_journal import eccentricity_of_load, friction_over_Petrov, load_number
 from templates.physics.journals.petrov import friction_Petrov_1883
@@ -43,6 +44,7 @@ class JournalFriction(Template):
 
     precision = 1e-8  # the eccentricity is found by a search
 
+    assumptions = (RIGID, PARALLEL, ISOTHERMAL)
     example = {
         "journal_diameter": "50 mm",
         "bearing_width": "100 mm",

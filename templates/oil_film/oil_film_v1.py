@@ -7,6 +7,7 @@ their old worksheets. Static load, aligned journal, mean of inlet and outlet tem
 from __future__ import annotations
 
 from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID, SMOOTH
 from templates.physics.journals.oil import density, double_logarithm, temperature_logarithm, walther
 from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
@@ -45,6 +46,7 @@ class OilFilm(Template):
     ASTM D341 (Walther) for the viscosity.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, ISOTHERMAL)
     example = {
         "radial_load": "25 kN",
         "diametral_clearance": "0.055 mm",

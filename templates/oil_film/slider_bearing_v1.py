@@ -18,6 +18,7 @@ from templates.core.language.template import (
     require,
     shared,
 )
+from templates.groups.film_assumptions import ISOTHERMAL
 from templates.physics.pads.slider import reduced_Reynolds_number, squeeze_number
 from templates.physics.pads.slider_film import (
     HEIGHTS,
@@ -75,6 +76,7 @@ class SliderBearing(Template):
     Michell: Zeitschrift für Mathematik und Physik 52, 1905, p. 123, for the finite width.
     """
 
+    assumptions = (ISOTHERMAL, "pad and runner are rigid and smooth")
     levels = ("infinite", "finite")
     default_level = "finite"
     most_points = {"finite": 100_000}

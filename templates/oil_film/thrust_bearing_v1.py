@@ -1,7 +1,8 @@
 """Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
 
-The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
-Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+The film follows from the load, and its temperature from the friction heat that the oil carries off. The film
+is isothermal with an effective viscosity, incompressible and laminar; faces are rigid, and the pressure
+around the pads is ambient.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Truth, formula, given, require, shared
+from templates.groups.film_assumptions import ISOTHERMAL
 from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.journals.oil import by_law, viscosity_at
@@ -52,6 +54,7 @@ class ThrustBearing(Oil):
 
     precision = 1e-8
 
+    assumptions = (ISOTHERMAL, "pads and collar are rigid and smooth", "every pad bears its share")
     example = {
         "load": "20 kN",
         "outer_diameter": "200 mm",

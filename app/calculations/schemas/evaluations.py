@@ -45,6 +45,13 @@ class Output(Measured):
     )
 
 
+class Assumption(Answer):
+    """Something that an answer takes for granted and that makes a part look safer."""
+
+    name: str = Field(description="the input whose default stands, or the criterion; empty for the model")
+    detail: str
+
+
 ERROR: JsonDict = {
     "description": "estimated relative error of each point; of a curve, relative to its largest absolute "
     "value; null where none is stated",
@@ -67,6 +74,7 @@ class Results(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
+    assumed: list[Assumption] = Field([], description="defaults that make a part look safer, and stand")
     criteria: list[Criterion] | None = Field(
         None, description="worst first; absent where the template has none whose outputs are wanted"
     )

@@ -1,4 +1,4 @@
-"""`/designs/{id}/decide`: levels climb where a criterion is undecided, or its error unknown."""
+"""`/designs/{id}/decide`: refine levels where a criterion is undecided, or its error unknown."""
 
 from __future__ import annotations
 

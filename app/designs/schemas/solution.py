@@ -1,4 +1,4 @@
-"""Answers of `solve` on a design: every value of an unknown that gives a target, with the curve between."""
+"""Answers of `solve` on a design: values of the unknown that reach the target, and the curve."""
 
 from __future__ import annotations
 

@@ -22,15 +22,15 @@ class NewModel(Upload):
     file: FileName = "model"
 
 
-def version_made(result: str) -> tuple[str, int] | None:
+def imported_version(result: str) -> tuple[str, int] | None:
     """Return the id and version of the model that an import made, by the result of its job."""
     version = _VERSION.fullmatch(result)
     return version and (version[1], int(version[2]))
 
 
-def _page_made(result: str) -> str | None:
-    made = version_made(result)
-    return made and f"/models/{made[0]}/{made[1]}"
+def _address(result: str) -> str | None:
+    version = imported_version(result)
+    return version and f"/models/{version[0]}/{version[1]}"
 
 
 async def _programs(services: PageServices) -> dict[str, object]:
@@ -43,7 +43,7 @@ FORM = FileForm(
     "a .FCStd of FreeCAD, or a STEP file",
     NewModel,
     lambda services: services.model_imports.begin,
-    _page_made,
+    _address,
     _programs,
 )
 router = APIRouter(include_in_schema=False)

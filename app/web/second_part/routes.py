@@ -1,4 +1,4 @@
-"""The page that adds a bought part to a model of a design; it writes the manifest of the assembly.
+"""The page that adds a bought part to a model of a design, by writing the manifest of an assembly.
 
 The assembly is imported like any other model, and then replaces the model in the design.
 """
@@ -15,7 +15,7 @@ from pydantic import JsonValue, TypeAdapter
 from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.schemas.designs import Design, DesignModel
 from app.solids.routes.models import list_models, show_model
-from app.web.model_import.routes import FORM, version_made
+from app.web.model_import.routes import FORM, imported_version
 from app.web.shared.design_answers import job_of
 from app.web.shared.file_form import MISSED
 from app.web.shared.forms import fields, forms_only
@@ -113,8 +113,8 @@ async def _imported(
         work = await job_of(services, job)
         if work.problem is not None:
             raise Refused(work.problem)
-        if work.state == "done" and (made := version_made(work.result or "")):
-            return {"id": made[0], "version": made[1]}
+        if work.state == "done" and (version := imported_version(work.result or "")):
+            return {"id": version[0], "version": version[1]}
         await asyncio.sleep(GLANCE)
     raise Refused.because(503, "the server is busy: the assembly has not been created; send the form again")
 

@@ -1,4 +1,4 @@
-"""The steps and models of a design or revision as its page shows them."""
+"""The steps and models of a design or revision, for its page."""
 
 from __future__ import annotations
 

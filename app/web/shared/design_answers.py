@@ -1,4 +1,4 @@
-"""Answers about a design that its page and those of its revisions have in common."""
+"""Answers about a design that its page and its revisions' pages share."""
 
 from __future__ import annotations
 

@@ -45,8 +45,8 @@ class FileForm:
         The model that checks id and name.
     begin
         The service that begins the import.
-    made
-        Returns the page of what the import made, by the result of its job; None for a job of another kind.
+    address
+        Returns that of what the import made, by the result of its job; None for a job of another kind.
     context
         Returns what else the form shows.
     """
@@ -56,7 +56,7 @@ class FileForm:
     choose: str
     upload: type[Upload]
     begin: Callable[[PageServices], Callable[[bytes, str, str, Once], str]]
-    made: Callable[[str], str | None]
+    address: Callable[[str], str | None]
     context: Callable[[PageServices], Awaitable[dict[str, object]]] = _nothing
 
     async def show(self, request: Request, services: PageServices, job: str, id: str) -> Response:
@@ -67,8 +67,8 @@ class FileForm:
         if work.problem is not None:
             return await self._form(request, services, id, work.problem.detail, work.problem.status)
         if work.state == "done":
-            made = self.made(work.result or "")
-            return go(made) if made else await self._form(request, services, id)
+            address = self.address(work.result or "")
+            return go(address) if address else await self._form(request, services, id)
         answer = show(request, self.page, notice="", waiting=work)
         answer.headers["Refresh"] = "1"  # the page needs no script to wait
         return answer

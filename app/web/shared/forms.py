@@ -1,8 +1,9 @@
-"""Fields of a form and the JSON of the interface: typed text becomes a value, a value becomes text.
+"""Convert between fields of a form and JSON of the interface: typed text to values, values to text.
 
 A control is called `.scale` for a design's own parameter, `film.radial_load` for an input of a step or a
-parameter of a model, `film@level` for an option of a step, `film@limits.permissible_film` for a limit: no two
-are called alike, and none like a field of the form itself (`note`) or a property of HTML's forms (`length`).
+parameter of a model, `film@level` for an option of a step, `film@limits.permissible_film` for a limit: all
+these names are distinct, and differ from fields of the form itself (`note`) and from properties of HTML's
+forms (`length`).
 
 `shared/typed.js` does the same in the browser; `tests/app/web` compares the two.
 """

@@ -1,4 +1,4 @@
-"""Fields for library values: limits of criteria, typed or from a row, and rows that fill an input."""
+"""Fields that library rows can fill: limits of criteria, and inputs."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The fields and files of a form that was sent as `multipart/form-data` (RFC 7578): how a browser uploads.
+"""Parse the fields and files of a form sent as `multipart/form-data` (RFC 7578), as browsers upload files.
 
-Our forms send one file each, so that the whole body, which the service bounds, is split at once.
+Our forms send one file each, and the service limits the body, so the whole body is split at once.
 """
 
 from __future__ import annotations

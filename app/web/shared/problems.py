@@ -1,4 +1,4 @@
-"""Errors as pages: for a browser that asks for a page; the interface keeps its problems."""
+"""Show errors as pages if a browser asks for a page; the REST interface returns problems."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pages as responses: the template rendered, a strict Content-Security-Policy, the display units kept."""
+"""Return pages: the rendered template, a strict Content-Security-Policy, and the display units."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The services, bound to the principal and client of a page request.
 
-A page is a route like those of the interface: the same gate lets the same roles in, the same services decide
-and act for the same principal, and their models are what the interface answers. An error is the problem that
-the interface would answer, `Refused`.
+A page is a route like those of the interface: the same checks admit the same roles, the same services act for
+the same principal, and both use the same models. An error is raised as `Refused`, with the problem that the
+interface would return.
 """
 
 from __future__ import annotations

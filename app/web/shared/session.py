@@ -1,7 +1,7 @@
 """Cookies of a browser: one that identifies its requests, and one for a session after sign-in.
 
-The first does not identify a principal. With the second, every form carries a token of the session, beside
-the rule of the gate that forms come from the service's own pages.
+The first does not identify a principal. With the second, every form carries a token of the session, in
+addition to the rule that forms must come from the service's own pages.
 """
 
 from __future__ import annotations

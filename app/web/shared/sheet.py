@@ -1,4 +1,4 @@
-"""Fields of a form for inputs and parameters: words, what was typed, its value, what is wrong."""
+"""Fields of a form for inputs and parameters: label, typed text, value, and fault."""
 
 from __future__ import annotations
 

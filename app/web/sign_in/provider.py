@@ -1,4 +1,4 @@
-"""Sign-in by the organisation's provider: the redirect to it, and the way back."""
+"""Sign-in by the organisation's provider: redirect the browser there, and handle its return."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Sign-in, sign-out, and the account page: roles, limits, keys.
 
-A session is a matter of browsers alone, so these pages begin and end it themselves.
+Only browsers have sessions, so these pages create and end them.
 """
 
 from __future__ import annotations

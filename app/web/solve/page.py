@@ -1,4 +1,4 @@
-"""The page that solves a design: which value of one parameter gives a wanted output, with the curve."""
+"""The page that solves a design: values of one parameter that give a wanted output, and the curve."""
 
 from __future__ import annotations
 

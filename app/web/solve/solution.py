@@ -1,4 +1,4 @@
-"""Parts that the solve pages of a design and a template share: the answer, its curve and its roots."""
+"""Parts that the solve pages of a design and of a template share: the answer, its curve and its roots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page that solves a template: which values of one input give a wanted output, with the curve."""
+"""The page that solves a template: values of one input that give a wanted output, and the curve."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from app.web.shared.places import PlaceOption, suggested
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
 from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, in_words, replied
-from app.web.template.page import inputs_of, typed_in
+from app.web.template.routes import inputs_of, typed_in
 from templates.core.language import template as language
 from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit

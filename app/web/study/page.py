@@ -1,4 +1,4 @@
-"""The page of a study: how far it is, what it found, charts of its rows, and the row that is chosen."""
+"""The page of a study: its progress, results, charts of its rows, and the chosen row."""
 
 from __future__ import annotations
 

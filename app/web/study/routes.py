@@ -1,4 +1,4 @@
-"""The pages of studies, and what their forms do."""
+"""The routes of the pages of studies and of their forms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The upgrade of a design to another version of a template: a preview, and a button that makes a revision."""
+"""The page that upgrades a design to another version of a template: a preview, and a button that saves it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The cells of the table of variants on a page, and the CSV file that the interface takes instead.
+"""The cells of the table of variants on a page, and the equivalent CSV file for the interface.
 
-A control of the page is called after the address of its cell: `cell.B3`. The page shows relations in their
+A control of the page is named after the address of its cell: `cell.B3`. The page shows relations in their
 cells, after an equals sign. The file has them in separate columns, whose addresses map back to the page.
 """
 

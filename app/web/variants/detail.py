@@ -1,4 +1,4 @@
-"""One variant of a design on its page: how it is judged, and its curves, drawn by the server."""
+"""One variant of a design on its page: its verdict, and its curves, drawn by the server."""
 
 from __future__ import annotations
 

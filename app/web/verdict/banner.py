@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from app.calculations.schemas.evaluations import Output
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.presentation.criteria import Line, headline_of, line, sides, tone
-from app.schemas.criteria import Criterion
+from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.blocks import StepBlock
 from app.web.shared.forms import texts
 
@@ -48,7 +48,12 @@ def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
     if verdict is None or not revision.criteria:
         is_judged = revision.criteria is not None or (revision.state == "current" and not has_criteria)
         return Banner(headline_of(revision.state, is_judged=is_judged), "plain", None, [], judged=is_judged)
-    lines = [line(criterion) for criterion in revision.criteria]
+    return banner_over(verdict, revision.criteria)
+
+
+def banner_over(verdict: Verdict, criteria: Iterable[Criterion]) -> Banner:
+    """Return the verdict over criteria."""
+    lines = [line(criterion) for criterion in criteria]
     governing = next((line for line in lines if line.name == verdict.governing), None)
     return Banner(verdict.headline, tone(verdict), governing, lines, judged=True)
 

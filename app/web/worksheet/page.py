@@ -16,7 +16,7 @@ from app.worksheets import check
 from app.worksheets.bodies import SheetCheckIn
 from app.worksheets.routes.worksheets import list_worksheets
 from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
-from templates.examples.listing import examples
+from templates.examples.index import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
 PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads

@@ -1,4 +1,4 @@
-"""Preview how a worksheet that is not released would change a design; nothing is saved."""
+"""Preview how an unreleased worksheet would change a design; nothing is saved."""
 
 from __future__ import annotations
 

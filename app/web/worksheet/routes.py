@@ -16,7 +16,7 @@ from app.web.shared.responses import go
 from app.web.shared.services import PageServices, Refused, ThePageServices
 from app.web.worksheet.page import UnsavedText, editor_page, list_page, start_page
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
-from templates.examples.listing import examples
+from templates.examples.index import examples
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])

@@ -1,4 +1,4 @@
-"""The pages of an import from Mathcad: the form, the wait, and what became of every region."""
+"""The pages of an import from Mathcad: the form, its progress, and the outcome of every region."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class NewSheet(Upload):
     file: FileName = "sheet.mcdx"
 
 
-def _report_made(result: str) -> str | None:
+def _address(result: str) -> str | None:
     sheet = _SHEET.fullmatch(result)
     return sheet and f"/worksheets/{sheet[1]}/import"
 
@@ -35,7 +35,7 @@ FORM = FileForm(
     "a .mcdx of Mathcad Prime or a .xmcd or .xmcdz of Mathcad 11 to 15",
     NewSheet,
     lambda services: services.imports.begin,
-    _report_made,
+    _address,
 )
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])

@@ -1,4 +1,4 @@
-"""Dask's client with time limits: connecting and closing end in time, whatever the scheduler does."""
+"""Dask's client with time limits: connecting and closing finish in time, whatever the scheduler does."""
 
 from __future__ import annotations
 

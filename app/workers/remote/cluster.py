@@ -1,4 +1,4 @@
-"""A server's connection to the scheduler, restored when it breaks, and the free slots of the machines."""
+"""A server's connection to the scheduler, restored after a break, and the free slots of the machines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The worker of a server of a team: functions run on other machines, as they would in `LocalProcesses`."""
+"""The worker of a team's server: it runs functions on other machines, as `LocalProcesses` does locally."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The program of `crankwright worker`: a Dask worker whose threads wait for isolated processes here.
+"""The program of `crankwright worker`: a Dask worker whose threads wait for isolated processes.
 
-Dask's worker never imports the geometry kernel: it passes packed bytes on. If the scheduler goes, all that
-runs is killed, and the machine connects again when there is one.
+Dask's worker never imports the geometry kernel: it passes packed bytes on. If the scheduler disconnects, all
+running jobs are killed, and the machine reconnects as soon as a scheduler answers.
 """
 
 from __future__ import annotations

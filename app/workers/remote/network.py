@@ -1,4 +1,4 @@
-"""Configuration of Dask: own certificates, no web pages, no retries, no profiling of threads."""
+"""Configuration of Dask: the team's certificates, no web pages, no retries, no profiling of threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Find tasks that no machine works on, from the scheduler's repeated reports.
+"""Find tasks that no machine works on, from repeated reports of the scheduler.
 
 If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Our
 machines never return under the same address, so a server would wait for such a task for ever.

@@ -1,6 +1,7 @@
 """Packed requests and outcomes, which the scheduler and Dask's workers pass on unopened.
 
-The scheduler imports this module, so Crankwright must be installed there too; its version may differ.
+The scheduler imports this module, so Crankwright must be installed on its machine too; the version may
+differ.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Conditions, and programs of Mathcad that are no more than cases: `if … then … else …`."""
+"""Conditions, and Mathcad programs that only distinguish cases: `if … then … else …`."""
 
 from __future__ import annotations
 
@@ -82,8 +82,8 @@ class Conditions(Writer):
             if place == len(parts) - 1:
                 return at.value(part)
             at.term(part)  # names a construct that is refused
-            raise Untranslatable("program of several values", "write one formula")
-        raise Untranslatable("program without a value", "write one formula")
+            raise Untranslatable("the program returns several values", "write one formula")
+        raise Untranslatable("the program returns no value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
         """Return conditions one after another; the last is `else`, or there is no value."""
@@ -100,9 +100,11 @@ class Conditions(Writer):
             elif part.tag == "else" and part.parts and not waiting:
                 return self._cases(branches, part.parts[0])
             else:
-                raise Untranslatable("program of several values", "write one formula with if … then … else …")
-        remedy = "say in Mathcad, or in the line, what holds otherwise"
-        raise Untranslatable("condition without otherwise", remedy)
+                raise Untranslatable(
+                    "the program returns several values", "write one formula with if … then … else …"
+                )
+        remedy = "add the otherwise case in Mathcad or in the line"
+        raise Untranslatable("the condition has no otherwise", remedy)
 
     def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Term:
         otherwise = self.value(last)

@@ -60,10 +60,10 @@ class Declarations:
             result: Sort = checked(_parser().parse(text), self)[1]
         except FaultyText as error:
             raise Untranslatable(
-                f"formula that the language refuses ({error})", _remedy(error.code)
+                f"the worksheet language refuses the formula ({error})", _remedy(error.code)
             ) from None
         except lark.exceptions.LarkError:
-            raise Untranslatable("formula that cannot be read", "write it by hand") from None
+            raise Untranslatable("the formula cannot be read", "write it by hand") from None
         finally:
             self.bound = before
         return result

@@ -1,4 +1,4 @@
-"""Sheets of Mathcad 11 to 15 (.xmcd, .xmcdz): one XML document, brought to the form of Mathcad Prime."""
+"""Sheets of Mathcad 11 to 15 (.xmcd, .xmcdz): one XML document, converted to the form of Mathcad Prime."""
 
 from __future__ import annotations
 

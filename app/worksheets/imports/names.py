@@ -1,4 +1,4 @@
-"""Mathcad's names as names of a worksheet: plain letters, one meaning each; `symbol` has the printed form."""
+"""Convert Mathcad's names to worksheet names: plain letters, one meaning each; `symbol` prints them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""The parts of a .mcdx package, unpacked within limits that are counted while reading.
+"""Unpack the parts of a .mcdx package, within limits that are checked while reading.
 
 A client may forge the sizes that a ZIP states, so the reader ignores them. A part that is a ZIP itself (a
-text region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
+text region) is opened once, for its one document, and counts against the same limits; archives inside it are
+not opened.
 """
 
 from __future__ import annotations

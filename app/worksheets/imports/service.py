@@ -1,4 +1,4 @@
-"""Imports as jobs: the file is kept by its hash, read in a process of its own, and becomes a draft."""
+"""Import sheets as jobs: store the file by its hash, read it in a separate process, and make it a draft."""
 
 from __future__ import annotations
 

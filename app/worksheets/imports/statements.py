@@ -1,4 +1,4 @@
-"""Lines of a worksheet as they are written: names, units, words, functions, curves."""
+"""Format lines of a worksheet: names, units, words, functions, curves."""
 
 from __future__ import annotations
 
@@ -91,7 +91,9 @@ class Statements:
         assert self.now is not None
         points = list(zip(items_in(across), items_in(up), strict=False))
         if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
-            raise Untranslatable("interpolation in calculated lists", "write the points as a curve")
+            raise Untranslatable(
+                "worksheets cannot interpolate in calculated lists", "write the points as a curve"
+            )
         x_unit = unit_for(self.declared.sort(items_in(across)[0], self.declared.bound), [])
         y_unit = unit_for(self.declared.sort(items_in(up)[0], self.declared.bound), [])
         name = self.names.take("interpolation")
@@ -253,5 +255,7 @@ def _in(text: str, unit_text: str) -> str:
     try:
         value = float(unit(unit_text).from_si(constant(text).value))
     except ValueError:
-        raise Untranslatable("interpolation in calculated lists", "write the points as a curve") from None
+        raise Untranslatable(
+            "worksheets cannot interpolate in calculated lists", "write the points as a curve"
+        ) from None
     return number(value).text

@@ -1,8 +1,7 @@
-"""XML as trees of plain nodes. There is no document type, so there are no entities: both are refused.
+"""Parse XML into trees of plain nodes; document types and entities are refused.
 
-The reader is the standard library's expat with handlers of its own. It keeps no namespaces: their prefixes
-are a writer's choice, and no sheet has two elements of one local name in one place that mean different
-things.
+The parser is the standard library's expat with our own handlers. It drops namespaces: their prefixes are the
+writer's choice, and in sheets the local name alone identifies an element.
 """
 
 from __future__ import annotations
@@ -125,10 +124,12 @@ class _Reader:
         self._open[-1].pieces.append(text)
 
     def _refuse_type(self, *_: object) -> None:
-        raise SheetNotRead("entities", f"{self._name} declares a document type, which no sheet does")
+        raise SheetNotRead("entities", f"{self._name} declares a document type, which no Mathcad sheet does")
 
     def _refuse_entity(self, *_: object) -> None:
-        raise SheetNotRead("entities", f"{self._name} declares an entity, which no sheet does")
+        raise SheetNotRead("entities", f"{self._name} declares an entity, which no Mathcad sheet does")
 
     def _refuse_reference(self, *_: object) -> int:
-        raise SheetNotRead("entities", f"{self._name} refers to another document, which no sheet does")
+        raise SheetNotRead(
+            "entities", f"{self._name} refers to another document, which no Mathcad sheet does"
+        )

@@ -1,9 +1,9 @@
-"""Units among names that carry no label, as in the sheets of Mathcad 11 to 15.
+"""Recognise units among unlabelled names, as in sheets of Mathcad 11 to 15.
 
-A name that nothing defines is a unit only if Mathcad has a unit of this name and if it stands where a unit
-does: as a factor of a product or quotient. A single letter needs more, since it is also how a quantity is
-called: a number stands before it, `3*m`, or does so elsewhere in the sheet. Every other name is refused as
-undefined: none is taken for a constant, so that `c` is never the speed of light.
+An undefined name is a unit only if Mathcad has a unit of this name and if the name is a factor of a product
+or quotient. A single letter may also name a quantity, so it counts as a unit only if a number stands before
+it, as in `3*m`, there or elsewhere in the sheet. Every other undefined name is refused. No name is read as a
+constant, so `c` is never the speed of light.
 """
 
 from __future__ import annotations

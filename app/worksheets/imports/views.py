@@ -1,4 +1,4 @@
-"""Imports as the interface answers them."""
+"""Imports as the REST interface shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The worst of several points and places: the worst verdict, and there the bound nearest to the limit."""
+"""The worst of several points and places: the worst verdict, and its value nearest to the limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The answers of an evaluation, and its inputs as they were used."""
+"""The answers of an evaluation, and the inputs that it used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Solutions of a scan at the level requested: moved there by the slope of the scanned curve."""
+"""Recalculate the solutions of a scan at the requested level, shifted by the slope of the scanned curve."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every value of an unknown that gives a wanted output, with the curve between the bounds that shows them."""
+"""Every value of an unknown that gives a wanted output, and the curve between the bounds."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The target of `solve` as a curve over the unknown: sampled in array calls, finer where something happens.
+"""Sample the target of `solve` over the unknown: array calls, refined where the curve needs it.
 
 257 samples between the bounds, all at one level of fidelity, show where the output crosses the target, comes
-near it, or ends. Intervals that do so are divided again and again, so that a jump is not a crossing,
-two solutions close together are separated, and the end of the reachable range is located.
+near it, or ends. Such intervals are divided repeatedly, so that a jump is not mistaken for a crossing, two
+solutions close together are separated, and the end of the reachable range is located.
 """
 
 from __future__ import annotations

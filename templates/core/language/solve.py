@@ -1,8 +1,8 @@
-"""Find the inputs that give a wanted output: scan between bounds, then close in on every crossing.
+"""Find the inputs that give a wanted output: scan between bounds, then refine every crossing.
 
-The scan is a few array calls at one level of fidelity, so a formula that is not monotone, or jumps, is seen
-and said. Every solution between the bounds is returned, with the curve that shows them. A solution is
-calculated again at the level requested, where that is another than the scan's.
+The scan is a few array calls at one level of fidelity, so a formula that jumps or is not monotone is detected
+and reported. Every solution between the bounds is returned, together with the curve. If the requested level
+differs from the scan's, each solution is recalculated at the requested level.
 """
 
 from __future__ import annotations

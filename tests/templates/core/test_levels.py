@@ -323,10 +323,11 @@ def test_the_time_to_expect_follows_case_and_cell():
     """Of a half groove by its band of load and width, summed over points; of no cell, and no level, none."""
     Cycle = get("oil_film_cycle", 1).template
     measured = levels.accuracy(Cycle)
-    table = measured.content["expected_seconds"]["supplied"]["half_groove"]
+    stated = measured.content["expected_seconds"]["supplied"]
+    grids, table = stated["grids"], stated["cases"]["half_groove, fixed"]
     one = Cycle.from_quantities(Cycle.example)
-    band = int(np.searchsorted(measured.grids[0], one.S_max) - 1)
-    row = int(np.searchsorted(measured.grids[1], float(one.W / one.D)) - 1)
+    band = int(np.searchsorted(grids[0], one.S_max) - 1)
+    row = int(np.searchsorted(grids[1], float(one.W / one.D)) - 1)
     assert measured.seconds(one, "supplied") == table[band][row]
     assert measured.seconds(one, "mobility") is None
     three = Cycle.from_quantities({**Cycle.example, "bearing_width": {"value": [18, 18, 18], "unit": "mm"}})
