@@ -71,6 +71,13 @@ class Estimate:
         known: Mask = ~np.isnan(spread(self.error, self.axes))
         return known
 
+    @property
+    def is_known_throughout(self) -> bool:
+        """Return whether the error is known at every point."""
+        if isinstance(self.error, float):
+            return not math.isnan(self.error)
+        return not np.isnan(self.error).any()
+
     def bounds(self) -> Bounds:
         """Return the band of the value; the value itself where its error is not known."""
         if self.is_exact or self.is_known is False:

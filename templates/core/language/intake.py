@@ -20,7 +20,7 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
-from templates.core.language.violations import relations, stated_case, violation
+from templates.core.language.violations import relations, required, stated_case, violation
 from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
@@ -175,23 +175,22 @@ class PlainText(NamedTuple):
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
     """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
-    typed: dict[str, TypedQuantity | str] = {}
-    values = left_out.values.copy()
-    missing: set[str] = set()
-    for name, declared in cls.inputs.items():
-        given = raw.get(name)
-        if given is None:
-            if name in left_out.needed:
-                return None
-            if declared.attribute in left_out.missing:
-                missing.add(declared.attribute)
-        elif type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
+    if not left_out.needed <= raw.keys():
+        return None
+    inputs, typed = cls.inputs, dict[str, TypedQuantity | str]()
+    values, missing = left_out.values.copy(), left_out.missing.copy()
+    for name, given in raw.items():
+        declared = inputs.get(name)
+        if declared is None:
+            return None
+        if type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
         elif isinstance(given, TypedQuantity) and (value := _plain_value(declared, given)) is not None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
-    return Plain(typed, values, missing) if len(typed) == len(raw) else None
+        missing.discard(declared.attribute)
+    return Plain(typed, values, missing)
 
 
 class LeftOut(NamedTuple):
@@ -417,7 +416,7 @@ def _violation(self: Calculation, rule: Requirement) -> Fault:
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     case = stated_case(self, rule) or values
-    return Fault(name, BROKEN, f"{case}; required: {rule.sentence}; {rule.remedy}", tuple(also))
+    return Fault(name, BROKEN, f"{case}; {required(rule)}", tuple(also))
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
@@ -425,13 +424,10 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
-    required = f"required: {rule.sentence}; {rule.remedy}"
-    cases = relations(self, rule)
-    points = np.logical_or.reduce(
-        [np.broadcast_to(where, holds.shape) for where, _ in cases] or [holds & False]
-    )
-    masks = [Mask(names, np.broadcast_to(where, holds.shape), f"{text}; {required}") for where, text in cases]
-    return [*masks, *([Mask(names, ~holds & ~points, required)] if (~holds & ~points).any() else [])]
+    cases = [(np.broadcast_to(where, holds.shape), text) for where, text in relations(self, rule)]
+    points = np.logical_or.reduce([where for where, _ in cases] or [holds & False])
+    masks = [Mask(names, where, f"{text}; {required(rule)}") for where, text in cases]
+    return [*masks, *([Mask(names, ~holds & ~points, required(rule))] if (~holds & ~points).any() else [])]
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
