@@ -1,1 +1,1 @@
-"""The service: the only place that knows HTTP, SQL and processes."""
+"""The service. No other package knows HTTP, SQL or processes."""

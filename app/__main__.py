@@ -1,4 +1,4 @@
-"""`python -m app …` is `crankwright …`."""
+"""Run the command line: `python -m app …` does the same as `crankwright …`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Create the parts of the service from its settings; an exit stack ends them in reverse order."""
+"""Create the parts of the service from its settings; an exit stack closes them in reverse order."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ FIGURES = Figures(metrics.bucket_asked, metrics.copy_looked_for)
 
 
 def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None) -> Services:
-    """Make all parts of the service, and begin to take jobs."""
+    """Create all parts of the service, and start taking jobs."""
     folder = DataFolder(settings.data)
     stack.callback(folder.release)
     database = opened_database(settings, folder, metrics.committed)
@@ -148,10 +148,10 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     )
     studies = assemble_studies(of_studies, designs)
     worksheets = Worksheets(database, catalogues, calculations.pool, published)
-    imports = Imports(database, store, jobs, catalogues, worksheets)
-    jobs.register(IMPORT, imports, imports.failed)
+    imports = Imports(store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports)
     model_imports = ModelImports(database, store, jobs, catalogues, programs, registry)
-    jobs.register(MODEL_IMPORT, model_imports, model_imports.failed)
+    jobs.register(MODEL_IMPORT, model_imports)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -212,7 +212,8 @@ def data_checks(
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     """Return the catalogues. A process of the worker checks every file of a team before the server loads it.
 
-    At the start a light process checks those that do not name the kernel, so that nobody waits for it.
+    At the start a light process checks the files that do not import the kernel, so that no request waits for
+    it.
     """
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
@@ -229,7 +230,7 @@ def published_worksheets(
 ) -> WorksheetPublication:
     """Return the released worksheets among the templates.
 
-    A SQLite file has one server, which releases them all.
+    A SQLite database has a single server, which releases them all.
     """
     published = WorksheetPublication(database, catalogues, is_shared=database.is_shared)
     published.start()
@@ -245,7 +246,7 @@ def register_jobs(
     calculations: Calculations,
     calculation_cache: CalculationCache,
 ) -> None:
-    """Say what carries out each kind of job."""
+    """Register the handler of each kind of job."""
     regeneration = Regeneration(
         builds.database,
         builds,

@@ -26,13 +26,13 @@ import ngsolve as ng
 import numpy as np
 from netgen.occ import Axis, Glue, OCCGeometry, Pnt, Z
 
-from cad.analysis.chain import Chain, in_series
+from cad.analysis.chain import Chain
 from cad.analysis.elastic import Response, System
 from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import make_grid
 from cad.analysis.modes import torsional_mode
-from cad.analysis.solid import FREE, HELD, LOADED, Solid
-from cad.analysis.throw_matrix import ThrowMatrix, section_loads, throw_matrix
+from cad.analysis.solid import FREE, HELD, LOADED, Solid, read_solid
+from cad.analysis.throw_matrix import ThrowMatrix, matrix_on, section_loads
 from cad.cranks.chain_throw import throw_step
 from cad.cranks.whole import WholeShaft
 from cad.models.crankshaft_v1 import Crankshaft
@@ -61,7 +61,14 @@ def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
 def one(level: Level = LEVEL, split: float = 0.0) -> ThrowMatrix:
     """Return the matrices of its throw."""
     step, ends, pin = throw_step(shaft((0.0,), split), 0)
-    return throw_matrix(step, ends, pin, level)
+    solid = read_solid(step, ends, mirrors=())
+    return matrix_on(make_grid(solid, level.fineness), level.order, ends, pin)
+
+
+def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
+    """Return the stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
+    alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
+    return 1 / sum(1 / stiffness for stiffness in alone)
 
 
 def whole(angles: Sequence[float], level: Level, split: float = 0.0) -> tuple[System, list[str]]:

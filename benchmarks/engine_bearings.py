@@ -3,12 +3,13 @@
     nice python -m benchmarks.engine_bearings [engines] [seed]
 
 Each engine is drawn by chance within what engines of cars and trucks have: bore, stroke, rod, masses, speed,
-gas cycle, sizes of its bearings, clearance, oil and supply; a hole is where the load seldom points. The loads
-are those of template `engine`. Of each engine one main and one big end are calculated as designs are: at the
-level at which `oil_film_cycle` starts, and then by `decide`. The criteria are the smallest film and the
-largest pressure, with limits that lie anywhere about usual values. A bearing counts if both are decided, or
-if an error is stated where a limit lies within it. Results are in benchmarks/results/engine_bearings.json,
-written after every engine; a run goes on from there.
+gas cycle, sizes of its bearings, clearance, oil and supply; a hole may be at any angle, under the load too.
+The loads are those of template `engine`. Of each engine one main and one big end are calculated as designs
+are: at the level at which `oil_film_cycle` starts, and then by `decide`. The criteria are the smallest film
+and the largest pressure, with limits that lie anywhere about usual values. A bearing counts if both are
+decided, or if an error is stated where a limit lies within it. One whose film starves is refused by that
+name, and counted apart. Results are in benchmarks/results/engine_bearings.json, written after every engine; a
+run goes on from there.
 """
 
 import json
@@ -21,7 +22,7 @@ import numpy as np
 
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
-from app.designs.engine.decision import Climb, is_open
+from app.designs.engine.decision import Climb
 from app.designs.graph import Catalogues, build_graph, resolved
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs
@@ -104,21 +105,19 @@ def film_inputs(rng: np.random.Generator, loads: Row, engine: Row, *, big_end: b
         inputs["sleeve_speed"] = row(loads["rod_angular_velocity"], 0)
     supply = int(rng.integers(3))
     if big_end and supply < 2:
-        return placed(inputs | {"pin_hole_length": f"{diameter * 0.1} mm"}, "pin_hole_angle")
+        return inputs | hole("pin", diameter, rng)
     if not big_end and supply == 0:
-        return placed(inputs | {"sleeve_hole_length": f"{diameter * 0.1} mm"}, "sleeve_hole_angle")
+        return inputs | hole("sleeve", diameter, rng)
     groove = {"groove_width": f"{width * rng.uniform(0.1, 0.25)} mm"}
     if supply == 1:
         groove |= {"groove_start": "-90 deg", "groove_extent": "180 deg"}
     return inputs | groove
 
 
-def placed(inputs: Row, angle: str) -> Row:
-    """Return the inputs with the hole where, of twelve angles, the load seldom points."""
-    angles = np.arange(-180.0, 180.0, 30.0)
-    tried = inputs | {angle: {"value": angles.tolist(), "unit": "deg"}}
-    under = evaluate(FILM, tried, level="mobility", outputs=["feed_under_load"]).outputs["feed_under_load"]
-    return inputs | {angle: f"{angles[int(np.argmin(under.value))]} deg"}
+def hole(part: str, diameter: float, rng: np.random.Generator) -> Row:
+    """Return the inputs of a hole in a part of a bearing [mm], at any angle."""
+    angle = float(rng.uniform(-180, 180))
+    return {f"{part}_hole_length": f"{diameter * 0.1} mm", f"{part}_hole_angle": f"{angle} deg"}
 
 
 def row(curve: Row, number: int) -> Row:
@@ -144,7 +143,7 @@ def decided(inputs: Row) -> Row:
     return {
         "level": evaluation.level,
         "verdicts": {name: judged[name].verdict for name in OWN},
-        "open": [name for name in OWN if is_open(judged[name])],
+        "open": [name for name in OWN if judged[name].is_open],
         "errors": {name: judged[name].relative_error for name in OWN if judged[name].band},
         "refused": next((trial.reason for trial in result.trials if trial.reason), None),
         "seconds": round(process_time() - begin, 2),
@@ -177,18 +176,20 @@ def main() -> None:
         if f"{seed}-{number}" not in kept:
             kept[f"{seed}-{number}"] = bearings(seed, number)
             KEPT.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-    rows = [one for key, two in kept.items() if key.startswith(f"{seed}-") for one in two.values()]
+    report([one for key, two in kept.items() if key.startswith(f"{seed}-") for one in two.values()])
+
+
+def report(rows: list[Row]) -> None:
+    """Print how many bearings are decided, and the cost."""
     whole = [one for one in rows if "verdicts" in one]
     ended = [one for one in whole if not one["open"]]
     stated = [one for one in whole if one["open"] and len(one["errors"]) == len(OWN)]
-    counts = (
-        len(rows),
-        len(ended),
-        len(stated),
-        len(whole) - len(ended) - len(stated),
-        len(rows) - len(whole),
-    )
-    print("{} bearings: {} decided, {} undecided with a stated error, {} without, {} refused".format(*counts))
+    refused = [one["refused"] for one in rows if "verdicts" not in one]
+    starved = sum("starved" in reason for reason in refused)
+    print(f"{len(rows)} bearings: {len(ended)} decided, {len(stated)} undecided with a stated error, "
+          f"{len(whole) - len(ended) - len(stated)} without, {starved} refused as starved, "
+          f"{len(refused) - starved} refused for another reason")  # fmt: skip
+    print(f"climbed to supplied: {sum(one['level'] == 'supplied' for one in whole)}")
     seconds = np.array([one["seconds"] for one in whole])
     print(f"processor s a bearing: mean {seconds.mean():.2f}, median {np.median(seconds):.2f}, "
           f"95 % {np.quantile(seconds, 0.95):.2f}, largest {seconds.max():.2f}")  # fmt: skip

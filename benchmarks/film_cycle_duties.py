@@ -4,12 +4,16 @@ Used by `benchmarks.film_cycle_ensemble`, which says how they are drawn. Each du
 benchmarks/results/film_cycle_ensemble.jsonl, with the number of the march (`MARCH`). Lines of another march
 count no more. What a march found is kept in build/film_cycle_truths as well, so that the errors of a cheap
 level that changes are found without marching again (`again`).
+
+Errors are relative to the march, of a curve to its largest value. Lines that were marched while errors were
+relative to the cheap answer have those of gap and eccentricity from the two answers; of the other outputs
+they have e/(1 − e), which no error relative to the march exceeds, or none from e = 1 on.
 """
 
 import json
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -18,9 +22,10 @@ import numpy as np
 
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.core.arrays import Array
-from templates.physics.orbits.cyclic_film import CycleFilm, Duty
+from templates.core.criteria.bands import relative_error
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty, load_course
 from templates.physics.supplied.fed_cycle import UNREPEATED, FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.supplied.feeding import Feeding, feed_under_load
+from templates.physics.supplied.supply_geometry import SupplyGeometry, feed_under_load
 
 KEPT = Path("benchmarks/results/film_cycle_ensemble.jsonl")
 TRUTHS = Path("build/film_cycle_truths")
@@ -33,9 +38,9 @@ KINDS = {
     "sleeve_hole": ("sleeve_hole", "slot"),
 }
 """Kinds of supply that have bounds, and their names in `supplied_duties`."""
+GROOVED = ("half_groove", "full_groove", "part_groove", "several")
 LOADS, WIDTHS = [0.3, 6.0, 105.0], [0.15, 0.4, 1.2]
-"""Bands of load number and B/D."""
-BANDS = (len(LOADS) - 1) * (len(WIDTHS) - 1)
+"""Bands of load number and B/D, each of which has as many duties."""
 ENOUGH, MORE, FRESH = 60, 93, 100
 """Duties in each band, at first and then: of 93 the second largest bounds what the largest of 59 does; duties
 with the other seed."""
@@ -79,14 +84,19 @@ def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None
     return None
 
 
+def course(duty: RandomDuty) -> list[float | None]:
+    """Return how the load varies, as `LoadCourse`."""
+    return [digits(v) for v in astuple(load_course(duty.load.angle, *duty.load.S[:, 0]))]
+
+
 def fed(duty: RandomDuty) -> FedDuty:
     """Return the same as templates know it; everything is dimensionless: the crank turns at 1, F is S."""
     load, one = duty.load, np.float64(1.0)
     journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
     asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
-    (pocket,) = duty.supply.pockets
+    pocket = duty.supply.pockets[0]
     start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
-    share = pocket.half_length if duty.fed_by.endswith("groove") else 0.0
+    share = pocket.half_length if duty.fed_by in GROOVED else 0.0
     groove = tuple(np.float64(v) for v in (share, start, extent))
     pressure = np.float64(duty.supply.pressure)
     return FedDuty(asked, *groove, pressure, np.array(duty.supply, dtype=object))
@@ -100,7 +110,7 @@ def under_load(duty: RandomDuty) -> float:
     no_hole = (none, none, none)
     holes = (*no_hole, *hole) if pocket.on_journal else (*hole, *no_hole)
     one = np.float64(1.0)
-    return float(feed_under_load(fed(duty).duty, Feeding(one, one, none, none, none, *holes)))
+    return float(feed_under_load(fed(duty).duty, SupplyGeometry(one, one, none, none, none, *holes)))
 
 
 def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
@@ -112,7 +122,7 @@ def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
         orbit.eps_x,
         orbit.eps_y,
         film.loss,
-        film.side_flow,
+        film.side_flow + film.feed_flow,
     )
     return {name: np.asarray(value) for name, value in zip(OUTPUTS, compared, strict=True)}
 
@@ -126,28 +136,34 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
     seconds = process_time() - begin
     line = {
         "march": MARCH, "seed": seed, "kind": kind, "number": number, "load": duty.kind,
-        "S": digits(np.hypot(*duty.load.S).max()), "b": digits(duty.ratio),
-        "verdict": marched.verdict.value, "repeat": digits(marched.repeat_error),
+        "S": digits(np.hypot(*duty.load.S).max()), "b": digits(duty.ratio), "P": digits(duty.supply.pressure),
+        "course": course(duty), "verdict": marched.verdict.value, "repeat": digits(marched.repeat_error),
         "cycles": list(marched.cycles), "seconds": round(seconds, 2), "gap": digits(marched.least_gap),
     }  # fmt: skip
     if marched.verdict in UNREPEATED:
         return line
     truth = values(orbit, fed_film("supplied", asked, orbit))
+    keep(line, truth)
+    return line | {"errors": errors_of(duty, truth)}
+
+
+def keep(line: Line, truth: dict[str, Array]) -> None:
+    """Keep the values of a march on this machine."""
     TRUTHS.mkdir(parents=True, exist_ok=True)
     np.savez_compressed(truth_file(line), **truth)
-    return line | {"errors": errors_of(duty, truth)}
 
 
 def truth_file(line: Line) -> Path:
     """Return where the values of a march are kept on this machine."""
-    return TRUTHS / f"{line['march']}-{line['seed']}-{line['kind']}-{line['number']}.npz"
+    name = f"{line.get('kind', 'engine')}-{line['seed']}-{line['number']}"
+    return TRUTHS / f"{MARCH}-{name}.npz"
 
 
 def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float | None]]:
     """Return errors of every cheap level, in the order of `OUTPUTS`."""
     asked, errors = fed(duty), {}
     for level in CHEAP:
-        if level == "mobility_grooved" and not duty.fed_by.endswith("groove"):
+        if level == "mobility_grooved" and duty.fed_by not in GROOVED:
             continue
         cheap = fed_orbit(level, asked)
         found = values(cheap, fed_film(level, asked, cheap))
@@ -156,8 +172,8 @@ def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float
 
 
 def error(value: Array, truth: Array) -> float:
-    """Return the error relative to the value found; NaN where there is none."""
-    return float(np.abs(value - truth).max() / np.abs(value).max())
+    """Return the error of a value, or of a curve relative to the largest of the truth; NaN without one."""
+    return float(np.max(relative_error(value, truth, np.abs(truth).max())))
 
 
 def digits(value: Any) -> float | None:

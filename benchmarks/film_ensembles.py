@@ -13,6 +13,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 from time import process_time
 from typing import Any
@@ -22,16 +23,20 @@ from numpy.typing import NDArray
 
 from benchmarks.film_cycle_ensemble import bound
 from templates import get
+from templates.core.criteria.bands import CONVENTION, relative_error
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import SINGLE, accuracy_file
 from templates.core.language.template import Template
+from templates.physics.journals import mixed_journal
 from templates.physics.pads import thrust_collar
 
 SEED, OTHER_SEED = 36, 63
 CHUNK = 50
 MESH = 64, 16
 """Intervals of the truth of `thrust_bearing`, twice those of its level each way."""
+ROUGH_MESH = 128, 16
+"""Those of the truth of `mixed_friction`."""
 
 Numbers = NDArray[np.float64]
 Values = dict[str, Numbers]
@@ -143,6 +148,17 @@ def finer_collars(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Va
         thrust_collar._MESH = before
 
 
+def refined_films(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Values:
+    """Return the answers of level averaged, solved on twice the mesh at twice as many eccentricities."""
+    before = mixed_journal.rough_journal, mixed_journal._NODES
+    finer = partial(mixed_journal.rough_journal, around=ROUGH_MESH[0], across=ROUGH_MESH[1])
+    mixed_journal.rough_journal, mixed_journal._NODES = finer, 2 * mixed_journal._NODES
+    try:
+        return at(cls, raw, outputs, "averaged")[0]
+    finally:
+        mixed_journal.rough_journal, mixed_journal._NODES = before
+
+
 def of_level(level: str) -> Callable[[type[Template], Raw, tuple[str, ...]], Values]:
     """Return the truth that a level is."""
     return lambda cls, raw, outputs: at(cls, raw, outputs, level)[0]
@@ -159,22 +175,22 @@ ENSEMBLES = {
             420, 150, collars, finer_collars,
         ),
         Ensemble(
-            "mixed_friction", ("map",),
+            "mixed_friction", ("map", "averaged"),
             ("minimum_film_thickness", "film_parameter", "relative_eccentricity", "friction_coefficient",
              "friction_torque", "power_loss", "film_load", "contact_load", "transition_speed"),
             (("film_parameter", "film_parameter", (0.5, 2.0, 5.0, 20.0)),
              ("b", "width_ratio", (0.2, 1.1))),
-            ("averaged", "the film of the average Reynolds equation of Patir and Cheng, level averaged"),
-            450, 160, rough_journals, of_level("averaged"),
+            ("finer averaged", "the average Reynolds equation of Patir and Cheng on 128 × 16 intervals"),
+            450, 160, rough_journals, refined_films,
             {"contact_load": ("contact_load", "film_load")},
         ),
         Ensemble(
-            "thermal_film", ("one_temperature",),
+            "thermal_film", ("one_temperature", "field"),
             ("minimum_film_thickness", "relative_eccentricity", "maximum_pressure", "friction_torque",
              "friction_coefficient", "power_loss", "side_flow"),
             (("S_0", "sommerfeld_number", (0.02, 20.0)), ("b", "width_ratio", (0.3, 1.1))),
-            ("field", "the film with a temperature at every place, level field"),
-            80, 30, warm_journals, of_level("field"),
+            ("fine_field", "the film with a temperature at every place, level fine_field"),
+            80, 65, warm_journals, of_level("fine_field"),
         ),
     )
 }  # fmt: skip
@@ -222,7 +238,7 @@ def _part(ensemble: Ensemble, raw: Raw, truth: Mapping[str, Numbers]) -> Sample:
         seconds[level] = process_time() - start
         with np.errstate(invalid="ignore", divide="ignore"):
             errors[level] = {
-                n: np.abs(values[n] - truth[n]) / _scale(ensemble, truth, n) for n in ensemble.outputs
+                n: relative_error(values[n], truth[n], _scale(ensemble, truth, n)) for n in ensemble.outputs
             }
         size = next(iter(values.values())).shape
         places[level] = [
@@ -303,6 +319,7 @@ def table(ensemble: Ensemble, sample: Sample, other: Sample) -> dict[str, Any]:
         "made_by": f"python -m benchmarks.film_ensembles write {ensemble.id}",
         "truth": words,
         "truths": {name: words},
+        "convention": CONVENTION,
         "error": "one-sided tolerance bound from random bearings: the 95 % quantile at 95 % confidence, which"
         " takes 59 in a cell; relative to the truth; null: outside the cells, or fewer than 59",
         "ensemble": {

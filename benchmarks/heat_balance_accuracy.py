@@ -26,6 +26,7 @@ import numpy as np
 
 from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
+from templates.core.criteria.bands import relative_error
 from templates.core.language.spec import Text
 from templates.core.units.quantity import TypedQuantity
 from templates.oil_film.oil_film_v2 import OilFilm
@@ -131,9 +132,7 @@ def _viscosity(oil: OilFilm, T: Array) -> Array:
 
 def change(output: str, value: Array, true: Array, largest: Array) -> Array:
     """Return the difference of two answers, in the measure of the tables."""
-    size = np.pi / 2 if output in ANGLES else largest
-    with np.errstate(all="ignore"):
-        return np.asarray(np.where(value == true, 0.0, np.abs(value - true) / size))
+    return np.asarray(relative_error(value, true, np.pi / 2 if output in ANGLES else largest))
 
 
 def sizes(template: OilFilm, output: str) -> Array:

@@ -19,6 +19,7 @@ from matplotlib import pyplot as plt
 
 from benchmarks.truths import FULL_SHEAR, meanings
 from templates.core.arrays import Array
+from templates.core.criteria.bands import CONVENTION, relative_error
 from templates.oil_film.journal_friction_v1 import JournalFriction
 from templates.physics.films.film_map import NARROWEST, WIDEST
 from templates.physics.films.reynolds import extrapolated_film
@@ -43,7 +44,8 @@ def error(eps: Array, ratio: Array) -> Array:
 
 def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
     """Return the largest error found in a cell, its edges included, rounded up."""
-    largest = np.abs(error(np.linspace(*eps, INSIDE)[:, None], np.geomspace(*ratio, INSIDE))).max()
+    inside = np.linspace(*eps, INSIDE)[:, None], np.geomspace(*ratio, INSIDE)
+    largest = np.max(relative_error(1.0, friction_over_Petrov(*inside)))
     return float(np.ceil(largest * 1e5) / 1e5)
 
 
@@ -68,6 +70,7 @@ def measure() -> None:
         "made_by": "python -m benchmarks.petrov",
         "truth": "Reynolds solution of the loaded film: full circle, Swift–Stieber rupture, shear all around",
         "truths": meanings(FULL_SHEAR),
+        "convention": CONVENTION,
         "error": "largest found in each cell; relative; unknown without a load",
         "cost": "seconds a point",
         "axes": [

@@ -16,7 +16,7 @@ from PIL import Image
 from playwright.sync_api import Page
 
 from benchmarks.browser import chromium, examples
-from templates.examples.listing import examples as worksheets
+from templates.examples.index import examples as worksheets
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SCREENS = {"wide": (1440, 900), "narrow": (390, 844)}

@@ -20,11 +20,11 @@ OF_THE_COMMAND = {
 }
 HEAD = """# Settings
 
-Environment variables, read once when the service starts. The service ignores a name that is not in this
-table: look at the spelling first. Lists and objects are written as JSON: `["/srv/templates"]`. Options of
-`crankwright serve` come first.
+The settings are environment variables, read once when the service starts. The service ignores names
+that are not in this table, so check the spelling first. Lists and objects are written as JSON:
+`["/srv/templates"]`. Options of `crankwright serve` take precedence.
 
-This page is written by `python -m benchmarks.settings_page` from `app/settings/__init__.py`.
+`python -m benchmarks.settings_page` generates this page from `app/settings/__init__.py`.
 
 | variable | type | default | meaning |
 |---|---|---|---|

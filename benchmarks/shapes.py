@@ -1,6 +1,7 @@
 """Bearings of `oil_film` 2 that are not plain: meshes, start line, and grooves under load.
 
     python -m benchmarks.shapes mesh        ten minutes: 310 bearings, benchmarks/results/shapes_mesh.json
+    python -m benchmarks.shapes held_out    320 others by which nothing was chosen: shapes_held_out.json
     python -m benchmarks.shapes start_line  K_xx and the whirl limit with both start lines
     python -m benchmarks.shapes groove      what a film with a groove in the load line bears
 
@@ -20,7 +21,7 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.physics.cavities import shaped_balance
 from templates.physics.cavities.fed_film import Feed
-from templates.physics.cavities.shaped_balance import Balance, Loaded, balance
+from templates.physics.cavities.shaped_balance import Balance, BearingCase, balance
 from templates.physics.cavities.shaped_film import shaped_film
 from templates.physics.cavities.shaped_network import shaped_nodes
 from templates.physics.films.film_map import mapped_load
@@ -28,8 +29,15 @@ from templates.physics.films.film_shape import Bore, Lie
 from templates.physics.journals.shaped_journal import START_LINES, Shape, journal_film_at, linear_of
 from templates.physics.journals.shaped_journal import measured as measured_film
 
-RESULTS = Path("benchmarks/results/shapes_mesh.json")
-COUNT, SEED = 310, 36
+SEED, HELD_OUT = 36, 3607
+RESULTS = {
+    SEED: Path("benchmarks/results/shapes_mesh.json"),
+    3605: Path("benchmarks/results/shapes_second.json"),
+    3606: Path("benchmarks/results/shapes_third.json"),
+    HELD_OUT: Path("benchmarks/results/shapes_held_out.json"),
+}
+"""Where the bearings of each seed are kept; the factors were chosen on the first, after the next two."""
+COUNTS = {SEED: 310, 3605: 310, 3606: 226, HELD_OUT: 320}
 STATED = {
     "gap": "mesh_error",
     "place": "place_error",
@@ -40,9 +48,9 @@ STATED = {
 PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0)))
 
 
-def drawn(seed: int) -> Loaded:
+def drawn(number: int, seed: int = SEED) -> BearingCase:
     """Return a random bearing, lobed, grooved or both, at So 1e-3 to 10 and B/D 0.2 to 1.6."""
-    rng = np.random.default_rng([SEED, seed])
+    rng = np.random.default_rng([seed, number])
     lobes = int(rng.choice([1, 2, 3, 4]))
     bore = Bore(
         lobes, 0.0 if lobes == 1 else rng.uniform(0.1, 0.75), rng.uniform(-np.pi, np.pi),
@@ -56,10 +64,10 @@ def drawn(seed: int) -> Loaded:
         places = [np.pi / 2, -np.pi / 2] * kind
     ratio, So = 10 ** rng.uniform(-0.7, 0.2), 10 ** rng.uniform(-3, 1)
     feed = Feed(0.0, tuple((place, width) for place in places))
-    return Loaded(So, ratio, bore, np.zeros(2), feed, bool(rng.random() < 0.6))
+    return BearingCase(So, ratio, bore, np.zeros(2), feed, bool(rng.random() < 0.6))
 
 
-def stated(loaded: Loaded) -> tuple[Balance, dict[str, Any]]:
+def stated(loaded: BearingCase) -> tuple[Balance, dict[str, Any]]:
     """Return the balance, and the fields of `StaticFilm` that `shaped_journal` states."""
     balanced = balance(loaded)
     return balanced, measured_film(balanced, loaded.bore, loaded.tilt, 1.0)
@@ -72,7 +80,7 @@ def values_of(film: dict[str, Any]) -> dict[str, Array]:
             "side_flow": np.array(film["side_flow"])}  # fmt: skip
 
 
-def truth_of(loaded: Loaded, balanced: Balance) -> dict[str, Array]:
+def truth_of(loaded: BearingCase, balanced: Balance) -> dict[str, Array]:
     """Return the film extrapolated to from a mesh twice as fine each way as the answer's finest."""
     mesh = {128: (256, 32), 256: (512, 64)}[around(balanced)]
     fine = balanced.fine
@@ -90,10 +98,10 @@ def around(balanced: Balance) -> int:
     return int(balanced.fine.film.nodes.shape[0])
 
 
-def measured(seed: int) -> dict[str, Any]:
+def measured(number: int, seed: int = SEED) -> dict[str, Any]:
     """Return the true and the stated errors of one bearing, relative, and what it cost."""
-    loaded, begin = drawn(seed), process_time()
-    about: dict[str, Any] = {"seed": seed, "So": loaded.So}
+    loaded, begin = drawn(number, seed), process_time()
+    about: dict[str, Any] = {"seed": number, "So": loaded.So}
     try:
         balanced, film = stated(loaded)
         about |= {"around": around(balanced), "extrapolated": balanced.is_asymptotic}
@@ -107,18 +115,19 @@ def measured(seed: int) -> dict[str, Any]:
     return about | {"errors": errors, "stated": {name: float(film[own]) for name, own in STATED.items()}}
 
 
-def measured_films() -> list[dict[str, Any]]:
-    """Return the bearings measured so far that have a film."""
-    return [one for one in json.loads(RESULTS.read_text(encoding="utf-8")) if "errors" in one]
+def measured_films(seed: int = SEED) -> list[dict[str, Any]]:
+    """Return the bearings of a seed measured so far that have a film."""
+    return [one for one in json.loads(RESULTS[seed].read_text(encoding="utf-8")) if "errors" in one]
 
 
-def mesh() -> None:
+def mesh(seed: int = SEED) -> None:
     """Measure what is not yet, and print the table of docs/oil_film_shapes.md."""
-    kept = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else []
-    for seed in range(len(kept), COUNT):
-        kept.append(measured(seed))
-        RESULTS.write_text(json.dumps(kept, indent=0) + "\n", encoding="utf-8")
-    films = measured_films()
+    path = RESULTS[seed]
+    kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
+    for number in range(len(kept), COUNTS[seed]):
+        kept.append(measured(number, seed))
+        path.write_text(json.dumps(kept, indent=0) + "\n", encoding="utf-8")
+    films = measured_films(seed)
     finer, kept_back = (
         [one for one in films if one[name] in of]
         for name, of in (("around", {256}), ("extrapolated", {False}))
@@ -178,11 +187,15 @@ def _borne(angle: float, pressure: float, eps: float) -> str:
 
 def _force(angle: float, pressure: float, eps: float, attitude: float) -> Array:
     lie = Lie(eps * np.array([np.cos(attitude), np.sin(attitude)]), np.zeros(2))
-    loaded = Loaded(0.0, 0.5, Bore(), lie.tilt, Feed(pressure, ((np.radians(angle), np.radians(20)),)), False)
+    loaded = BearingCase(
+        0.0, 0.5, Bore(), lie.tilt, Feed(pressure, ((np.radians(angle), np.radians(20)),)), False
+    )
     pockets = loaded.pockets(0.0)
     nodes = shaped_nodes(loaded.bore, lie, loaded.ratio, pockets, 64, 8)
     return shaped_film(nodes, loaded.bore, lie, pockets, conserving=True).force
 
 
 if __name__ == "__main__":
-    {"mesh": mesh, "start_line": start_line, "groove": groove}[sys.argv[1]]()
+    {"mesh": mesh, "held_out": lambda: mesh(HELD_OUT), "start_line": start_line, "groove": groove}[
+        sys.argv[1]
+    ]()

@@ -18,6 +18,7 @@ import numpy as np
 
 from benchmarks.truths import PAD, meanings
 from templates.core.arrays import Array
+from templates.core.criteria.bands import CONVENTION, relative_error
 from templates.oil_film.slider_bearing_v1 import SliderBearing
 from templates.physics.pads.slider_film import (
     NARROWEST,
@@ -44,27 +45,24 @@ def errors(film: PadFilm, true: PadFilm) -> dict[str, Array]:
     slope, straight = (np.stack([f.gradient(np.array(x)) for x in PLACES], axis=-1) for f in (film, true))
     H = true.a[..., None] - (true.a[..., None] - 1) * PLACES
     drive = np.abs(HEIGHTS**2 - HEIGHTS).max() / 2 * H**2 * np.abs(slope - straight)
-    moving = relative(film.friction_moving, true.friction_moving)
+    moving = relative_error(film.friction_moving, true.friction_moving)
     return {
-        "load": relative(film.load, true.load),
-        "maximum_pressure": relative(film.P_max, true.P_max),
-        "centre_of_pressure": relative(film.centre, true.centre),
-        "place_of_maximum_pressure": relative(film.peak, true.peak),
+        "load": relative_error(film.load, true.load),
+        "maximum_pressure": relative_error(film.P_max, true.P_max),
+        "centre_of_pressure": relative_error(film.centre, true.centre),
+        "place_of_maximum_pressure": relative_error(film.peak, true.peak),
         "friction_force_moving": moving,
-        "friction_force_fixed": np.abs(film.friction_fixed - true.friction_fixed) / true.friction_moving,
+        "friction_force_fixed": relative_error(
+            film.friction_fixed, true.friction_fixed, true.friction_moving
+        ),
         "power_loss": moving,
-        "friction_coefficient": relative(film.friction_coefficient, true.friction_coefficient),
-        "inlet_flow": relative(film.inlet_flow, true.inlet_flow),
-        "side_flow": relative(film.side_flow, true.side_flow),
+        "friction_coefficient": relative_error(film.friction_coefficient, true.friction_coefficient),
+        "inlet_flow": relative_error(film.inlet_flow, true.inlet_flow),
+        "side_flow": relative_error(film.side_flow, true.side_flow),
         "pressure": profile,
         "pressure_gradient": np.abs(slope - straight).max(axis=-1) / np.abs(straight).max(axis=-1),
         "velocity": drive.max(axis=-1),
     }
-
-
-def relative(value: Array, true: Array) -> Array:
-    """Return the relative error [-]."""
-    return np.abs(value / true - 1)
 
 
 def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> dict[str, float]:
@@ -114,6 +112,7 @@ def main() -> None:
         "made_by": "python -m benchmarks.slider_bearing",
         "truth": "pads of finite width, extrapolated from 128 × 32 and 256 × 64 intervals",
         "truths": meanings(PAD),
+        "convention": CONVENTION,
         "error": "largest found in each cell; relative, of pressure and its gradient to the largest along "
         "the pad, of the velocity to the runner's, of the friction on the pad to that on the runner",
         "relative_to": {"pressure_gradient": None, "friction_force_fixed": ["friction_force_moving"]},

@@ -20,10 +20,10 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.orbits import journal_orbit
-from templates.physics.orbits.grooved_mobility import Groove, Passing, grooved_orbit
+from templates.physics.orbits.grooved_mobility import Groove, GroovePassage, grooved_orbit
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw
-from templates.physics.orbits.turning import turning
+from templates.physics.orbits.rotation import turning
 
 RESULTS = Path("benchmarks/results/step_bound.json")
 SEED, DUTIES, POINTS, FINER = 91, 400, 72, 16
@@ -90,7 +90,7 @@ def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Share
     ratio = np.maximum(ratio, 0.1)
     rest = turning(load.angle, load.period, np.zeros(load.w.shape))
     place = rng.uniform(-np.pi, np.pi, duties), rng.uniform(0.2, 2 * np.pi, duties)
-    passing = Passing(load, rest, Groove(rng.uniform(0.05, 0.5, duties), *place))
+    passing = GroovePassage(load, rest, Groove(rng.uniform(0.05, 0.5, duties), *place))
     orbit = grooved_orbit(passing, ratio)
     with finer_steps(finer):
         true = grooved_orbit(passing, ratio).between

@@ -34,7 +34,7 @@ from templates.physics.supplied.supplied_orbit import (
     NEAR_HOLES,
     STAYS,
     THIN,
-    Meshing,
+    MeshSettings,
     SuppliedOrbit,
     Verdict,
     supplied_orbit,
@@ -44,7 +44,7 @@ RESULTS = Path("benchmarks/results/supplied_orbits.json")
 SEED, DUTIES = 17, 300
 MISS = 0.02
 """Change of the least gap by a finer mesh of which the cause is looked for [-]."""
-FINEST = Meshing(384, 10, FINE.step / 2, FINE.most, near_edges=True, cells=3.0)
+FINEST = MeshSettings(384, 10, FINE.step / 2, FINE.most, near_edges=True, cells=3.0)
 """The mesh against which those near holes are held."""
 FILMS = (Verdict.REPEATING.value, Verdict.WANDERING.value)
 """Verdicts that report a film."""
@@ -52,7 +52,9 @@ Row = dict[str, Any]
 
 
 def marched(
-    duty: RandomDuty, meshes: tuple[Meshing, ...] = (COARSE, FINE), near_holes: tuple[Meshing, ...] = ()
+    duty: RandomDuty,
+    meshes: tuple[MeshSettings, ...] = (COARSE, FINE),
+    near_holes: tuple[MeshSettings, ...] = (),
 ) -> tuple[SuppliedOrbit, float]:
     """Return the orbit of a duty and its processor time [s]."""
     begin = process_time()
@@ -98,7 +100,7 @@ def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Ro
     if kept["least_gap"] < THIN:  # the orbit adds as many rows to every mesh
         across += (cells - 1) * MORE_ROWS
     orbit, seconds = marched(
-        duty, (COARSE, base, Meshing(cells * base.around, across, base.step / steps, base.most))
+        duty, (COARSE, base, MeshSettings(cells * base.around, across, base.step / steps, base.most))
     )
     return {
         "least_gap": orbit.least_gap,

@@ -26,11 +26,12 @@ LONGEST = 60  # letters; longer "licences" are the text of one
 
 HEAD = """# Licences
 
-Of everything that is installed with the service, its tests and its documentation, as each distribution states
-it itself. `python -m benchmarks.supply_chain` writes this page from the installed distributions, and the same
-as a CycloneDX bill of materials, `docs/sbom.cdx.json`. The service runs without the distributions whose last
-column says something: the extra `study`, `team` or `traces` needs them, or its *development*, which is tests
-and documentation. No licence has been chosen for Crankwright itself yet; that is its owner's choice.
+This page lists the licences of everything that is installed with the service, its tests and its
+documentation, as each distribution states them. `python -m benchmarks.supply_chain` generates it from the
+installed distributions, together with a CycloneDX bill of materials, `docs/sbom.cdx.json`. The last column
+names the extra (`study`, `team` or `traces`) that needs a distribution, or *development* for tests and
+documentation; the service runs without these distributions. The owner has not chosen a licence for
+Crankwright itself yet.
 
 | name | version | licence | home | |
 |---|---|---|---|---|

@@ -51,13 +51,19 @@ def truth_of(level: str, output: str) -> str:
 
 
 def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
-    """Return places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
+    """Return places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions."""
+    with np.load(CHECKS) as checks:
+        x, y, truth = checks["x"], checks["y"], checks["truth"]
+    return x, y, *decoded(np.tanh(x), np.exp(y), truth, streamers=streamers)
+
+
+def decoded(
+    eps: Array, ratio: Array, truth: Array, *, streamers: bool
+) -> tuple[JournalFilm, tuple[Array, Array]]:
+    """Return films and coefficients of solutions as `benchmarks.film_map` encodes them, (points, 16).
 
     Shear acts over the full circle, as in the standards, or with `streamers` as there is oil.
     """
-    with np.load(CHECKS) as checks:
-        x, y, truth = checks["x"], checks["y"], checks["truth"]
-    eps, ratio = np.tanh(x), np.exp(y)
     film = decode(eps, ratio, truth[:, :8].T)
     shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
     if streamers:
@@ -72,4 +78,4 @@ def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Arra
         for part, power in ((slice(8, 12), _STIFFNESS_SCALE), (slice(12, 16), _DAMPING_SCALE))
     ]
     film_of = JournalFilm(eps=eps, shear=shear, **{name: film[name] for name in names})
-    return x, y, film_of, (matrices[0], matrices[1])
+    return film_of, (matrices[0], matrices[1])

@@ -1,1 +1,1 @@
-"""Parametric geometry: models that are templates with a shape, checked before anybody sees them."""
+"""Parametric geometry: models are templates with a shape, and every solid is checked before it is served."""

@@ -1,4 +1,4 @@
-"""Find models: every `<id>_v<version>.py` in the built-in folder and in those of a team."""
+"""Find models: every `<id>_v<version>.py` in the built-in folder and in a team's folders."""
 
 from __future__ import annotations
 

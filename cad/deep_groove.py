@@ -1,24 +1,20 @@
-"""Deep groove ball bearings: sizes by designation, sections of rings and cage, capacities.
+"""Deep groove ball bearings: sizes by designation, the cage, load ratings.
 
 References
 ----------
 ISO 15:2017, Rolling bearings, radial bearings, boundary dimensions, general plan.
 ISO 281:2007, Rolling bearings, dynamic load ratings and rating life, 5.1.1 and table 2.
 ISO 76:2006, Rolling bearings, static load ratings, 5.1 and table 1.
-Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, ch. 2: osculation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
-from math import acos, asin, cos, degrees, pi, sin
+from math import asin, cos, degrees, pi, sin
 from pathlib import Path
 
 import numpy as np
-from cadquery import Edge, Face, Shape, Solid, Vector
-from cadquery.func import face, segment, wire
+from cadquery import Shape, Solid, Vector
 
 from cad.revolution import drilled_volume, outline, turned
 from templates.core.language.template import Array, units
@@ -99,57 +95,6 @@ def static_capacity_ISO_76_2006(f_0: Array, Z: Array, D_w: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Ring:
-    """Cross-section of a ring [mm]: `s` counts from the pitch circle towards its back, `z` from mid-width."""
-
-    shoulder: float  # s of the shoulder
-    back: float  # s of the bore or the outside
-    width: float
-    chamfer: float  # of the edges at the back
-    groove_radius: float
-    groove_centre: float  # s of the centre of the groove's arc; the groove touches the ball at z = 0
-
-    @property
-    def _half_angle(self) -> float:
-        return acos((self.shoulder - self.groove_centre) / self.groove_radius)
-
-    @property
-    def _segment(self) -> float:
-        half = self._half_angle
-        return self.groove_radius**2 * (half - sin(half) * cos(half))
-
-    def solid(self, pitch_radius: float, side: int) -> Shape:
-        """Return the section turned about z; side 1 is the outer ring, -1 the inner one."""
-        section = self._outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
-        return Solid.revolve(section, 360, Vector(0, 0, 0), Vector(0, 0, 1))
-
-    def volume(self, pitch_radius: float, side: int) -> float:
-        """Return the area times the path of its centroid [mm³] (Pappus)."""
-        area = (self.back - self.shoulder) * self.width - self.chamfer**2 - self._segment
-        rectangle = (self.back**2 - self.shoulder**2) / 2 * self.width
-        chamfers = self.chamfer**2 * (self.back - self.chamfer / 3)
-        arc = 2 / 3 * (self.groove_radius * sin(self._half_angle)) ** 3
-        moment = rectangle - chamfers - self._segment * self.groove_centre - arc
-        return 2 * pi * (area * pitch_radius + side * moment)
-
-    def _outline(self, place: Callable[[float, float], Vector]) -> Face:
-        half, edge = self.width / 2, self.groove_radius * sin(self._half_angle)
-        ends = place(self.shoulder, -edge), place(self.shoulder, edge)
-        corners = [
-            ends[1],
-            place(self.shoulder, half),
-            place(self.back - self.chamfer, half),
-            place(self.back, half - self.chamfer),
-            place(self.back, self.chamfer - half),
-            place(self.back - self.chamfer, -half),
-            place(self.shoulder, -half),
-            ends[0],
-        ]
-        groove = Edge.makeThreePointArc(ends[0], place(self.groove_centre + self.groove_radius, 0), ends[1])
-        return face(wire(groove, *(segment(a, b) for a, b in pairwise(corners))))
-
-
-@dataclass(frozen=True)
 class Cage:
     """A cage [mm]: a ring about the pitch circle with a round pocket for each ball."""
 
@@ -183,6 +128,6 @@ class Cage:
         return Solid.makeCylinder(self.pocket, 1.1 * self.outside - start, along * start, along)
 
     def volume(self) -> float:
-        """Return the ring less what the pockets take [mm³]."""
+        """Return the ring minus the volume of its pockets [mm³]."""
         ring = pi * (self.outside**2 - self.inside**2) * self.width
         return ring - self.balls * drilled_volume(self.pocket, self.outside, self.inside)

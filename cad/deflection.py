@@ -1,8 +1,8 @@
 """Deflection: the largest distance of mesh facets from the true surface, as a user requests it.
 
-A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`. Deflections
-have steps, six in a decade, and a mesh has the step that is not coarser than what its user asked for. So a
-solid has at most 19 meshes of a kind, however many different lengths are asked for.
+A kind of file with a deflection is written `stl@0.05mm`, and is stored beside `stl`. Deflections are rounded
+down to steps, six in a decade. So a solid has at most 19 meshes of a kind, however many different deflections
+are requested.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def with_deflection(kind: str, raw: str) -> str:
     Raises
     ------
     InvalidInputs
-        If it is no length above 0, or the kind has no facets.
+        If it is not a length above 0, or the kind has no facets.
     """
     if kind not in MESHES:
         detail = f"only {' and '.join(MESHES)} are made of facets; leave it out for {kind}"
@@ -99,5 +99,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """The largest diagonal of a body's box [mm]: the number of its positions does not matter."""
+    """Return the largest diagonal of a body's box [mm], whatever the number of its positions."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

@@ -1,6 +1,6 @@
-"""SVG: the visible edges of the bodies as lines, true to scale (1 mm is 1 mm), hidden ones dashed.
+"""SVG: the visible edges of the bodies as lines, true to scale (1 mm is 1 mm), hidden edges dashed.
 
-Where one face runs smoothly into another, as at a fillet, the line is thin.
+Where two faces meet smoothly, as at a fillet, the line is thin.
 """
 
 from __future__ import annotations

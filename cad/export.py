@@ -1,4 +1,4 @@
-"""Files derived from a finished STEP file, on request only: meshes, pictures, drawings."""
+"""Files derived from a finished STEP file on request: meshes, pictures, drawings."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def derive(step: bytes, kind: str) -> bytes:
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape, or validation properties find no part of their own.
+        If the bytes are not a STEP file or hold no shape, or validation properties match no part.
     KeyError
         If no such kind can be derived.
     InvalidInputs

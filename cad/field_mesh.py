@@ -1,8 +1,8 @@
-"""A field painted on a solid: its GLB file with a colour at every corner, and a shaded picture of it.
+"""A field painted on a solid: its GLB file with a colour at each vertex, and a shaded picture of it.
 
-The file is one that `cad.gltf` wrote, of a model that is one body in one place. Its triangles stay as they
-are; glTF's COLOR_0 and a white material are added. Colours run from the lowest value (violet) over green to
-the highest (yellow); where there is no value the part is grey.
+The file comes from `cad.gltf`, for a model that is one body at one position. Its triangles are kept; glTF's
+COLOR_0 and a white material are added. Colours run from violet (lowest value) through green to yellow
+(highest); the part is grey where the field has no value.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Names of a design's files: `{design}_{model}_r{revision}`, in ASCII and in its user's letters."""
+"""Names of a design's files: `{design}_{model}_r{revision}`, in ASCII and in the user's letters."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The plain sizes of a throw, and the positions of its pin and fillets that follow from them.
+"""The plain sizes of a throw, and the positions of its pin and fillets.
 
-It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
+This module needs no kernel: finite elements bring their own kernel, and one process must not load both.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""GLB (glTF 2.0, binary): every body once, as a mesh with its colour, and a node for each of its places.
+"""GLB (glTF 2.0, binary): every body once, as a mesh with its colour, and a node for each of its positions.
 
-glTF counts in metres and calls y up; the root node turns and scales the model, whose z is up, in millimetres.
+glTF uses metres with y up; the root node rotates and scales the model, which is in millimetres with z up.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
-r"""The header of a STEP file, in which a model says what it is: its id, version, parameters and build.
+r"""The header of a STEP file, which identifies the model: its id, version, parameters and build.
 
-Written and read as ISO 10303-21 says: a quote is doubled, a backslash too, what is not ASCII is written as
-\X2\…\X0\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each parameter has one of
-its own, and a long list has several. The time is a fixed one: the same parameters must give the same bytes.
+It is written and read as ISO 10303-21 prescribes: quotes and backslashes are doubled, characters outside
+ASCII are written as \X2\…\X0\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each
+parameter has its own string, and a long list has several. The time is constant, because the same parameters
+must give the same bytes.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 """Models that a team imports: drawn by another program, or the fixed shape of a STEP file.
 
 Such a model is a description: which program draws it from which file, and its parameters. The description
-makes a class that stands beside the built-in models. What the program draws is handed to a model by `take`;
-from there on it is treated like every model: a STEP file is written, read again, checked and measured.
+makes a class that stands beside the built-in models. `take` passes the drawn shape to a model; from then on
+it is treated like any model: a STEP file is written, read again, checked and measured.
 
-There is no closed form of its volume. The volume of the drawn shape stands in for it: this holds the file to
-the drawing, and says nothing about whether the program drew the right thing. A parameter is read back if a
-trial at the import showed that it is a diameter, a radius or a distance between parallel planes of the solid.
+Its volume has no closed form, so the volume of the drawn shape replaces it: this verifies the file against
+the drawing, but not that the program drew the right shape. A parameter is read back if a trial at the import
+showed that it is a diameter, a radius or a distance between parallel planes of the solid.
 
-This module imports the kernel only where it draws: a calculation reads descriptions, and draws nothing.
+This module imports the kernel only to draw; a calculation only reads descriptions.
 """
 
 from __future__ import annotations

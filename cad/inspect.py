@@ -1,6 +1,6 @@
-"""Measure a finished STEP file: the same bytes that a user gets are read again, and measured there.
+"""Measure a finished STEP file: the bytes that a user gets are read again and measured.
 
-This module does not use the shape that was built. A part that stands at several places is measured once.
+This module does not use the built shape. A part at several positions is measured once.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def measure(body: Body) -> BodyMeasures:
 
 def look_at(bodies: Iterable[Body]) -> dict[str, PartSurfaces]:
     """Return the surfaces of every body, by its name."""
-    return {body.name: look(body.shape, len(body.places)) for body in bodies}
+    return {body.name: look(body.shape, len(body.places), body.name) for body in bodies}
 
 
 def summarise(

@@ -1,4 +1,4 @@
-"""Parameters that are lists, as text: `[0, 180, 180, 0] deg` in STEP files, jobs and keys."""
+"""Parameters that are lists, written as text: `[0, 180, 180, 0] deg` in STEP files, jobs and keys."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Triangles of the bodies in a STEP file, as arrays: what STL, GLB and pictures are made of.
+"""Triangles of the bodies in a STEP file as arrays, from which STL, GLB and pictures are written.
 
-A closed mesh has no gap: each edge of a triangle is that of exactly one other, the other way round, once
-points that are equal in single precision are one. No triangle of any mesh has two corners that are equal so.
+A closed mesh has no gap: once points that are equal in single precision are merged, each edge belongs to
+exactly one other triangle, in the opposite direction. No triangle has two corners that are equal in single
+precision.
 """
 
 from __future__ import annotations

@@ -1,22 +1,22 @@
 """CadModel: a template with a shape.
 
 A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template. It
-also has four members, of which only the first draws. A fifth, `toleranced`, says which faces carry which
-dimension, so that the STEP file can state tolerances (`cad.tolerances`):
+also has the four members below, of which only the first draws. A fifth, `toleranced`, names the dimensions
+that may have limits in the STEP file, with their geometric tolerances (`cad.tolerances`). The members:
 
-- `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
-  nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
-  than its groove took 12 % off a bearing shell); the volume shows it.
+- `build()`: its parts, each one solid with its required volume, from a closed form that is independent of the
+  kernel. OpenCASCADE may return a wrong solid as valid (a drilling 10 nm wider than its groove removed 12 %
+  of a bearing shell); the volume reveals it.
 - `bounding_box()`: the box that the parts together must fill.
-- `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file.
+- `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file. The
+  faces from which a `cad.surfaces.Size` is read carry that parameter, in the STEP file and on the drawing.
 - `example`: a valid set of parameters.
 
 A parameter is one number, or a list where it is declared as a `curve`; never an array of points.
 
 Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
 
-This module does not import the kernel: a calculation checks whether a template is a model, but never draws
-one.
+This module does not import the kernel: a calculation asks whether a template is a model, but never draws one.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Classes of the models that a team imports, made from the text of their descriptions.
+"""Classes of the models that a team imports, created from the text of their descriptions.
 
-A class is made once in a process. It pickles as the text from which another process makes it.
+Each process creates a class once. The class pickles as its text, from which another process creates it again.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 """Import the kernel on demand: a process that draws nothing, such as the server, never imports it.
 
 CadQuery, OpenCASCADE and the drawing libraries take seconds to import, and more memory than the rest of the
-server, which needs only the parameters of a model. After `postpone`, what a module imports from them is a
-stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
-every stand-in that a module holds. So every use works; only the import comes later.
+server, which needs only the parameters of a model. After `postpone`, modules import placeholders instead. The
+first use of a placeholder (a call, an attribute) imports the kernel and replaces every placeholder that a
+module holds by the real object. So every use works; only the import happens later.
 
-Modules that need the kernel while they are imported say so by `constant` and `once_loaded`.
+Modules that need the kernel during their own import use `constant` and `once_loaded`.
 
-The kernel is then loaded without VTK, with which CadQuery shows shapes on a screen: of that it gets stand-ins
-too. No function of ours uses it; a team's model may, and the first use imports it.
+The kernel is then loaded without VTK, with which CadQuery shows shapes on a screen; VTK gets placeholders
+too. Our functions do not use VTK; a team's model may, and its first use imports it.
 """
 
 from __future__ import annotations

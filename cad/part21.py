@@ -1,4 +1,4 @@
-"""Strings and tokens of ISO 10303-21, the clear text of STEP files: written, scanned, and read back.
+"""Strings and tokens of ISO 10303-21, the clear text of STEP files: write, scan and parse them.
 
 A client may send any bytes as a STEP file. The scan passes over its text once and never goes back, so its
 time is linear in the length of the text, whatever the text holds.

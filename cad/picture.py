@@ -1,8 +1,8 @@
-"""PNG: a shaded picture of the meshes, drawn with NumPy alone, as OpenGL may be absent or crash.
+"""PNG: a shaded picture of the meshes, drawn with NumPy alone, as OpenGL may be missing or crash.
 
-Triangles are split into the rows of samples that they cover, rows into samples, and of all samples at one
-place the nearest wins (a depth buffer). Normals are interpolated, so balls look round; where one face meets
-another, a line is drawn.
+Triangles are split into the rows of samples that they cover, and rows into samples; the nearest sample at
+each pixel wins (a depth buffer). Normals are interpolated, so balls look round. A line is drawn where two
+faces meet.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
-"""Where a fixed part stands in an assembly: on a datum of another part, moved along it and turned about it.
+"""The position of a fixed part in an assembly: on a datum of another part, moved along and rotated about it.
 
-A datum is `origin`, the axes of the whole; or a part and a place on it, such as `cap.low_y`:
+A datum is `origin`, the axes of the assembly, or a part and a place on it, such as `cap.low_y`:
 
 - `low_x`, `high_x`, … `high_z`: the middle of that side of the part's box, z pointing out of the part;
-- `centre`: the middle of the box, axes as those of the whole;
-- `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of the
-  point in which they pass the middle of the box; that point is the origin, and z points along the axis.
+- `centre`: the middle of the box, with the axes of the assembly;
+- `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of their
+  point nearest to the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is the axis of the whole that is most nearly perpendicular to its z axis; of several
-such axes it is the first.
+The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; the
+first of several such axes.
 """
 
 from __future__ import annotations

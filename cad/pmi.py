@@ -1,10 +1,10 @@
 """Semantic PMI of AP242: dimensions with their limits, datums, geometric tolerances, on the faces of parts.
 
-Known faults of Open CASCADE 7.9, each found by experiment: the schema must be AP242, with AP214 its writer
-dies; a dimension carries limits and never a class of fit, of which the writer counts the grade otherwise than
-ISO 286; the writer takes a lower deviation with its sign turned round, and writes deviations without their
-type (`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn:
-these annotations are for programs, a drawing is for people.
+Known faults of Open CASCADE 7.9, each found by experiment: the writer crashes unless the schema is AP242; a
+dimension must have limits and never a class of fit, because the writer numbers the grades differently from
+ISO 286; the writer expects a lower deviation with the opposite sign, and writes deviations without their type
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn: these
+annotations are for programs, drawings are for people.
 """
 
 from __future__ import annotations
@@ -23,23 +23,16 @@ from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceObject as Toler
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as ToleranceType
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
-from cad.carriers import Carriers, Place
-from cad.tolerances import Faces, Form, Limits, ToleranceFaces
+from cad.errors import GeometryError
+from cad.surfaces import Face, Kind, Place, Size
+from cad.tolerances import Form, FormTolerances, Limits
 
-_DIAMETER = "XCAFDimTolObjects_DimensionType_Size_Diameter"
-_DISTANCE = "XCAFDimTolObjects_DimensionType_Location_LinearDistance"
-_TYPES: Mapping[Faces, str] = {
-    "cylinders": _DIAMETER,
-    "beside": _DIAMETER,
-    "along": _DIAMETER,
-    "askew": _DIAMETER,
-    "spheres": "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter",
-    "planes": _DISTANCE,
-    "sides": _DISTANCE,
-    "walls": _DISTANCE,
-    "shoulders": _DISTANCE,
-    "discs": _DISTANCE,
-    "between": _DISTANCE,
+_TYPES: Mapping[Kind, str] = {
+    "diameter": "XCAFDimTolObjects_DimensionType_Size_Diameter",
+    "sphere": "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter",
+    "radius": "XCAFDimTolObjects_DimensionType_Size_Radius",
+    "distance": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
+    "chamfer": "XCAFDimTolObjects_DimensionType_Size_Thickness",
 }
 _FORMS: Mapping[Form, str] = {
     "cylindricity": "XCAFDimTolObjects_GeomToleranceType_Cylindricity",
@@ -59,19 +52,36 @@ class Product:
 
 @dataclass(frozen=True)
 class Annotations:
-    """What is written beside the shape: the toleranced dimensions by parameter, and what declares them.
+    """What is written beside the shape, by parameter: limits, sizes on faces, geometric tolerances."""
 
-    `sizes` [mm] are those of all declared parameters, toleranced or not.
-    """
-
-    declared: Mapping[str, ToleranceFaces] = field(default_factory=dict)
+    declared: Mapping[str, FormTolerances] = field(default_factory=dict)
     limits: Mapping[str, Limits] = field(default_factory=dict)
-    sizes: Mapping[str, float] = field(default_factory=dict)
+    sizes: Mapping[str, Size] = field(default_factory=dict)
+
+    @staticmethod
+    def of(
+        declared: Mapping[str, FormTolerances], limits: Mapping[str, Limits], dimensions: Mapping[str, object]
+    ) -> Annotations:
+        """Return what is written of a solid with these dimensions.
+
+        Raises
+        ------
+        GeometryError
+            `tolerance`, where no faces carry a dimension that has limits.
+        """
+        sizes = {
+            name: size for name, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES
+        }
+        for name in limits.keys() - sizes.keys():
+            detail = f"{name} has a tolerance, but no face shows its {limits[name].nominal:g} mm"
+            remedy = "omit the tolerance, or give the dimension a size above 0"
+            raise GeometryError("tolerance", f"{detail}; {remedy}", (name,))
+        return Annotations(declared, limits, sizes)
 
     @property
     def dimensions(self) -> list[str]:
         """Return the parameter of every dimension that is written, in the order of the file."""
-        return [n for n in self.limits for _ in self.declared[n].levels]
+        return [n for n in self.limits for _ in self.sizes[n].places]
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
@@ -84,65 +94,44 @@ class Annotations:
         return [*self.dimensions, *(name for name, _ in self.forms)]
 
 
-def annotate(
-    document: TDocStd_Document,
-    products: Mapping[str, Product],
-    drawn: Mapping[str, Shape],
-    annotations: Annotations,
-) -> None:
-    """Add every toleranced dimension to a document; `drawn` are the solids in their models' coordinates.
-
-    Raises
-    ------
-    GeometryError
-        `tolerance`, where no face shows a dimension, or two dimensions claim the same one.
-    """
-    carriers = Carriers(drawn, annotations.declared, annotations.sizes)
-    _Writer(document, products, carriers, annotations.declared).write(annotations.limits)
+def annotate(document: TDocStd_Document, products: Mapping[str, Product], annotations: Annotations) -> None:
+    """Add every toleranced dimension to a document."""
+    _Writer(document, products, annotations).write()
 
 
 class _Writer:
     """Adds dimensions, datums and geometric tolerances to a document."""
 
     def __init__(
-        self,
-        document: TDocStd_Document,
-        products: Mapping[str, Product],
-        carriers: Carriers,
-        declared: Mapping[str, ToleranceFaces],
+        self, document: TDocStd_Document, products: Mapping[str, Product], annotations: Annotations
     ) -> None:
         self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
         self._tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
-        self._products, self._carriers, self._declared = products, carriers, declared
-        self._faces: dict[tuple[str, int], TDF_Label] = {}
+        self._products, self._annotations = products, annotations
+        self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
 
-    def write(self, limits: Mapping[str, Limits]) -> None:
+    def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
-        places = {name: self._carriers.places(name) for name in limits}
+        limits, sizes = self._annotations.limits, self._annotations.sizes
         for name, within in limits.items():
-            for place in places[name]:
-                self._dimension(self._declared[name], place, within)
+            for place in sizes[name].places:
+                self._dimension(sizes[name].kind, place, within)
         for name, within in limits.items():
-            one = self._declared[name]
+            one = self._annotations.declared[name]
             for form, share in one.forms.items():
-                numbers = [n for place in places[name] for n in (*place.first, *place.second)]
-                faces = self._labels(one.part, dict.fromkeys(numbers))
-                self._form(form, within.share(share), faces, one.to)
+                faces = [face for place in sizes[name].places for face in (*place.first, *place.second)]
+                self._form(form, within.share(share), self._labels(dict.fromkeys(faces)), one.to)
 
-    def _dimension(self, one: ToleranceFaces, place: Place, within: Limits) -> None:
+    def _dimension(self, kind: Kind, place: Place, within: Limits) -> None:
         size = DimensionObject()
-        size.SetType(getattr(DimensionType, _TYPES[one.faces]))
+        size.SetType(getattr(DimensionType, _TYPES[kind]))
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
         size.SetLowerTolValue(-within.lower)  # which the writer turns round
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
-        first, second = (
-            self._labels(place.inside or one.part, place.first),
-            self._labels(one.part, place.second),
-        )
-        self._tool.SetDimension(first, second, label)
+        self._tool.SetDimension(self._labels(place.first), self._labels(place.second), label)
 
     def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
         tolerance = ToleranceObject()
@@ -157,23 +146,26 @@ class _Writer:
     def _datum(self, letter: str) -> TDF_Label:
         """Return the datum of a letter, which is written once."""
         if letter not in self._letters:
-            one = next(one for one in self._declared.values() if one.datum == letter)
+            declared = self._annotations.declared
+            name = next(name for name, one in declared.items() if one.datum == letter)
             datum = DatumObject()
             datum.SetName(TCollection_HAsciiString(letter))
             datum.SetPosition(1)
             label = self._tool.AddDatum()
             XCAFDoc_Datum.Set_s(label).SetObject(datum)
-            (place,) = self._carriers.places(one.name)
-            self._tool.SetDatum(self._labels(one.part, place.first), label)
+            if (size := self._annotations.sizes.get(name)) is None:
+                detail = f"no face shows {name}, the datum {letter} of a tolerance; give it a size above 0"
+                raise GeometryError("tolerance", detail, (name,))
+            self._tool.SetDatum(self._labels(size.places[0].first), label)
             self._letters[letter] = label
         return self._letters[letter]
 
-    def _labels(self, part: str, numbers: Iterable[int]) -> TDF_LabelSequence:
-        """Return the labels of faces of a part; each is made once."""
-        product = self._products[part]
+    def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
+        """Return the labels of faces; each is made once."""
         labels = TDF_LabelSequence()
-        for number in numbers:
+        for part, number in faces:
             if (part, number) not in self._faces:
+                product = self._products[part]
                 face = product.solid.Faces()[number].wrapped
                 self._faces[part, number] = self._shapes.AddSubShape(product.label, face)
             labels.Append(self._faces[part, number])

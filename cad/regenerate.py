@@ -1,8 +1,9 @@
-"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function of them.
+"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function.
 
-A build is accepted only after its checks, and the checks look at the bytes that a user will get: one valid
-solid per part, its volume that of the closed form, the box filled, and every parameter read back from the
-surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and in any other.
+A build is accepted only after its checks, which examine the bytes that a user will get: each part is one
+valid solid with the volume of its closed form, the parts fill the bounding box, and every parameter is read
+back from the surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and
+in any other.
 """
 
 from __future__ import annotations
@@ -17,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from cad.carriers import located
 from cad.catalogue import models
 from cad.checks import (
     between_parts,
@@ -33,14 +33,15 @@ from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
-from cad.model import CadModel, Dimension, Part, arrays_of_points, mm
+from cad.model import CadModel, Dimension, Part, arrays_of_points
 from cad.overlaps import Clearance, Report, require_few_meeting
 from cad.pmi import Annotations
 from cad.statement_check import check_statements
 from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
-from cad.tolerances import REPEATED, Limits, carried, in_unit, limits, limits_of
+from cad.surfaces import look
+from cad.tolerances import Limits, carried, in_unit, limits, limits_of
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.modules import is_outside
@@ -224,10 +225,8 @@ def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
     """Return the file's statements beside the shape; none if no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
-    solids = {part.name: part.solid for part in parts}
-    declared = {name: one.among(solids) for name, one in carried(type(model)).items()}
-    sizes = {name: mm(getattr(model, model.inputs[name].attribute)) for name in declared}
-    return Annotations(located(declared, solids, sizes, within), within, sizes)
+    seen = {part.name: look(part.solid, len(part.places), part.name) for part in parts}
+    return Annotations.of(carried(type(model)), within, model.dimensions(seen))
 
 
 def _plain(model: CadModel) -> dict[str, Value]:
@@ -258,10 +257,7 @@ def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
     identity = [cls.id, cls.version, sorted(texts.items()), KERNEL, RECIPE, *_code(cls)]
     if cls.toleranced.keys() & limits_of(texts).keys():
-        given = limits_of(texts)
-        identity.append(
-            {n: one for n, one in cls.toleranced.items() if n in given or not {*REPEATED} & one.keys()}
-        )  # released models have lengths that repeat since a later time
+        identity.append(cls.toleranced)
     return hashlib.sha256(json.dumps(identity, default=dict).encode()).hexdigest()
 
 

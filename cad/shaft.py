@@ -1,6 +1,6 @@
-"""The data of a solid that an analysis needs beside its shape: its material, and how it is held and loaded.
+"""The data of a solid that an analysis needs besides its shape: material, supports and loads.
 
-It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
+This module needs no kernel: finite elements bring their own kernel, and one process must not load both.
 """
 
 from __future__ import annotations

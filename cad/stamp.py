@@ -1,8 +1,8 @@
-"""The stamp on a downloaded STEP file or drawing, which names the design that it belongs to.
+"""The stamp on a downloaded STEP file or drawing, which identifies the design.
 
-A build is shared by all designs of equal parameters, so its files name none. A stamp is written into a copy
-when it is downloaded: into the names of products and the time of a STEP file, into the title block of a
-drawing. It is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
+All designs with equal parameters share a build, so its files name no design. The stamp is written into a copy
+at the download: into the product names and the time of a STEP file, or into the title block of a drawing. The
+result is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from html import escape
 
 from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.title import STAMPED as STAMPED_FIELDS
-from cad.file_names import name, stem, wide_stem
+from cad.file_names import name, plain_name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
 
 _STRING = r"'(?:[^']|'')*'"
@@ -73,6 +73,14 @@ class Stamp:
     def wide_stem(self) -> str:
         """Return the file's name without its ending, in the letters of its user."""
         return wide_stem(self.design, self.called, self.revision)
+
+    @property
+    def part_number(self) -> str:
+        """Return the id of the product in ASCII: the number given, else design, variant and model.
+
+        The revision is not in it, so that a product-data system sees one part with its revisions.
+        """
+        return self.number or f"{plain_name(self.design)}_{self.called}"
 
     @property
     def named(self) -> str:
@@ -175,19 +183,19 @@ def _root(stamp: Stamp) -> tuple[str, ...]:
         f"design {stamp.design}",
         f"variant {stamp.variant}" if stamp.variant else "",
         f"model {stamp.model}",
-        f"revision {stamp.revision}",
         stamp.material,
+        "" if stamp.mass is None else f"mass {stamp.mass:.6g} kg",
     )
-    return stamp.stem, stamp.wide_stem, ", ".join(filter(None, described))
+    return stamp.part_number, f"{name(stamp.design)}_{stamp.called}", ", ".join(filter(None, described))
 
 
-def _part(name: str, stamp: Stamp) -> tuple[str, ...]:
+def _part(part: str, stamp: Stamp) -> tuple[str, ...]:
     """Return the id, name and description of a part of an assembly."""
-    return f"{stamp.stem}_{name}", name, stamp.materials.get(name, "")
+    return f"{stamp.part_number}_{part}", part, stamp.materials.get(part, "")
 
 
 def _version(stamp: Stamp) -> tuple[str, ...]:
-    return (str(stamp.revision),)
+    return (stamp.mark or str(stamp.revision),)
 
 
 def _stamped_step(text: str, stamp: Stamp) -> str:

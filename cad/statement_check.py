@@ -1,4 +1,4 @@
-"""Check what a finished STEP file states beside the shape: limits as requested, properties as measured."""
+"""Check the statements of a finished STEP file besides its shape: requested limits, measured properties."""
 
 from __future__ import annotations
 

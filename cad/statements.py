@@ -1,8 +1,8 @@
-"""Read the statements of a STEP file beside the shape: dimensions, datums, tolerances, properties.
+"""Read the statements of a STEP file besides its shape: dimensions, datums, tolerances, properties.
 
-No kernel reads it: a client may send any bytes. The text is passed over once, statement by statement, and
-only statements of the few sorts that are needed are taken apart, so the time is linear in its length.
-Inconsistent statements are left out; a comparison with the expected statements then reveals them.
+This module does not use the kernel, because a client may send any bytes. It scans the text once, statement by
+statement, and parses only the few kinds of statements that it needs, so its time is linear in the length of
+the text. Inconsistent statements are left out; a later comparison with the expected statements reveals them.
 """
 
 from __future__ import annotations

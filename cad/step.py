@@ -1,4 +1,4 @@
-"""STEP (AP242): parts to bytes, the same for the same parts, and back to bodies with names and colours."""
+"""STEP (AP242): write parts as reproducible bytes, and read bodies with names and colours."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def write_step(
     document = _new_document()
     products = _fill(document, header.model, parts)
     if annotations is not None:
-        annotate(document, products, {part.name: part.solid for part in parts}, annotations)
+        annotate(document, products, annotations)
     stream = io.BytesIO()
     if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
         raise RuntimeError("the kernel could not translate the parts to STEP")

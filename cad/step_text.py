@@ -1,8 +1,8 @@
-"""The text of a STEP file, the same for the same parts: random parts of the kernel's output are fixed.
+"""The text of a STEP file, made reproducible: varying parts of the kernel's output are replaced.
 
-Three things in its text tell of the process that wrote it: the time in the header, a counter of assembly
-usages that never restarts, whose digits move the line breaks, and the order of colours, which is that of
-memory addresses. So the header and the colours are written here, and usages are counted from 1.
+Three things in the text depend on the process that wrote it: the time in the header; a counter of assembly
+usages that never restarts, whose digits shift the line breaks; and the order of colours, which follows memory
+addresses. So this module writes the header and the colours, and counts usages from 1.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""STL, binary: the triangles of all bodies in one list, in millimetres, without colours."""
+"""Binary STL: the triangles of all bodies in one list, in millimetres, without colours."""
 
 from __future__ import annotations
 

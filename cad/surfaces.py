@@ -1,16 +1,21 @@
-"""Surfaces of a finished solid: planes, cylinders, spheres, tori; dimensions are read from them."""
+"""Surfaces of a finished solid: planes, cylinders, spheres, tori, cones; dimensions are read from them.
+
+A dimension that is read from faces is a `Size`: a number that knows its faces. The STEP file states a
+tolerance on these faces, and a drawing places the dimension by them.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
+from math import cos, sin
+from typing import Any, Literal, Self
 
 from cadquery import Shape, Vector
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
+from OCP.GeomAbs import GeomAbs_SurfaceType as _Kind
 
 from cad.on_demand import constant
 
@@ -23,14 +28,134 @@ AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector
 _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
 
 
+Face = tuple[str, int]
+"""The name of a part, and the number of one of its faces in the order of the solid."""
+Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle"]
+"""What a size is. The faces of a `distance` from an axis are those about it; a `circle` has the diameter of
+that through the axes of its faces, which are holes; a `chamfer` is of 45°."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The faces of a size; those of a distance or an angle lie on two sides."""
+
+    first: tuple[Face, ...]
+    second: tuple[Face, ...] = ()
+
+
+class Size(float):
+    """A length [mm] or an angle [deg] that is read from faces; a number wherever one is wanted.
+
+    A length that repeats, as that of all pins of a shaft, has a place for each repetition.
+    """
+
+    kind: Kind
+    places: tuple[Place, ...]
+
+    def __new__(cls, value: float, kind: Kind, *places: Place) -> Self:
+        """Return a number with its faces."""
+        size = super().__new__(cls, value)
+        size.kind, size.places = kind, places
+        return size
+
+    @staticmethod
+    def diameter(surfaces: Sequence[Surface]) -> Size:
+        """Return the diameter of cylinders, all of which are alike."""
+        value = alike((one.diameter for one in surfaces), "diameters")
+        return Size(value, "diameter", Place(faces_of(surfaces)))
+
+    @staticmethod
+    def sphere(surfaces: Sequence[Surface]) -> Size:
+        """Return the diameter of spheres, all of which are alike."""
+        value = alike((one.diameter for one in surfaces), "balls")
+        return Size(value, "sphere", Place(faces_of(surfaces)))
+
+    @staticmethod
+    def radius(surfaces: Sequence[Surface]) -> Size:
+        """Return the radius of cylinders, or of the tubes of tori, all of which are alike."""
+        value = alike((one.diameter / 2 for one in surfaces), "radii")
+        return Size(value, "radius", Place(faces_of(surfaces)))
+
+    @staticmethod
+    def distance(value: float, first: Iterable[Surface], second: Iterable[Surface]) -> Size:
+        """Return a distance [mm] between two groups of faces."""
+        return Size(value, "distance", Place(faces_of(first), faces_of(second)))
+
+    @staticmethod
+    def wall(inner: Sequence[Surface], outer: Sequence[Surface]) -> Size:
+        """Return the wall between cylinders about one axis."""
+        return Size.distance((outer[0].diameter - inner[0].diameter) / 2, inner, outer)
+
+    @staticmethod
+    def circle(holes: Sequence[Surface]) -> Size:
+        """Return the diameter of the circle about z on which the axes of holes along z lie."""
+        value = alike((2 * one.point.cross(Z).Length for one in holes), "distances of holes from the axis")
+        return Size(value, "circle", Place(faces_of(holes)))
+
+    @staticmethod
+    def repeated(sizes: Iterable[float], what: str) -> float:
+        """Return the one value of sizes that are alike, with the places of all.
+
+        Raises
+        ------
+        LookupError
+            If there is none, or they differ.
+        """
+        every = list(sizes)
+        value = alike(every, what)
+        known = [one for one in every if isinstance(one, Size)]
+        if not known:
+            return value
+        places = dict.fromkeys(place for one in known for place in one.places)
+        if known[0].kind != "distance":  # all faces of a diameter are one feature
+            places = {Place(tuple(dict.fromkeys(face for place in places for face in place.first))): None}
+        return Size(value, known[0].kind, *places)
+
+
+def alike(values: Iterable[float], what: str) -> float:
+    """Return the one value of a dimension that several features share.
+
+    Raises
+    ------
+    LookupError
+        If there is none, or they differ.
+    """
+    found = [float(value) for value in values]
+    if not found or max(found) - min(found) > 2 * _COINCIDENT:
+        raise LookupError(f"all {what} must have one size; the file has {found}")
+    return sum(found) / len(found)
+
+
+def faces_of(surfaces: Iterable[Surface]) -> tuple[Face, ...]:
+    """Return the faces of surfaces, each once."""
+    return tuple(dict.fromkeys(one.face for one in surfaces))
+
+
 @dataclass(frozen=True)
 class Surface:
-    """A plane or a cylinder: a point on it or its axis, normal or axis, diameter unless it is flat."""
+    """A plane, cylinder, sphere, torus or cone: a point on it or its axis, its normal or axis, its diameter.
+
+    Attributes
+    ----------
+    point, direction
+        A point of the plane and its normal; of other surfaces a point of the axis and its direction. The
+        point of a sphere or torus is its centre.
+    diameter
+        Of a cylinder or sphere; of a torus that of its tube, of a cone the mean one of its ends [mm].
+    reach
+        Of a cylinder or cone: where along its axis it begins and ends [mm].
+    about_radius
+        Of a torus: the radius of the circle on which the middle of its tube runs [mm].
+    face
+        The part and the number of its face.
+    """
 
     point: Vector
     direction: Vector
-    diameter: float = 0.0  # [mm]
-    reach: tuple[float, float] = (0.0, 0.0)  # of a cylinder: where along its axis it begins and ends [mm]
+    diameter: float = 0.0
+    reach: tuple[float, float] = (0.0, 0.0)
+    about_radius: float = 0.0
+    face: Face = field(default=("", -1), compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is that of the axis, either way round."""
@@ -61,68 +186,85 @@ class PartSurfaces:
     count: int
     planes: tuple[Surface, ...]
     cylinders: tuple[Surface, ...]
-    spheres: tuple[float, ...]  # diameters [mm]
-    tori: tuple[float, ...] = ()  # radii of their tubes [mm]
+    spheres: tuple[Surface, ...]
+    tori: tuple[Surface, ...] = ()
+    cones: tuple[Surface, ...] = ()
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return every surface of the part."""
+        return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
 
     def levels(self, axis: Vector) -> list[float]:
         """Return the coordinates [mm] at which planes cross the axis at a right angle, ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
+    def planes_at(self, axis: Vector, level: float) -> list[Surface]:
+        """Return the planes that cross the axis at a right angle at a coordinate [mm]."""
+        across = (plane for plane in self.planes if plane.along(axis))
+        return [plane for plane in across if abs(plane.point.dot(axis) - level) < _COINCIDENT]
+
+    def between(self, axis: Vector, first: int, last: int) -> float:
+        """Return the distance between two planes across the axis, counted from the lowest; -1 is the last."""
+        levels = self.levels(axis)
+        return self.apart(axis, levels[first], levels[last])
+
+    def apart(self, axis: Vector, low: float, high: float) -> float:
+        """Return the distance between the planes across the axis at two coordinates [mm].
+
+        It is a plain number where one of them has no plane.
+        """
+        first, second = self.planes_at(axis, low), self.planes_at(axis, high)
+        return Size.distance(high - low, first, second) if first and second else high - low
+
     def length(self, axis: Vector) -> float:
         """Return the distance from the first to the last plane across the axis [mm]."""
-        levels = self.levels(axis)
-        return levels[-1] - levels[0]
+        return self.between(axis, 0, -1)
+
+    def chamfer(self, value: float, ring: Sequence[Surface]) -> float:
+        """Return a chamfer [mm] of 45° at the ends of cylinders about z; a plain number if no cone has it."""
+        low, high = min(one.reach[0] for one in ring), max(one.reach[1] for one in ring)
+        cones = [cone.turned(Z) for cone in self.cones if cone.about(Z)]
+        beyond = [
+            cone
+            for cone in cones
+            if any(
+                abs(abs(cone.diameter - ring[0].diameter) / 2 - away) < _COINCIDENT
+                for away in (sum(cone.reach) / 2 - high, low - sum(cone.reach) / 2)
+            )
+        ]
+        return Size(value, "chamfer", Place(faces_of(beyond))) if beyond else value
 
     def about(self, axis: Vector) -> list[Surface]:
         """Return the cylinders about the axis, each pointing along it."""
         return [cylinder.turned(axis) for cylinder in self.cylinders if cylinder.about(axis)]
 
-    def diameters(self, axis: Vector) -> list[float]:
+    def rings(self, axis: Vector) -> list[list[Surface]]:
+        """Return the cylinders about the axis by their diameter, the thinnest first."""
+        about = self.about(axis)
+        sizes = _distinct(cylinder.diameter for cylinder in about)
+        return [[c for c in about if abs(c.diameter - size) < _COINCIDENT] for size in sizes]
+
+    def diameters(self, axis: Vector) -> list[Size]:
         """Return the diameters of the cylinders about the axis [mm], ascending."""
-        return _distinct(cylinder.diameter for cylinder in self.about(axis))
+        return [Size.diameter(ring) for ring in self.rings(axis)]
 
 
-@dataclass(frozen=True)
-class FaceReadback:
-    """A face of a solid by its number, of which sort it is, and its plane or cylinder.
-
-    Of a sphere the surface is its centre and diameter; other sorts, with the kind "", have none to speak of.
-    """
-
-    number: int
-    kind: str
-    surface: Surface
-
-
-def faces_of(solid: Shape) -> list[FaceReadback]:
-    """Return every face of a solid, in the order of the solid."""
-    return [_face(n, BRepAdaptor_Surface(face.wrapped)) for n, face in enumerate(solid.Faces())]
-
-
-def _face(number: int, adaptor: BRepAdaptor_Surface) -> FaceReadback:
-    match adaptor.GetType():
-        case Kind.GeomAbs_Plane:
-            return FaceReadback(number, "plane", _surface(adaptor.Plane().Axis()))
-        case Kind.GeomAbs_Cylinder:
-            return FaceReadback(number, "cylinder", _cylinder(adaptor))
-        case Kind.GeomAbs_Sphere:
-            sphere = adaptor.Sphere()
-            return FaceReadback(number, "sphere", Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius()))
-    return FaceReadback(number, "", Surface(Vector(), Z))
-
-
-def look(solid: Shape, count: int = 1) -> PartSurfaces:
-    """Look at every face of a solid of which there are `count`."""
-    of = defaultdict[Any, list[BRepAdaptor_Surface]](list)
-    for face in solid.Faces():
+def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
+    """Look at every face of a solid of which there are `count`; `part` is its name."""
+    of = defaultdict[Any, list[Surface]](list)
+    for number, face in enumerate(solid.Faces()):
         adaptor = BRepAdaptor_Surface(face.wrapped)
-        of[adaptor.GetType()].append(adaptor)
+        kind = adaptor.GetType()
+        if read := _READERS.get(kind):
+            of[kind].append(replace(read(adaptor), face=(part, number)))
     return PartSurfaces(
         count,
-        planes=tuple(_surface(a.Plane().Axis()) for a in of[Kind.GeomAbs_Plane]),
-        cylinders=tuple(map(_cylinder, of[Kind.GeomAbs_Cylinder])),
-        spheres=tuple(2 * a.Sphere().Radius() for a in of[Kind.GeomAbs_Sphere]),
-        tori=tuple(a.Torus().MinorRadius() for a in of[Kind.GeomAbs_Torus]),
+        planes=tuple(of[_Kind.GeomAbs_Plane]),
+        cylinders=tuple(of[_Kind.GeomAbs_Cylinder]),
+        spheres=tuple(of[_Kind.GeomAbs_Sphere]),
+        tori=tuple(of[_Kind.GeomAbs_Torus]),
+        cones=tuple(of[_Kind.GeomAbs_Cone]),
     )
 
 
@@ -134,8 +276,38 @@ def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:
     return replace(surface, diameter=2 * cylinder.Radius(), reach=reach)
 
 
+def _sphere(adaptor: BRepAdaptor_Surface) -> Surface:
+    sphere = adaptor.Sphere()
+    return Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius())
+
+
+def _torus(adaptor: BRepAdaptor_Surface) -> Surface:
+    torus = adaptor.Torus()
+    return replace(_surface(torus.Axis()), diameter=2 * torus.MinorRadius(), about_radius=torus.MajorRadius())
+
+
+def _cone(adaptor: BRepAdaptor_Surface) -> Surface:
+    cone = adaptor.Cone()
+    surface, angle = _surface(cone.Axis()), cone.SemiAngle()
+    start = surface.point.dot(surface.direction)
+    ends = adaptor.FirstVParameter(), adaptor.LastVParameter()
+    low, high = sorted(start + v * cos(angle) for v in ends)
+    return replace(surface, diameter=2 * cone.RefRadius() + sum(ends) * sin(angle), reach=(low, high))
+
+
 def _surface(axis: Any) -> Surface:
     return Surface(Vector(axis.Location()), Vector(axis.Direction()))
+
+
+_READERS = constant(
+    lambda: {
+        _Kind.GeomAbs_Plane: lambda adaptor: _surface(adaptor.Plane().Axis()),
+        _Kind.GeomAbs_Cylinder: _cylinder,
+        _Kind.GeomAbs_Sphere: _sphere,
+        _Kind.GeomAbs_Torus: _torus,
+        _Kind.GeomAbs_Cone: _cone,
+    }
+)
 
 
 def _distinct(values: Iterable[float]) -> list[float]:

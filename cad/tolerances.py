@@ -1,43 +1,29 @@
-"""The faces of a model that carry each dimension, and the limits that a user sets for it.
+"""The geometric tolerances of a model's dimensions, and the limits that a user sets for them.
 
-A model declares this in `toleranced`, by parameter:
+A model declares in `toleranced` which parameters may have limits in its STEP file, and with which geometric
+tolerances:
 
     toleranced = {
-        "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "wall": {},
     }
 
-`of` names the part, or lists parts of which the first that is drawn has the faces; without it the part is
-named as the model. One of these says which faces are meant:
+`datum` makes the faces of the dimension a datum. `cylindricity`, `perpendicularity` and `parallelism` are
+shares of the dimension's own tolerance, upper less lower limit; the last two need `to`, the datum. They are
+written only where the dimension has a tolerance. Nothing here calculates: a released model may change it
+(`MARKS`).
 
-- `cylinders`: those about that axis, of the parameter's diameter; `end`, `"low"` or `"high"`, takes only the
-  first or the last along the axis, which no other dimension takes then;
-- `beside`: cylinders along that axis, but not about it; `along`: about it or not;
-- `askew`: cylinders along no axis, here `True`;
-- `spheres`, here `True`;
-- `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
-  not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
-- `sides`: from a plane across that axis to another one as far on the other side of the origin; the first
-  part that is drawn and has both planes carries it;
-- `walls`: from the thinnest cylinder about that axis to the one thicker by the wall; `inside` names the parts
-  of which one, if it is drawn, has the thinnest cylinder, such as the lining of a shell;
-- `shoulders`: from plane to plane on either side of each cylinder of another dimension, which is named: the
-  length of each pin of a shaft;
-- `discs`: from plane to plane, neighbours across the axis of other dimensions, all named, with none of their
-  cylinders between: the thickness of each web;
-- `between`: from the axis of one dimension's cylinders to that of another's, both named.
+Which faces carry a dimension is said in one place, `CadModel.dimensions`, which reads it from them as a
+`cad.surfaces.Size`.
 
-`datum` makes the faces a datum. `cylindricity`, `perpendicularity` and `parallelism` are shares of the
-dimension's own tolerance, upper less lower limit; the last two need `to`, the datum. They are written only
-where the dimension has a tolerance. Nothing here calculates: a released model may change it (`MARKS`).
-
-No kernel is imported here; `cad.pmi` finds the faces.
+No kernel is imported here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from templates.core.errors import FaultyText
@@ -49,78 +35,32 @@ from templates.core.units.units import unit
 if TYPE_CHECKING:
     from cad.header import Header
 
-Faces = Literal[
-    "cylinders",
-    "beside",
-    "along",
-    "askew",
-    "spheres",
-    "planes",
-    "sides",
-    "walls",
-    "shoulders",
-    "discs",
-    "between",
-]
 Form = Literal["cylindricity", "perpendicularity", "parallelism"]
-FACES: tuple[Faces, ...] = get_args(Faces)
 FORMS: tuple[Form, ...] = get_args(Form)
-_BY_AXIS = ("cylinders", "beside", "along", "planes", "sides", "walls")
-REPEATED = ("shoulders", "discs")
-"""Sorts of faces of a length that may repeat along an axis."""
-_MORE = frozenset({"of", "inside", "end", "levels", "datum", "to"})
+_MORE = frozenset({"datum", "to"})
 _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
 
 @dataclass(frozen=True)
-class ToleranceFaces:
-    """Faces by which a part carries a dimension.
+class FormTolerances:
+    """What the tolerance of a dimension brings with it.
 
     Attributes
     ----------
     name
         The parameter.
-    part
-        The part on which the faces are.
-    faces, where
-        Which sort of faces, and what the declaration says of them: an axis, `True`, or two dimensions.
-    end
-        `low` or `high`, if only the first or the last cylinder along the axis is meant.
-    levels
-        Of planes: which planes across the axis, counted from the lowest, by pairs.
     datum
-        The letter of the datum that the faces are; empty if they are none.
+        The letter of the datum that its faces are; empty if they are none.
     forms
         Geometric tolerances as shares of the dimension's own tolerance.
     to
         The letter of the datum to which perpendicularity and parallelism refer.
-    others
-        Parts that have the faces where `part` is not drawn.
-    inside
-        Of walls: parts that have the thinnest cylinder where one of them is drawn.
     """
 
     name: str
-    part: str
-    faces: Faces
-    where: Any
-    end: str = ""
-    levels: tuple[tuple[int, int], ...] = ((0, -1),)
     datum: str = ""
     forms: Mapping[Form, float] = field(default_factory=dict)
     to: str = ""
-    others: tuple[str, ...] = ()
-    inside: tuple[str, ...] = ()
-
-    @property
-    def others_named(self) -> tuple[str, ...]:
-        """Return the dimensions that it names, of a length that repeats along a shaft."""
-        return (self.where,) if isinstance(self.where, str) else tuple(self.where)
-
-    def among(self, drawn: Collection[str]) -> ToleranceFaces:
-        """Return the same on that of its parts which is drawn; on the first of them if none is."""
-        part = next((name for name in (self.part, *self.others) if name in drawn), self.part)
-        return replace(self, part=part, inside=tuple(name for name in self.inside if name in drawn))
 
 
 @dataclass(frozen=True)
@@ -143,17 +83,17 @@ class Limits:
 
 
 class TolerancedTemplate(Template):
-    """Base of models: a template of which faces carry parameters, so that these may have tolerances."""
+    """Base of models: a template whose solid has parameters on its faces, so they may have tolerances."""
 
     toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
-    """Which faces carry which parameter, in the words of this module."""
+    """Which parameters may have limits in the STEP file, in the words of this module."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         carried(cls)
 
 
-def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
+def carried(cls: type[TolerancedTemplate]) -> dict[str, FormTolerances]:
     """Return the declarations of a model, by parameter.
 
     Raises
@@ -166,60 +106,29 @@ def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
     for name, one in read_.items():
         if one.to and one.to not in letters:
             raise _wrong(cls, name, f"no dimension declares the datum {one.to!r}")
-        if one.faces in REPEATED and not {*one.others_named} <= read_.keys() - {name}:
-            raise _wrong(cls, name, f"{one.faces} must name other dimensions of toleranced")
-        if one.faces == "between" and not (len(one.where) == 2 and {*one.where} <= read_.keys() - {name}):
-            raise _wrong(cls, name, "between must name two other dimensions of toleranced")
     return read_
 
 
-def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> ToleranceFaces:
+def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> FormTolerances:
     if name not in cls.inputs or unit(cls.inputs[name].meaning.unit).base != unit("m").base:
         raise _wrong(cls, name, "only a parameter that is a length can be toleranced")
-    kinds = [kind for kind in FACES if kind in said]
-    if len(kinds) != 1 or not said.keys() <= {*FACES, *FORMS, *_MORE}:
-        words = ", ".join((*FACES, *FORMS, *sorted(_MORE)))
-        raise _wrong(cls, name, f"name exactly one kind of faces; the valid keys are {words}")
-    if kinds[0] in _BY_AXIS and said[kinds[0]] not in ("x", "y", "z"):
-        raise _wrong(cls, name, f"{kinds[0]} must name an axis: x, y or z")
-    if said.get("end", "low") not in ("low", "high"):
-        raise _wrong(cls, name, "end must be low or high")
+    if not said.keys() <= {*FORMS, *_MORE}:
+        words = ", ".join((*FORMS, *sorted(_MORE)))
+        raise _wrong(cls, name, f"the valid keys are {words}")
     forms = {form: float(said[form]) for form in FORMS if form in said}
     if any(not 0 < share <= 1 for share in forms.values()):
-        raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
+        raise _wrong(
+            cls,
+            name,
+            "a geometric tolerance is a share, above 0 and at most 1, of the dimension's own tolerance",
+        )
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
-        raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
-    part, *others = _parts(cls, name, "of", said.get("of", cls.id))
-    inside = _parts(cls, name, "inside", said["inside"]) if "inside" in said else []
-    if inside and kinds[0] != "walls":
-        raise _wrong(cls, name, "only `walls` takes `inside`")
-    return ToleranceFaces(
-        name,
-        part,
-        kinds[0],
-        said[kinds[0]],
-        said.get("end", ""),
-        _levels(cls, name, said.get("levels", [[0, -1]])),
-        said.get("datum", ""),
-        forms,
-        said.get("to", ""),
-        tuple(others),
-        tuple(inside),
-    )
-
-
-def _parts(cls: type[TolerancedTemplate], name: str, word: str, said: Any) -> list[str]:
-    named = [said] if isinstance(said, str) else said
-    if not (isinstance(named, (list, tuple)) and named and all(isinstance(one, str) for one in named)):
-        raise _wrong(cls, name, f"{word} must be the name of a part, or a list of names")
-    return list(named)
-
-
-def _levels(cls: type[TolerancedTemplate], name: str, said: Any) -> tuple[tuple[int, int], ...]:
-    pairs = [tuple(pair) if isinstance(pair, (list, tuple)) else () for pair in said]
-    if not pairs or any([type(number) for number in pair] != [int, int] for pair in pairs):
-        raise _wrong(cls, name, "levels are pairs of whole numbers, as in [[0, -1]]")
-    return tuple((low, high) for low, high in pairs)
+        raise _wrong(
+            cls,
+            name,
+            "`to`, a datum, is required for perpendicularity and parallelism, and not allowed otherwise",
+        )
+    return FormTolerances(name, said.get("datum", ""), forms, said.get("to", ""))
 
 
 def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
@@ -227,7 +136,7 @@ def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
 
 
 def limits(model: TolerancedTemplate) -> dict[str, Limits]:
-    """Return the limits that a user gave to dimensions of a model which its faces carry, by parameter."""
+    """Return the limits that a user gave to dimensions of a model that may have them, by parameter."""
     declared, given = type(model).toleranced, model.ledger.typed
     return dict(
         _single((name, typed) for name in declared if isinstance(typed := given.get(name), TypedQuantity))

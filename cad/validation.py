@@ -1,6 +1,6 @@
-"""A STEP file with its validation properties, for files that state none: volume, area and centroid.
+"""A STEP file with added validation properties: volume, area and centroid.
 
-Files of builds without tolerances keep their bytes, so the properties are written into a copy. They follow
+Builds without tolerances keep their files unchanged, so the properties are written into a copy. They follow
 the recommended practices of the CAx Interoperability Forum, as in `cad.properties`: a program that reads the
 file measures its solids and compares.
 """
@@ -47,7 +47,7 @@ def _measures(step: bytes) -> Iterator[tuple[str, Measures]]:
     bodies = read_step(step)
     names = [body.name for body in bodies]
     if len(set(names)) < len(names):
-        raise UnreadableStep("two parts of this STEP file have one name; give each its own")
+        raise UnreadableStep("two parts of this STEP file have the same name; give each its own")
     for body in bodies:
         yield body.name, measured(body.shape)
 

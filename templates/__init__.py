@@ -1,4 +1,4 @@
-"""The calculations, without HTTP, database or CAD. From Python, call `get`."""
+"""The calculations, independent of HTTP, database and CAD. From Python, call `get`."""
 
 from templates.door import Calculation, NoValue, Version, get
 from templates.library.choices import register_choices

@@ -1,4 +1,4 @@
-"""The templates from Python: quantities in, quantities out, for notebooks and scripts.
+"""Templates in Python: quantities in, quantities out, for notebooks and scripts.
 
     from templates import get
 

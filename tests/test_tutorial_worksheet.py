@@ -7,7 +7,7 @@ import pytest
 
 from templates.core.language.evaluate import evaluate
 from templates.core.sheets import SheetRefused, read, run_tests
-from templates.examples.listing import examples
+from templates.examples.index import examples
 
 PAGE = Path(__file__).parents[1].joinpath("docs", "tutorial_worksheet.md").read_text("utf-8")
 PAPER, THREE, RIGHT = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)

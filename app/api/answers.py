@@ -1,4 +1,4 @@
-"""The answer to a question as a response: itself, or 202 with the job that makes it."""
+"""Send the answer to a question: the answer itself, or 202 with the job that computes it."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ async def answered(
     seconds: float,
     media_type: str = "application/json",
 ) -> Response:
-    """Return the answer to a question; once time is up, 202 with its job and with the parts that there are.
+    """Return the answer to a question, or 202 with its job and the available parts when the time is up.
 
-    The time that the client waits [s] is limited by the deadline of calculations. What is calculated ends if
-    the client leaves.
+    The time that the client waits [s] is limited by the deadline of calculations. The calculation ends if the
+    client disconnects.
 
     Raises
     ------
     QueueFull
         Too many calculations, or jobs, are waiting.
     Exception
-        What the question itself brings about.
+        The question itself raises it.
     """
     services = services_of(request)
     await expensive_steps(request, client)
@@ -67,9 +67,9 @@ async def answered(
 async def answer_of(
     services: Services, job: str, request: Request, client: str, prefer: str | None = None
 ) -> Response:
-    """Return the answer that a job has made; 202 while it runs, its problem if it has failed.
+    """Return the answer of a job; 202 while the job runs, its problem if it failed.
 
-    An answer that was lost is calculated again, for which the client waits as it prefers.
+    A lost answer is calculated again, while the client waits as it prefers.
 
     Raises
     ------
@@ -97,7 +97,7 @@ async def answer_of(
 async def _calculated_again(
     services: Services, row: Job, client: str, prefer: str | None, sha: str
 ) -> Response | None:
-    """Return None once the job has its answer again, else the response to send instead."""
+    """Return None once the job has recalculated its answer, else the response to send instead."""
     again = await run_in_threadpool(services.evaluations.request_again, row, client)
     if not await finished(services.jobs, again, prefer):
         return rebuilding(sha, again)
@@ -106,7 +106,7 @@ async def _calculated_again(
 
 
 def _answering(services: Services, id: str) -> Job:
-    """Return the job, if its result is an answer; raises JobNotFound."""
+    """Return the job if its result is an answer; raises JobNotFound."""
     row = services.jobs.get(id)
     if row.kind not in ANSWERS:
         raise JobNotFound(id)

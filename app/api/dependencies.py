@@ -1,6 +1,6 @@
-"""Dependencies of routes, by annotation: parts of `Services`, and the parts of a request besides its body.
+"""FastAPI dependencies of routes: the parts of `Services`, and the parts of a request besides its body.
 
-The functions are async although they wait for nothing: FastAPI runs sync ones in a thread each.
+The functions are async although they wait for nothing: FastAPI would run each sync function in a thread.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
-from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
 from app.designs.explanation import ExplanationQuestion
@@ -50,19 +49,18 @@ from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
-from app.workers.pieces import Pieces
 from app.worksheets.imports.service import Imports
 from app.worksheets.service import Worksheets
 
 
 def services_of(request: Request) -> Services:
-    """Return the parts of the service that answers a request."""
+    """Return the parts of the service for a request."""
     services: Services = request.app.state.services
     return services
 
 
 def _part(name: str) -> Callable[[Request], Awaitable[object]]:
-    """Return the dependency that gives a part of the services by its name."""
+    """Return a dependency that provides a part of the services by its name."""
 
     async def part(request: Request) -> object:
         return getattr(services_of(request), name)
@@ -77,7 +75,6 @@ TheSettings = Annotated[Settings, Depends(_part("settings"))]
 TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
-TheEvaluations = Annotated[Questions[Question, Pieces], Depends(_part("evaluations"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
@@ -129,7 +126,7 @@ ExpensiveSteps = Depends(expensive_steps)
 
 
 async def one_stream(request: Request, client: TheClient) -> AsyncIterator[Still]:
-    """Count a stream from before its first byte to its end, and notice when it has ended."""
+    """Count a stream from its first byte to its end, and detect that end."""
     streams = services_of(request).streams
     streams.enter(client)
     try:

@@ -1,6 +1,6 @@
-"""Streams that go on where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
+"""Event streams that resume where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
 
-Browsers send the header by themselves when they connect again.
+Browsers send this header automatically when they reconnect.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ async def last_event(
         ),
     ] = None,
 ) -> int | None:
-    """Return the number of the last event that the client got; None if it got none."""
+    """Return the number of the last event that the client received; None if it received none."""
     return int(last_event_id) if last_event_id else None
 
 
@@ -45,7 +45,7 @@ async def always() -> bool:
 
 
 async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
-    """Yield the events as they come, until the listener loses permission to receive them."""
+    """Yield events as they arrive, as long as the listener may receive them."""
     async for event in events:
         if not await still():
             return
@@ -54,7 +54,7 @@ async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
 
 @asynccontextmanager
 async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
-    """Listen to a topic; if the database goes away the stream ends, and the client comes back."""
+    """Listen to a topic; if the database becomes unavailable the stream ends, and the client reconnects."""
     with suppress(DatabaseUnavailable):
         async with events.subscribe(topic) as subscription:
             yield subscription
@@ -63,7 +63,7 @@ async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
 def identity(number: int | None) -> str | None:
     """Return the `id` of an event.
 
-    One that is stored nowhere has none: the client keeps that of the one before.
+    An event that is not stored has none: the client keeps the previous id.
     """
     return None if number is None else str(number)
 
@@ -79,16 +79,16 @@ class Whole:
 
     @property
     def event(self) -> ServerSentEvent:
-        """Return the content as an event to be sent."""
+        """Return the content as an event."""
         return ServerSentEvent(id=identity(self.number), event=self.state, data=self.data)
 
 
 async def as_it_stands(
     events: Subscription, still: Still, read: Callable[[], Whole], last: int | None, **more: str
 ) -> AsyncIterator[ServerSentEvent]:
-    """Yield the content whenever it has changed, and its progress with `more`, until it has ended.
+    """Yield the content whenever it changes, and its progress with `more`, until it has ended.
 
-    A client that has got how it stands now hears only of what comes.
+    A client that has the current state receives only later changes.
     """
     now = await run_in_threadpool(read)
     events.number = now.number

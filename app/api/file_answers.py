@@ -1,4 +1,4 @@
-"""Answers with stored files: verified while they are sent, made again when they are missing or damaged."""
+"""Responses with stored files: verified while they are sent, rebuilt when they are missing or damaged."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None
 async def lost(
     sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None, *, same: bool = False
 ) -> Response | None:
-    """Return None once an artifact is good, else the answer in its place while it is made again or cannot be.
+    """Return None if an artifact is intact, else the response to send while it is rebuilt or if it cannot be.
 
-    `same` asks for these very bytes; otherwise a row that names other bytes by now is good as well.
+    `same` requires the original bytes; otherwise a row that now names different bytes is accepted too.
     """
     if await to_thread.run_sync(healing.is_good, sha):
         return None
@@ -59,7 +59,7 @@ async def lost(
 async def _unless_healed(
     sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None
 ) -> Response | None:
-    """Return None once the job that makes an artifact again has ended well, else the answer to send."""
+    """Return None once the job that rebuilds an artifact has succeeded, else the response to send."""
     if refused := healing.refused(sha):
         return problems.answer(refused)
     job = await to_thread.run_sync(healing.request, sha)
@@ -73,7 +73,7 @@ async def _unless_healed(
 
 
 def rebuilding(sha: str, job: str) -> Response:
-    """Return 503 for an artifact that a job makes again."""
+    """Return 503 for an artifact that a job is rebuilding."""
     about = problems.problem(REBUILDING, f"artifact {sha} was missing or damaged and is made again")
     place = f"/api/v1/jobs/{job}"
     return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})
@@ -97,7 +97,7 @@ class StoredFile(FileResponse):
         self._store, self._sha, self._given = store, sha, headers
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send the file; an answer that has begun breaks off if the bytes change meanwhile."""
+        """Send the file; abort the response if the bytes change meanwhile."""
         if is_at_hand(Headers(scope=scope).get("if-none-match"), self._given["ETag"]):
             await unchanged(self._given)(scope, receive, send)
             return
@@ -119,7 +119,7 @@ class StoredFile(FileResponse):
         return watched
 
     def _verified_again(self, opened: OpenFile) -> OpenFile:
-        """Return the file after a change that kept its bytes, such as a later time or a lost name."""
+        """Return the file after a change that kept its bytes, such as a new time or a lost name."""
         stamp = stamp_of(opened.file)
         opened.file.seek(0)
         if hashlib.file_digest(opened.file, "sha256").hexdigest() != self._sha:

@@ -1,4 +1,4 @@
-"""Responses of routes: how long a client waits, in which threads, 202 with a job, JSON and its compression.
+"""Build the responses of routes: waiting, worker threads, 202 with a job, JSON and its compression.
 
 Routes that may wait for the pool of calculation processes have their own threads, so that they never block
 the other routes.
@@ -36,7 +36,7 @@ LATER: Responses = {
 
 
 def later(answer: type[Answer]) -> Responses:
-    """Describe an answer whose 202 holds as much of the result as there is."""
+    """Describe an answer whose 202 contains the available part of the result."""
     described = "the answer as far as it goes: the work goes on, and its job is in the header Location"
     return {202: {"description": described, "model": answer}}
 
@@ -73,7 +73,7 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
 
 
 def patience(prefer: str | None, default: float) -> float:
-    """Return how long the client waits for an answer [s]: its preference, else the default."""
+    """Return how long the client waits for an answer [s]: its preference, or the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
@@ -81,24 +81,24 @@ def patience(prefer: str | None, default: float) -> float:
 
 
 async def client_left(request: Request) -> None:
-    """Wait until the client has closed its connection; the body has been read."""
+    """Wait until the client has closed its connection, after the body has been read."""
     while (await request.receive())["type"] != "http.disconnect":
         pass
 
 
 def accepted(job: str | None, answer: Answer | None = None) -> Response:
-    """Return status 202: the work goes on; the job is in Location."""
+    """Return status 202 for work in progress, with the job in Location."""
     place = f"/api/v1/jobs/{job}"
     return written(answer or Accepted(job=place), 202, {"Location": place})
 
 
 def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """Return an answer as JSON, without the fields that it leaves out."""
+    """Return an answer as JSON, without omitted fields."""
     return Response(as_json(answer), status, media_type="application/json", headers=dict(headers or {}))
 
 
 def as_json(answer: Answer) -> bytes:
-    """Return an answer as JSON, without the fields that it leaves out."""
+    """Return an answer as JSON, without omitted fields."""
     return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()
 
 
@@ -117,7 +117,7 @@ class Threads:
         self._limiter: CapacityLimiter | None = None
 
     async def run(self, function: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
-        """Call a function in such a thread."""
+        """Call a function in a thread that may wait for the pool."""
         if self._limiter is None:
             self._limiter = CapacityLimiter(THREADS)
         return await to_thread.run_sync(lambda: function(*args, **options), limiter=self._limiter)
@@ -125,7 +125,7 @@ class Threads:
     async def run_for(
         self, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Call a function for a client; what it calculates ends if the client leaves."""
+        """Call a function for a client; its calculation ends if the client disconnects."""
         if (caller := present_caller()) is None:
             return await self.run(function, *args, **options)
         leaving = list[asyncio.Task[None]]()
@@ -154,7 +154,7 @@ class Threads:
 
 
 def _closing(caller: Caller, function: Callable[[], T]) -> T:
-    """Call a function, then end what it has begun and left to no job."""
+    """Call a function, then end its calculations that no job took over."""
     failed = True
     try:
         result = function()
@@ -176,7 +176,7 @@ class Compression:
         self.app, self.compressed = app, GZipMiddleware(app, minimum_size=SMALLEST, compresslevel=LEVEL)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, compressed or not."""
+        """Pass the response on, compressed or not."""
         is_plain = scope["type"] != "http" or _is_plain(scope["path"])
         await (self.app if is_plain else self.compressed)(scope, receive, send)
 

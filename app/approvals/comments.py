@@ -1,4 +1,4 @@
-"""Comments on revisions: plain text, about a name in the design or about all of it, open until resolved."""
+"""Comments on revisions: plain text, on one name or the whole revision, open until resolved."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Comments:
         self.database = database
 
     def page(self, id: str, number: int | None, limit: int, before: str | None) -> list[CommentRow]:
-        """Return a page of the comments on a revision or a whole design, and one more if there are more.
+        """Return one page of the comments on a revision or a design, plus one comment if there are more.
 
-        They are in the order of their age, newest first.
+        The newest comments come first.
 
         Raises
         ------
@@ -49,7 +49,7 @@ class Comments:
             return list(session.scalars(query.order_by(CommentRow.id.desc()).limit(limit + 1)))
 
     def add(self, id: str, number: int, body: CommentIn, once: Once) -> Comment:
-        """Return a comment of the acting principal.
+        """Add a comment by the acting principal, and return it.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class Comments:
         return self.database.write(unit)
 
     def resolve(self, id: str, number: int, comment: str) -> Comment:
-        """Say that a comment is dealt with; one that is resolved already stays as it is.
+        """Mark a comment as resolved; a resolved comment stays unchanged.
 
         Raises
         ------
@@ -138,7 +138,7 @@ def _place(row: CommentRow) -> str:
 
 
 def _require_name(row: RevisionRow, subject: str) -> None:
-    """Check that a revision has a name; raises InvalidInputs."""
+    """Check that a revision has this name; raises InvalidInputs."""
     names = set(_names(row))
     if subject in names:
         return

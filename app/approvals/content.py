@@ -11,6 +11,7 @@ from app.approvals.errors import NotReady
 from app.approvals.schemas import Approval, Files, Present, SignedContent
 from app.designs.result_records import results_of
 from app.schemas.approval_steps import ORDER
+from app.schemas.criteria import Criterion
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
 
@@ -23,7 +24,7 @@ def digest(value: object) -> str:
 
 
 def present(session: Session, row: RevisionRow) -> Present:
-    """Return the hashes of what a revision holds now."""
+    """Return the hashes of the present contents of a revision."""
     builds = {m.name: m.build_key for m in (*row.models, *row.variant_models) if m.build_key}
     files = rows.artifacts_of(session, set(builds.values()))
     return Present(
@@ -33,10 +34,16 @@ def present(session: Session, row: RevisionRow) -> Present:
     )
 
 
-def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
-    """Return the digest of what a signer looks at: the same until a step is taken.
+def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
+    """Return the criteria of a revision as judged; over variants, each at its worst one."""
+    judged = results_of(session, row).judged.get("criteria")
+    return judged if isinstance(judged, list) else []
 
-    Of the files it has the STEP files alone: others follow from these, and are made when somebody asks.
+
+def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
+    """Return the digest of the content to sign; it stays the same until a step is taken.
+
+    Of the files it covers only the STEP files: other files are derived from them on request.
     """
     steps = {name: {STEP: kinds[STEP]} for name, kinds in now.files.items() if STEP in kinds}
     return digest(
@@ -57,7 +64,7 @@ def require_files(row: RevisionRow, now: Present) -> Files:
     Raises
     ------
     NotReady
-        If it is not, or has not.
+        If the revision is not calculated, or a model has no solid.
     """
     if row.state != "current":
         why = "is being regenerated; wait for it" if row.state == "regenerating" else "failed; correct it"
@@ -70,7 +77,7 @@ def require_files(row: RevisionRow, now: Present) -> Files:
 
 
 def steps_taken(session: Session, row: RevisionRow) -> list[ApprovalRow]:
-    """Return the steps of the approval of a revision that were taken, in their order."""
+    """Return the completed steps of a revision's approval, in order."""
     of_revision = ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
     rows = {row.step: row for row in session.scalars(select(ApprovalRow).where(*of_revision))}
     return [rows[step] for step in ORDER if step in rows]
@@ -91,5 +98,5 @@ def shown(row: ApprovalRow) -> Approval:
 
 
 def hashed(content: SignedContent) -> str:
-    """Return the digest of what was signed."""
+    """Return the digest of the signed content."""
     return digest(content.plain())

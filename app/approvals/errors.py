@@ -3,8 +3,9 @@
 ApprovalError
     NotReady            the revision is not calculated, or a file of it is missing
     OutOfOrder          another step comes first, or the step is taken
+    Unacknowledged      what is said of unconfirmed criteria is missing, or needless
     SamePrincipal       the principal has taken another step, or is not the author
-    OtherDigest         the content to sign has changed since the signer saw it
+    OtherDigest         the content to sign has changed since the signer read it
 """
 
 from __future__ import annotations
@@ -18,6 +19,10 @@ class ApprovalError(Exception):
 
 class NotReady(ApprovalError):
     """The revision cannot be signed as it is."""
+
+
+class Unacknowledged(ApprovalError):
+    """What the signer says about criteria that are not confirmed is missing, or there are none."""
 
 
 class OutOfOrder(ApprovalError):

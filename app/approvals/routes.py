@@ -23,13 +23,13 @@ SEEN = "`to_sign` of the approvals that were read, in quotes"
 
 @router.get("/released", responses=refusals(404))
 def show_released(id: Id, approving: TheApproving) -> ReleasedRevision:
-    """The newest released revision that is not withdrawn, and links to its report and files."""
+    """Return the newest released revision that is not withdrawn, with links to its report and files."""
     return approving.released(id)
 
 
 @router.get("/revisions/{number}/approvals", response_model=Approvals, responses=refusals(404))
 def show_approvals(id: Id, number: Number, approving: TheApproving) -> Response:
-    """The steps that were taken, the next step, and the digest to sign, which is also the ETag."""
+    """Return the completed steps, the next step, and the digest to sign, which is also the ETag."""
     return _answer(approving.show(id, number), 200)
 
 
@@ -49,8 +49,8 @@ def sign_revision(
 ) -> Response:
     """Take a step: `calculated` by its author, `checked` and `released` by two other principals.
 
-    From the first step on the revision is locked: nothing of it changes any more. A release that proves wrong
-    is `withdrawn` by any checker, with a reason; the revision stays as it is.
+    After the first step the revision is locked and never changes. Every checker can withdraw a release that
+    proves wrong, with a reason (`withdrawn`); the revision stays unchanged.
     """
     if if_match is None:
         raise PreconditionRequired("send If-Match with the value of `to_sign` from the approvals, in quotes")
@@ -59,7 +59,7 @@ def sign_revision(
 
 @router.get("/comments", responses=refusals(404))
 def list_all_comments(id: Id, comments: TheComments, limit: Limit = 50, cursor: Cursor = None) -> CommentList:
-    """The comments on all revisions of a design, newest first."""
+    """Return the comments on all revisions of a design, newest first."""
     rows = comments.page(id, None, limit, cursor)
     return page(CommentList, rows, limit, shown, lambda row: row.id)
 
@@ -68,20 +68,20 @@ def list_all_comments(id: Id, comments: TheComments, limit: Limit = 50, cursor: 
 def list_comments(
     id: Id, number: Number, comments: TheComments, limit: Limit = 50, cursor: Cursor = None
 ) -> CommentList:
-    """The comments on a revision, newest first."""
+    """Return the comments on a revision, newest first."""
     rows = comments.page(id, number, limit, cursor)
     return page(CommentList, rows, limit, shown, lambda row: row.id)
 
 
 @router.post("/revisions/{number}/comments", status_code=201, responses=refusals(404))
 def add_comment(id: Id, number: Number, body: CommentIn, comments: TheComments, once: TheOnce) -> Comment:
-    """A comment on a revision, or on one of its names; it changes nothing of the revision."""
+    """Add a comment on a revision, or on one of its names; the revision does not change."""
     return comments.add(id, number, body, once)
 
 
 @router.post("/revisions/{number}/comments/{comment}/resolve", responses=refusals(404))
 def resolve_comment(id: Id, number: Number, comment: CommentId, comments: TheComments) -> Comment:
-    """Say that a comment is dealt with; one that is resolved already stays as it is."""
+    """Mark a comment as resolved; a resolved comment stays unchanged."""
     return comments.resolve(id, number, comment)
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from app.approvals.errors import OutOfOrder, SamePrincipal
+from app.approvals.errors import OutOfOrder, SamePrincipal, Unacknowledged
 from app.designs.releases import last_of
 from app.identity.errors import RoleNeeded
 from app.identity.principal import Principal, Role
 from app.schemas.approval_steps import ORDER, ApprovalState, Step
+from app.schemas.criteria import Criterion
 from app.storage.tables import ApprovalRow, RevisionRow
 
 ROLES: dict[Step, Role] = {
@@ -18,25 +19,64 @@ ROLES: dict[Step, Role] = {
     "withdrawn": "checker",
 }
 
+ACKNOWLEDGING: tuple[Step, ...] = ("checked", "released")
+"""The steps that say that a design is right."""
+MOST_NAMED = 3  # criteria in a refusal
+
+
+def unconfirmed(criteria: Iterable[Criterion]) -> list[str]:
+    """Return the criteria that are not met with a known error and not waived, each in a sentence."""
+    return [
+        f"{one.name}: {one.stated()}"
+        for one in criteria
+        if one.waived is None and not (one.verdict == "met" and one.error_known)
+    ]
+
+
+def require_acknowledgement(
+    step: Step, acknowledged: str | None, sentences: Sequence[str], number: int
+) -> None:
+    """Check that a signer says why criteria that are not confirmed may stand, and only then.
+
+    Raises
+    ------
+    Unacknowledged
+        If the statement is missing or has nothing to be about.
+    """
+    is_due = step in ACKNOWLEDGING and bool(sentences)
+    if is_due and acknowledged is None:
+        more = f"; and {len(sentences) - MOST_NAMED} more" if len(sentences) > MOST_NAMED else ""
+        raise Unacknowledged(
+            f"criteria of revision {number} are not confirmed: {'; '.join(sentences[:MOST_NAMED])}{more}. "
+            "Say in `acknowledged` why it may be signed all the same"
+        )
+    if acknowledged is not None and not is_due:
+        why = (
+            f"every criterion of revision {number} is confirmed"
+            if step in ACKNOWLEDGING
+            else f"{step} needs none"
+        )
+        raise Unacknowledged(f"leave out `acknowledged`: {why}")
+
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
-    """Return the last step that was taken."""
+    """Return the last completed step."""
     return last_of({row.step for row in taken}) or "unsigned"
 
 
 def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
-    """Return the step that comes next on the way to a release; None behind that."""
+    """Return the next step towards a release; None after the release."""
     steps = {row.step for row in taken}
     return next((step for step in ORDER[:3] if step not in steps), None)
 
 
 def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
-    """Check that it is the turn of a step.
+    """Check that a step is the next one.
 
     Raises
     ------
     OutOfOrder
-        If it is taken, or another one comes first.
+        If the step is already taken, or another one comes first.
     """
     for row in taken:
         if row.step in (step, "withdrawn"):
@@ -56,7 +96,7 @@ def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Seque
     RoleNeeded
         If its roles do not allow it.
     SamePrincipal
-        If it took another step, or if it hands over a revision of another author.
+        If it took another step, or submits another author's revision.
     """
     if not who.may(ROLES[step]):
         raise RoleNeeded(who, (ROLES[step],))

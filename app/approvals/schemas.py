@@ -1,4 +1,4 @@
-"""Approvals of revisions and comments on them, as the interface takes and shows them."""
+"""Approvals of revisions and comments on them, as the REST interface accepts and returns them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
 
 
 def _written(text: object) -> object:
-    """Return the value; refuse a text without a letter or with control characters.
+    """Return the value; refuse a text without letters or with control characters.
 
     Raises ValueError.
     """
@@ -49,8 +49,8 @@ Text = Annotated[
 class SignedContent(Answer):
     """The signed content; `digest` of its step is the SHA-256 of this as canonical JSON.
 
-    Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason` only where there is
-    one.
+    Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason`, `unconfirmed` and
+    `acknowledged` only where there are such.
     """
 
     design: str
@@ -65,6 +65,8 @@ class SignedContent(Answer):
     files: Files = Field(description="of every file of its solids that there was, at least STEP")
     previous: str | None = Field(description="digest of the step before; null in the first one")
     reason: str | None = Field(None, description="of a withdrawal")
+    unconfirmed: list[str] = Field([], description="criteria that are not confirmed, each in a sentence")
+    acknowledged: str | None = Field(None, description="why it was signed all the same")
 
 
 class Approval(Answer):
@@ -94,6 +96,11 @@ class Approvals(Answer):
     state: ApprovalState
     steps: list[Approval] = Field(description="in the order in which they were taken")
     next: Step | None = Field(description="the step that comes next; null where none does")
+    unconfirmed: list[str] = Field(
+        [],
+        description="criteria that are not met with a known error, each in a sentence; "
+        "to check or release the revision, say in `acknowledged` why that may stand",
+    )
     obstacle: str | None = Field(description="why whoever asks cannot take it now; null where nothing is")
     to_sign: str = Field(description="digest of what there is to sign: send it as If-Match; also the ETag")
     present: Present
@@ -146,9 +153,15 @@ class ApprovalIn(Bounded):
     step: Step
     reason: Text | None = Field(None, description="of a withdrawal, which needs one; nothing else has one")
 
+    acknowledged: Text | None = Field(
+        None,
+        description="why the revision may be checked or released although criteria are not confirmed; "
+        "needed where there are such, and nowhere else",
+    )
+
     @model_validator(mode="after")
     def with_its_reason(self) -> Self:
-        """Require a reason for a withdrawal, and for no other step; raises ValueError."""
+        """Require a reason for a withdrawal, and refuse one for any other step; raises ValueError."""
         if (self.step == "withdrawn") != (self.reason is not None):
             raise ValueError("a withdrawal needs a `reason`; no other step takes one")
         return self

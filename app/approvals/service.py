@@ -4,9 +4,25 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.approvals.content import STEP, digest, present, require_files, shown, steps_taken, to_sign
+from app.approvals.content import (
+    STEP,
+    criteria_of,
+    digest,
+    present,
+    require_files,
+    shown,
+    steps_taken,
+    to_sign,
+)
 from app.approvals.errors import ApprovalError, NotReady, OtherDigest
-from app.approvals.rules import next_step, require_principal, require_turn, state_of
+from app.approvals.rules import (
+    next_step,
+    require_acknowledgement,
+    require_principal,
+    require_turn,
+    state_of,
+    unconfirmed,
+)
 from app.approvals.schemas import ApprovalIn, Approvals, Present, ReleasedRevision, SignedContent
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
@@ -48,9 +64,11 @@ class ApprovalService:
         RoleNeeded, SamePrincipal
             If the principal may not.
         OutOfOrder, NotReady
-            If the revision is not there yet, or already beyond.
+            If another step comes first, or the step is already taken.
+        Unacknowledged
+            If criteria are not confirmed and the body does not say why that may stand.
         OtherDigest
-            If `expected` (an If-Match) is not the digest of what there is to sign.
+            If `expected` (an If-Match) is not the digest of the content to sign.
         """
         self._require_good_files(id, number)
 
@@ -87,12 +105,12 @@ class ApprovalService:
         )
 
     def _require_good_files(self, id: str, number: int) -> None:
-        """Check that the STEP files of a revision are in the store with the right bytes; raises NotReady."""
+        """Check that the STEP files of a revision are stored with the right bytes; raises NotReady."""
         with self.database.read() as session:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():
             if STEP in kinds and not self.store.exists(kinds[STEP]):
-                raise NotReady(f"the STEP file of {name} is lost: GET it, which makes it again, then sign")
+                raise NotReady(f"the STEP file of {name} is lost: GET it to rebuild it, then sign")
 
 
 def _links(place: str, kinds: dict[str, str]) -> dict[str, str]:
@@ -108,6 +126,9 @@ def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -
     previous = taken[-1].digest if taken else None
     if expected.strip() != f'"{(right := to_sign(row, held, previous))}"':
         raise OtherDigest(right)
+    open_ones = unconfirmed(criteria_of(session, row))
+    require_acknowledgement(body.step, body.acknowledged, open_ones, row.number)
+    statement = {"unconfirmed": open_ones, "acknowledged": body.acknowledged} if body.acknowledged else {}
     signed = SignedContent(
         design=row.design_id,
         revision=row.number,
@@ -121,6 +142,7 @@ def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -
         files=files,
         previous=previous,
         **({"reason": body.reason} if body.reason else {}),
+        **statement,
     )
     _write(session, signed)
 
@@ -162,6 +184,7 @@ def _shown(session: Session, row: RevisionRow) -> Approvals:
         state=state_of(taken),
         steps=[shown(one) for one in taken],
         next=following,
+        unconfirmed=unconfirmed(criteria_of(session, row)),
         obstacle=_obstacle(row, taken, held),
         to_sign=to_sign(row, held, taken[-1].digest if taken else None),
         present=held,

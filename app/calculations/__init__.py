@@ -1,1 +1,1 @@
-"""Evaluating and solving single templates."""
+"""Evaluate and solve single templates."""

@@ -1,6 +1,6 @@
-"""Outputs as a file of NumPy: a column for each, without the echo of inputs, notices and estimated errors.
+"""Outputs as a NumPy file: one column for each output, without inputs, notices and estimated errors.
 
-For 10⁶ values, JSON takes 20 MB and most of the response time. The file takes 8 MB and one copy.
+For 10⁶ values, JSON takes 20 MB and most of the response time. The file takes 8 MB and is copied once.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ def npy(result: Evaluation) -> bytes:
 
 
 def _column(name: str, output: Answer) -> NDArray[np.float64]:
-    """Return the values of an output; raises NoArray."""
+    """Return the values of an output as a column; raises NoArray."""
     if isinstance(output.value, str):
-        raise NoArray(f"{name} is a text; a NumPy file holds only numbers")
+        raise NoArray(f"{name} is text; a NumPy file holds only numbers")
     if output.value is None:
         raise NoArray(f"{name} has no value: {output.reason}; JSON states the reason")
     if output.reasons is not None:
@@ -59,7 +59,7 @@ def _column(name: str, output: Answer) -> NDArray[np.float64]:
 
 
 def _shape(columns: dict[str, NDArray[np.float64]]) -> tuple[int, ...]:
-    """Return the shape of all columns of more than one value; raises NoArray if there are two."""
+    """Return the common shape of all columns with more than one value; raises NoArray if they differ."""
     shapes = {column.shape: name for name, column in columns.items() if column.ndim}
     if len(shapes) > 1:
         (first, one), (second, other), *_ = shapes.items()

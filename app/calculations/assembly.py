@@ -29,10 +29,10 @@ class Calculations:
 
     @property
     def lanes(self) -> dict[str, int]:
-        """Return the threads of the lane of such jobs, for `Jobs.start`.
+        """Return the number of threads of the pool's job lane, for `Jobs.start`.
 
-        A job of the lane is adopted while it runs, so there is a thread more than calculations that run for
-        jobs.
+        A job takes over a running calculation, so the lane has one more thread than calculations that may run
+        for jobs.
         """
         return {CALCULATION: self.pool.most_jobs + 1}
 
@@ -43,7 +43,7 @@ def assemble_calculations(
     designs: tuple[str, ...] = (),
     sheets: tuple[str, ...] = (),
 ) -> Calculations:
-    """Make the pool; the stack ends it.
+    """Create the pool; the exit stack closes it.
 
     `designs` are the modules that functions of designs need in their processes, `sheets` those that read
     worksheets, which all processes have.

@@ -49,15 +49,15 @@ class Cache:
         return int(self._kept.currsize)
 
     def get(self, key: Hashable) -> Any:  # whoever keeps a value knows its type
-        """Return the value kept under a key, or None."""
+        """Return the value stored under a key, or None."""
         with self._lock:
             kept = self._kept.get(key)
         return None if kept is None else kept.value
 
     def keep(self, key: Hashable, value: object, size: int | None = None) -> None:
-        """Keep a value, also in place of one that has grown; one larger than the whole cache is not kept.
+        """Store a value, or replace it if it has grown; a value larger than the whole cache is not stored.
 
-        To measure a value takes a while; who knows its size roughly may say it [bytes].
+        Measuring a value takes time; a caller that knows the approximate size may pass it [bytes].
         """
         size = size_of(value) if size is None else size
         with self._lock:
@@ -86,7 +86,7 @@ _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 def size_of(value: object) -> int:
     """Return the memory of a value and of all that it refers to [bytes].
 
-    What equal parts share may count twice.
+    Parts that are shared may be counted twice.
     """
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:
@@ -107,6 +107,6 @@ def _is_shared(kind: type) -> bool:
 
 
 def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number
-    """Return the objects in an array, and of a view the array that owns the numbers."""
+    """Return the objects in an array; for a view also the array that owns the data."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

@@ -1,7 +1,7 @@
 """Curves from a file: the columns of a table as quantities, an indicator diagram as one cycle.
 
-`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads a file as it reads what
-is pasted on a page, `indicator` makes one cycle of several. Nothing is stored; what is assumed is stated,
+`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads files and pasted tables
+alike; `indicator` averages several cycles into one. Nothing is stored. The answer states every assumption,
 and an unclear cell is refused with its line number.
 """
 
@@ -37,17 +37,6 @@ class ReadCurves:
     assumed: list[str]
 
 
-def read_curves(body: bytes) -> dict[str, JsonObject]:
-    """Return the columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
-
-    Raises
-    ------
-    InvalidInputs
-        Naming every line that is wrong, up to twenty.
-    """
-    return curves_of(body).curves
-
-
 def curves_of(body: bytes) -> ReadCurves:
     """Return the columns of a file as quantities, and the assumptions made.
 
@@ -65,7 +54,7 @@ def curves_of(body: bytes) -> ReadCurves:
 
 
 def file_of(body: bytes) -> FileText:
-    """Return the text of a file, within the limits of a file of curves.
+    """Return the text of a file that is within the limits for curves.
 
     Raises
     ------
@@ -83,7 +72,7 @@ def _table(file: FileText) -> Table:
         name_here = api_name(words)
         seen[name_here] += 1
         if not name_here or not name_here[0].isalpha() or re.fullmatch(r"column [0-9]+", name):
-            return Fault(name, "missing_name", "it has no name; write it as pressure [bar]")
+            return Fault(name, "missing_name", "the column has no name; write one such as pressure [bar]")
         if seen[name_here] == 2:
             return Fault(name, "named_twice", f"two columns are named {name_here}; give them different names")
         if not own and not is_cycle_number(name):
@@ -103,7 +92,7 @@ def _table(file: FileText) -> Table:
 
 
 def _parted(name: str, given: str) -> tuple[str, str]:
-    """Return words and unit of a heading, whose unit may end its name."""
+    """Return the words and the unit of a heading whose unit may end its name."""
     words, _, last = name.rpartition("_")
     return (words, last) if not given and last in SUFFIXES else (name, given)
 
@@ -122,7 +111,7 @@ def _named(column: TableColumn) -> str:
 
 
 def _by_line(fault: Fault) -> Fault:
-    """Return a fault named by its line, as that of a file is."""
+    """Return a fault with its line number."""
     if not (match := _ROW.fullmatch(fault.name)):
         return fault
     detail = f"{match['column']}: {fault.detail}" if match["column"] else fault.detail

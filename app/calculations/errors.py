@@ -30,13 +30,13 @@ class InvalidBody(Exception):
 
     @classmethod
     def of(cls, error: ValidationError) -> Self:
-        """Return the error for one of pydantic, located as FastAPI does, without large values."""
+        """Convert a pydantic error to one located as in FastAPI, without large values."""
         listed = error.errors(include_url=False, include_input=False, include_context=False)
         return cls([{**entry, "loc": ("body", *entry["loc"])} for entry in listed])
 
     @classmethod
     def not_json(cls, reason: str) -> Self:
-        """Return the error for a body that cannot be parsed, in the words of FastAPI."""
+        """Return the error for a body that cannot be parsed, worded as in FastAPI."""
         entry = ErrorDetails(type="json_invalid", loc=("body", 0), msg="JSON decode error", input=None)
         return cls([{**entry, "ctx": {"error": reason}}])
 

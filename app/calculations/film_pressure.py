@@ -1,8 +1,8 @@
 """The pressure of a journal bearing's oil film over its unrolled surface, for pictures.
 
-A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as
-`templates.physics.films.reynolds`. The field is for display only. It is solved again on 64 × 16 intervals,
-with an error of 0.1 % of the largest pressure.
+A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as in
+`templates.physics.films.reynolds`. The field is for display only: it is solved on 64 × 16 intervals, with an
+error of 0.1 % of the largest pressure.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ class Film(Template):
 
 
 def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
-    """Return the field for inputs as a user types them.
+    """Return the pressure field for inputs as typed by a user.
 
     Raises
     ------
     InvalidInputs
-        If an input is wrong, an array, or outside what the film's solution covers.
+        If an input is wrong, an array, or outside the range of the film's solution.
     """
     film = Film.from_quantities(raw)
     arrays = [name for name, value in film.inputs_si().items() if np.ndim(value)]

@@ -1,8 +1,8 @@
 """Headings of measured tables: a name with its unit, as measuring programs write it.
 
 `pressure [bar]`, `Druck (bar(g))`, `p / bar`. Crank angles are written `°CA`, `degCA` or `°KW`, and pressures
-`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. What such a unit means beside
-its size is stated.
+`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. The answer states what such a
+unit implies, such as gauge pressure.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ class HeadingUnit:
 
 
 def heading_unit(text: str) -> HeadingUnit:
-    """Read the unit of a heading; `-` is that of a pure number.
+    """Return the unit in a heading; `-` means a pure number.
 
     Raises
     ------
     FaultyText
-        If it is none.
+        If it is not a unit.
     """
     plain = text.strip()
     if plain == "-":
@@ -102,7 +102,7 @@ def parted(cell: str) -> tuple[str, str]:
 
 
 def _opening(cell: str, opening: str, closing: str) -> int:
-    """Return where the bracket opens that closes at the end of a text; -1 if none does."""
+    """Return the position of the bracket that opens a final pair of brackets; -1 if there is none."""
     if not cell.endswith(closing):
         return -1
     depth = 0

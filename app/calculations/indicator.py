@@ -1,9 +1,9 @@
-"""Indicator diagrams as measured: average several cycles, and turn times with TDC pulses into crank angles.
+"""Measured indicator diagrams: average several cycles, and convert times with TDC pulses to crank angles.
 
 A table is an indicator diagram if it has a pressure, or the volts of its sensor, over a crank angle, or over
-the time with a column of the pulses at top dead centre (TDC). Every other table is left as it is. Everything
-that is assumed is stated. Angles count as in `engine`: with four strokes combustion is at 360°, with two
-at 0°.
+the time with a column of the pulses at top dead centre (TDC). Every other table stays unchanged. The answer
+states every assumption. Crank angles are counted as in `engine`: combustion is at 360° in a four-stroke
+engine and at 0° in a two-stroke engine.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ LONGEST_NAME = 80
 
 
 def as_cycle(table: Table) -> Table:
-    """Return an indicator diagram of one cycle, with the assumptions made; any other table as it is.
+    """Return an indicator diagram as one cycle, with the assumptions made; other tables are unchanged.
 
     Raises
     ------
     InvalidInputs
-        If there are TDC pulses that no crank angle follows from.
+        If the TDC pulses do not determine the crank angle.
     """
     columns, assumed = _over_cycles(table.columns)
     pressure = next((column for column in columns if _is_pressure(column)), None)
@@ -77,7 +77,7 @@ def _is_pressure(column: TableColumn) -> bool:
 
 
 def _axis(columns: Sequence[TableColumn]) -> TableColumn | None:
-    """Return the column of crank angles: one that its unit or its name calls so."""
+    """Return the column of crank angles, identified by its unit or its name."""
     angles = [column for column in columns if column.is_crank or _measures_angle(column)]
     named = (c for c in angles if c.is_crank or _ANGLE.search(c.name[:LONGEST_NAME]))
     return next(named, angles[0] if len(angles) == 1 else None)
@@ -93,7 +93,7 @@ def _pulse(columns: Sequence[TableColumn]) -> TableColumn | None:
 
 
 def _over_cycles(columns: list[TableColumn]) -> tuple[list[TableColumn], list[str]]:
-    """Return the columns without a count of the cycles, those of single cycles as their mean."""
+    """Return the columns without the cycle counter; columns of single cycles are averaged."""
     kept = [column for column in columns if not is_cycle_number(column.name)]
     if len(kept) == len(columns) or len(kept) < 2:
         kept = columns
@@ -115,7 +115,7 @@ def _over_cycles(columns: list[TableColumn]) -> tuple[list[TableColumn], list[st
 def _mean(
     columns: list[TableColumn], axis: TableColumn, pressure: TableColumn
 ) -> tuple[list[TableColumn], list[str]]:
-    """Return the mean of the cycles of a table over crank angles; the table itself if it has only one."""
+    """Return the mean cycle of a table over crank angles; the table itself if it has only one cycle."""
     to_degrees = unit(axis.unit).factor / unit("deg").factor
     angles = np.array(axis.values) * to_degrees
     steps = np.diff(angles)
@@ -158,12 +158,12 @@ def _pairs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 
 def _length(span: float, step: float) -> float | None:
-    """Return the length of a cycle that spans so much, to a step [deg]; None if it is neither 360 nor 720."""
+    """Return the cycle length for a range of angles with a step [deg]; None if it is neither 360 nor 720."""
     return next((length for length in (TURN, FOUR_STROKES) if abs(span + step - length) <= 2 * step), None)
 
 
 def _repeated(angles: Array, pressure: Array, step: float) -> float | None:
-    """Return the length of the cycles that follow each other [deg]; None if there is only one."""
+    """Return the length of consecutive cycles [deg]; None if there is only one."""
     total = float(angles[-1] - angles[0]) + step
     if total < FOUR_STROKES + 2 * step:
         return None
@@ -191,7 +191,7 @@ def _counted(count: int, incomplete: int, length: float) -> list[str]:
 def _over_angles(
     columns: list[TableColumn], time: TableColumn, pulse: TableColumn, pressure: TableColumn
 ) -> tuple[list[TableColumn], list[str]]:
-    """Return the mean cycle over crank angles that follow from the pulses, one a revolution."""
+    """Return the mean cycle over crank angles computed from the pulses, one per revolution."""
     seconds = np.array(time.values) * unit(time.unit).factor
     marks = _middles(seconds, np.array(pulse.values), pulse.name)
     turns = np.interp(seconds, marks, np.arange(len(marks)))
@@ -236,10 +236,10 @@ def _middles(seconds: Array, level: Array, name: str) -> Array:
     Raises
     ------
     InvalidInputs
-        If the times do not grow, there are fewer than three pulses, or one is missing between others.
+        If the times do not increase, there are fewer than three pulses, or a pulse in between is missing.
     """
     if np.any(np.diff(seconds) <= 0):
-        raise InvalidInputs([Fault("table", "unordered", "the times must grow from row to row")])
+        raise InvalidInputs([Fault("table", "unordered", "the times must increase from row to row")])
     low, high = float(level.min()), float(level.max())
     share = (level - low) / (high - low) if high > low else np.zeros(len(level))
     if np.median(share) > 0.5:
@@ -269,7 +269,7 @@ def _middles(seconds: Array, level: Array, name: str) -> Array:
 
 
 def _crossing(seconds: Array, share: Array, places: Sequence[int]) -> Array:
-    """Return when the pulse passes its half between a sample and the next [s]."""
+    """Return the time at which the pulse crosses half its height between two samples [s]."""
     before = np.asarray(places, dtype=int)
     one, other = share[before], share[before + 1]
     part = np.clip((0.5 - one) / (other - one), 0.0, 1.0)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.judgement import Judgement, Place, sentence
 from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
-from templates.core.language.evaluate import Evaluation
+from templates.core.language.evaluate import Evaluation, assumed
 from templates.core.language.ledger import Notice
 from templates.core.language.template import Template
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 def rendered(ordered: Sequence[Judgement]) -> JsonObject:
-    """Return `criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
+    """Return `criteria`, worst first, and the overall `verdict`; an empty result without criteria."""
     if not ordered:
         return {}
     return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}
 
 
 def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
-    """Return the verdict over all criteria, which stand in order."""
+    """Return the verdict over all criteria, which must be in order."""
     summary = summarised(ordered)
     return {
         "verdict": summary.verdict,
@@ -43,36 +43,56 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 
 def criterion(judgement: Judgement) -> JsonObject:
-    """Return one criterion as JSON, without the members that do not apply."""
-    unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
-    parts = {
-        "value": None if value is None else _quantity(value, unit),
-        "limit": None if limit is None else _quantity(limit, unit),
-        "band": None if judgement.band is None else _band(judgement.band, unit),
-        "relative_error": judgement.relative_error,
-        "error_stated": judgement.error_known,
-        "error_known": judgement.error_known,
-        "utilisation": judgement.utilisation,
-        "margin": None if margin is None else _quantity(margin, judgement.margin_unit),
-        "needs": judgement.needs,
-        "give": list(judgement.give) or None,
-        "reason": judgement.reason,
-        "level": judgement.level,
-        "truth": judgement.truth,
-        "where": _where(judgement.where) if judgement.where else None,
-        "points": judgement.points,
-        "counts": dict(judgement.counts) if judgement.counts else None,
-        "source": judgement.source,
-        "unverified": judgement.unverified,
-        "waived": judgement.waived,
-    }
-    present = {name: part for name, part in parts.items() if part is not None}
+    """Return one criterion as JSON, without members that do not apply."""
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    return {**names, "verdict": judgement.verdict, **present}
+    shown: JsonObject = {**names, "verdict": judgement.verdict, "sentence": sentence(judgement)}
+    _show_numbers(judgement, shown)
+    if judgement.give:
+        shown["give"] = list(judgement.give)
+    if judgement.where:
+        shown["where"] = _where(judgement.where)
+    if judgement.points is not None:
+        shown["points"] = judgement.points
+    if judgement.counts:
+        shown["counts"] = dict(judgement.counts)
+    _show_remarks(judgement, shown)
+    return shown
 
 
-def _quantity(value: float, unit: str) -> dict[str, object] | None:
-    return {"value": value, "unit": unit} if math.isfinite(value) else None
+def _show_numbers(judgement: Judgement, shown: JsonObject) -> None:
+    """Add the numbers of a criterion to its JSON."""
+    unit, margin = judgement.unit, judgement.margin
+    shown["error_stated"] = shown["error_known"] = judgement.error_known
+    if judgement.value is not None and math.isfinite(judgement.value):
+        shown["value"] = {"value": judgement.value, "unit": unit}
+    if judgement.limit is not None and math.isfinite(judgement.limit):
+        shown["limit"] = {"value": judgement.limit, "unit": unit}
+    if margin is not None and math.isfinite(margin):
+        shown["margin"] = {"value": margin, "unit": judgement.margin_unit}
+    if judgement.band is not None:
+        shown["band"] = _band(judgement.band, unit)
+    if judgement.relative_error is not None:
+        shown["relative_error"] = judgement.relative_error
+    if judgement.utilisation is not None:
+        shown["utilisation"] = judgement.utilisation
+    if judgement.needs is not None:
+        shown["needs"] = judgement.needs
+
+
+def _show_remarks(judgement: Judgement, shown: JsonObject) -> None:
+    """Add the texts beside the numbers of a criterion to its JSON."""
+    if judgement.reason is not None:
+        shown["reason"] = judgement.reason
+    if judgement.level is not None:
+        shown["level"] = judgement.level
+    if judgement.truth is not None:
+        shown["truth"] = judgement.truth
+    if judgement.source is not None:
+        shown["source"] = judgement.source
+    if judgement.unverified is not None:
+        shown["unverified"] = judgement.unverified
+    if judgement.waived is not None:
+        shown["waived"] = judgement.waived
 
 
 def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
@@ -80,7 +100,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
 
 
 def _where(places: Sequence[Place]) -> dict[str, object]:
-    """Return places by name; what has no unit is a name, such as that of a variant."""
+    """Return places by name; a place without a unit is a name, such as that of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
         for place in places
@@ -99,7 +119,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Return the version that calculated: id, version and the digest of its code."""
+    """Return the version of the calculation: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
@@ -109,12 +129,12 @@ def identity(cls: type[Template]) -> Identity:
 
 
 def quantity(value: object, unit: str | None) -> dict[str, object]:
-    """Return a value with its unit; a text has none."""
+    """Return a value with its unit; a text has no unit."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
-    """Return the outputs; what does not exist is null with its reason."""
+    """Return the outputs; a missing value is null with its reason."""
     shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
@@ -127,7 +147,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
 
 
 def _array(output: Answer) -> dict[str, object]:
-    """Return an output of several points or places; each that does not exist is null with its reason."""
+    """Return an output of several points or places; each missing value is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -137,7 +157,7 @@ def _array(output: Answer) -> dict[str, object]:
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
     """Return the values as objects, None where there is none.
 
-    A profile, which has one reason, is one object.
+    A profile has a single reason, so it is one object.
     """
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
@@ -150,7 +170,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
 
 
 def _plain(value: object) -> object:
-    """Return a single value or an array as JSON; what was not measured is null."""
+    """Return a single value or an array as JSON; unmeasured values are null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
     if value.ndim == 1:
@@ -167,7 +187,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
 
 
 def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
-    """Return the inputs as they were used."""
+    """Return the inputs that the calculation used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
         unit = {} if used.unit is None else {"unit": used.unit}
@@ -176,7 +196,7 @@ def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
 
 
 def evaluation(result: Evaluation) -> JsonObject:
-    """Return the whole answer to `evaluate`."""
+    """Return the complete answer of `evaluate`."""
     return {
         "template": identity(type(result.template)),
         "inputs": inputs(result.inputs),
@@ -184,9 +204,15 @@ def evaluation(result: Evaluation) -> JsonObject:
         "level": _plain(result.level),
         "error": errors(result.error),
         "warnings": warnings(result.warnings),
+        "assumed": assumptions(result, result.criteria),
         **rendered(result.criteria),
         "seconds": result.seconds,
     }
+
+
+def assumptions(result: Evaluation, criteria: Iterable[Judgement]) -> list[dict[str, str]]:
+    """Return what an evaluation and its criteria take for granted."""
+    return [vars(one) for one in assumed(result.template, result.outputs, criteria)]
 
 
 def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
@@ -195,7 +221,7 @@ def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
 
 
 def solution(result: Solution) -> JsonObject:
-    """Return the whole answer to `solve`."""
+    """Return the complete answer of `solve`."""
     return {
         "unknown": quantity(result.unknown, result.unit),
         "warnings": warnings(result.warnings),
@@ -203,6 +229,7 @@ def solution(result: Solution) -> JsonObject:
         "touching": [_root(root, result.unit) for root in result.touching],
         "jumps": [_jump(jump, result) for jump in result.jumps],
         "curve": _curve(result.curve, result),
+        "finer": [_curve(curve, result) for curve in result.finer],
         "evaluation": evaluation(result.evaluation),
     }
 

@@ -72,16 +72,16 @@ class Question:
 
 
 def answered(source: Source, question: Question) -> Pieces:
-    """Return the answer, in the form that the question asks for.
+    """Return the answer in the requested format.
 
     Raises
     ------
     InvalidBody
-        If the body is not JSON, or not what the operation takes.
+        If the body is not JSON, or does not fit the operation.
     NoArray
-        If an array is wanted and the outputs do not fit one.
+        If an array is requested and the outputs do not fit into one.
     TemplateError, TooManyValues
-        As the operation itself.
+        As raised by the operation.
     """
     operation = OPERATIONS[question.operation]
     body = _read(operation.body, question.body.joined())
@@ -94,7 +94,7 @@ def check(cls: type[Template], question: Question) -> None:
     Raises
     ------
     InvalidBody, TemplateError, TooManyValues
-        As `answered`.
+        As raised by `answered`.
     """
     operation = OPERATIONS[question.operation]
     operation.check(cls, _read(operation.body, question.body.joined()))

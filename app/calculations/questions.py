@@ -30,12 +30,12 @@ CHECKED_WITHIN = 2.0
 def calculated(question: Question, database: Database, catalogues: Catalogues) -> Reply[Question, Pieces]:
     """Return the answer of a calculation process, if its caller waits long enough.
 
-    Who does not want to wait at all learns nevertheless what is wrong with the question.
+    With `wait=0` the question is still validated.
 
     Raises
     ------
     UnknownTemplate, InvalidBody, InvalidInputs, NoArray, TooManyValues
-        If something is wrong with it.
+        If the question is invalid.
     TooManyCalculations
         Too many are waiting.
     """
@@ -51,10 +51,9 @@ def calculated(question: Question, database: Database, catalogues: Catalogues) -
 
 
 def _check(cls: type[Template], question: Question, caller: Caller) -> None:
-    """Refuse the faults of a question, as far as possible without calculating.
+    """Refuse an invalid question, as far as possible without calculating.
 
-    A large body is read in a calculation process. If none is free in time, the job itself will say what is
-    wrong.
+    A large body is read in a calculation process. If none is free in time, the job reports the faults.
     """
     if len(question.body) <= LARGE:
         check(cls, question)
@@ -71,7 +70,7 @@ def _check(cls: type[Template], question: Question, caller: Caller) -> None:
 def _settled(
     question: Question, database: Database, catalogues: Catalogues
 ) -> tuple[Question, Iterable[str]]:
-    """Return the question, and the digest of the template as it is now."""
+    """Return the question with the current digest of its template."""
     return question, (digest(catalogues.to_try(question.template, question.version)),)
 
 

@@ -8,7 +8,6 @@ from app.calculations import json_values
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
 from app.plain import JsonObject
-from app.pool.cost import points
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points
@@ -19,7 +18,7 @@ MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 
 def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
-    """Evaluate a template, as `evaluated`."""
+    """Evaluate a template, as in `evaluated`."""
     return json_values.evaluation(evaluated(cls, body))
 
 
@@ -29,7 +28,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     TooManyValues
         If the answer would be too large.
     """
@@ -54,7 +53,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     TooManyValues
         If the answer would be too large.
     """
@@ -70,7 +69,7 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     """
     read_question(
         cls,
@@ -86,7 +85,7 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
 
 def _limit_answer(cls: type[Template], body: EvaluateIn) -> None:
     outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
-    _limit(points(body.inputs) * max(1, outputs))
+    _limit(body.points * max(1, outputs))
 
 
 def _limit(values: int) -> None:
@@ -101,9 +100,9 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all wrong inputs.
     Unreachable
-        With the range that can be reached.
+        With the reachable range.
     """
     solution = solve(
         cls,

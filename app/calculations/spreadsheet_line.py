@@ -1,4 +1,4 @@
-"""An evaluation as lines of CSV, for a spreadsheet that asks by an address: names, units, numbers."""
+"""An evaluation as lines of CSV (names, units, numbers) for a spreadsheet that requests it by a URL."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def csv_of(
     Raises
     ------
     InvalidInputs
-        With everything that is wrong; with code `shape` for an output that is a curve.
+        With all wrong inputs, and with code `shape` for an output that is a curve.
     """
     result = evaluation(
         evaluate(loaded(source), inputs, outputs=outputs, level=level, tolerance=tolerance, judge=False)
@@ -60,7 +60,7 @@ def _column(value: object) -> list[object]:
 
 
 def _cell(value: object) -> object:
-    """Return a value that no spreadsheet takes for a formula; empty where there is none."""
+    """Return a value that no spreadsheet reads as a formula; empty if missing."""
     if isinstance(value, str) and value.startswith(_DANGEROUS):
         return f"'{value}"
     return "" if value is None else value

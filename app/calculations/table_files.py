@@ -1,7 +1,7 @@
-"""The text of a file that holds a table: CSV in the letters of any usual program, or a sheet of XLSX.
+"""Read the text of a table file: CSV in any common encoding, or one sheet of XLSX.
 
-What is assumed of a file is stated beside its text. XLSX is a zip archive of XML that a stranger made: the
-sizes of its parts are bounded before any is read.
+The assumptions about a file are returned with its text. An XLSX file is an untrusted zip archive of XML: the
+sizes of its parts are checked before any part is read.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
     if content.startswith(ZIP):
         return FileText(sheet_text(content, most_unpacked, most_rows), is_sheet=True)
     if content.startswith(OLD_EXCEL):
-        raise _wrong("old_excel", "this is a file of an old spreadsheet (.xls); save it as .xlsx or as CSV")
+        raise _wrong("old_excel", "this is an old Excel file (.xls); save it as .xlsx or as CSV")
     return _decoded(content)
 
 
 def _decoded(content: bytes) -> FileText:
-    """Return the text in UTF-8, in UTF-16, or else in the Western letters of Windows."""
+    """Return the text, decoded from UTF-8, UTF-16, or else Windows-1252."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return FileText(content.decode("utf-16", errors="replace"), ("UTF-16",))
     sample = content[:_SAMPLE]
@@ -66,7 +66,7 @@ def _decoded(content: bytes) -> FileText:
 
 
 def sheet_text(content: bytes, most_unpacked: int, most_rows: int) -> str:
-    """Return the first visible sheet of an XLSX file, a row a line, its cells separated by tabs.
+    """Return the first visible sheet of an XLSX file, one line per row, cells separated by tabs.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
 
 
 def _check_size(content: bytes, most_unpacked: int) -> None:
-    """Refuse what would unpack to more than any table; `zipfile` unpacks no more than the archive says."""
+    """Refuse an archive that would unpack to more than any table; `zipfile` trusts the stated sizes."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             parts = archive.infolist()

@@ -1,9 +1,9 @@
 """Tables as people paste them from a spreadsheet or a measuring program.
 
 Columns are separated by tabs, semicolons, commas, or blanks that align them. A decimal comma is read where
-the separator is not a comma; which mark was taken is stated. The first row may hold names, the second one
-units; a unit may also stand behind a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines of
-words above the headings are skipped. A fault names the row, counted as in the text, and the column.
+the separator is not a comma; the answer states which mark was used. The first row may hold names, the second
+one units; a unit may also follow a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines
+of words above the headings are skipped. A fault names the row, as numbered in the text, and the column.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class _Faults:
             self._more += 1
 
     def refuse(self) -> None:
-        """Raise InvalidInputs if there are any; the last says how many are not listed."""
+        """Raise InvalidInputs if there are faults; the last one states how many are not listed."""
         if self._more:
             detail = f"{self._more} further faults of this table are not listed; put these right first"
             self._kept.append(Fault("table", "more_faults", detail))
@@ -99,7 +99,7 @@ class _Marks:
         Raises
         ------
         FaultyText
-            If there is none.
+            If the cell contains no number.
         """
         value = _number(cell, self.is_comma)
         if not self.comma and "," in cell:
@@ -111,7 +111,7 @@ class _Marks:
         return value
 
     def fault(self) -> Fault | None:
-        """Return a fault if both marks occur and a number may mean a thousand times another."""
+        """Return a fault if both decimal marks occur, so that a number may be wrong by a factor of 1000."""
         if not (self.comma and self.point and self.grouped):
             return None
         line, name, cell = self.grouped
@@ -123,7 +123,7 @@ class _Marks:
 
     @property
     def assumed(self) -> list[str]:
-        """Return the marks that were taken."""
+        """Return the assumed decimal and thousands marks."""
         taken = [
             f"decimal {name}" for name, is_met in (("comma", self.comma), ("point", self.point)) if is_met
         ]
@@ -169,20 +169,17 @@ def table_of(
     heading: Heading | None = None,
     is_sheet: bool = False,
 ) -> Table:
-    """Return a table. Linear in the length of the text, which is at most `most_characters`.
+    """Return a table, in time linear in the length of the text, which is at most `most_characters`.
 
     Parameters
     ----------
     heading
-        Judges the name and the unit of each column; what it finds is named by the row of the headings.
+        Checks the name and the unit of each column; its faults are located at the row of the headings.
     is_sheet
-        Whether a spreadsheet gave the numbers, whose decimal mark nobody typed.
+        Whether a spreadsheet wrote the numbers, so that their decimal mark was not typed.
 
-    Raises
-    ------
-    InvalidInputs
-        Naming every cell that is wrong by its row and column, up to `most_faults`; the last fault says how
-        many more there are.
+    Raises ------ InvalidInputs Naming every cell that is wrong by its row and column, up to `most_faults`;
+    the last fault states how many more there are.
     """
     lines, is_comma, assumed = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)
@@ -229,7 +226,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
     )
     filled = list(islice(numbered, most_rows + 3))
     if not filled:
-        raise _wrong("table", "empty", "the table is empty; paste rows of numbers, with their names above")
+        raise _wrong("table", "empty", "the table is empty; paste rows of numbers below their column names")
     if len(filled) > most_rows + 2:
         raise _wrong("table", "too_many_rows", f"a table has at most {most_rows} rows; take fewer")
     separator, first = _layout(filled)
@@ -247,7 +244,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
 
 
 def _layout(filled: Sequence[tuple[int, str]]) -> tuple[str, int]:
-    """Return what separates the columns, and how many lines of words stand above the headings."""
+    """Return the separator of the columns, and the number of lines of words above the headings."""
     head = filled[:_HEAD]
     for separator in "\t;, ":
         rows = [_trimmed(_cells(row, line, separator), 1) for row, line in head]
@@ -279,7 +276,7 @@ def _layout(filled: Sequence[tuple[int, str]]) -> tuple[str, int]:
 
 
 def _trimmed(cells: list[str], least: int) -> list[str]:
-    """Return the cells without the empty ones that a spreadsheet leaves at the end of a row."""
+    """Return the cells without trailing empty ones, which spreadsheets add to rows."""
     empty = next((n for n, cell in enumerate(reversed(cells)) if cell), 0)
     return cells[: max(len(cells) - empty, least)]
 
@@ -317,7 +314,7 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
 
 
 def _is_words(line: _Line) -> bool:
-    """Return whether a line holds words and no number; `1` may be the unit of a pure number."""
+    """Return whether a line contains words but no number; `1` may be the unit of a pure number."""
     rest = [cell for cell in line.cells if cell not in ("", "1", "-")]
     return bool(rest) and not any(cell.startswith("=") or _is_number(cell) for cell in rest)
 
@@ -327,7 +324,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _heading(cell: str, place: int) -> tuple[str, str]:
-    """Name and unit of a heading such as `load_x [kN]`."""
+    """Return the name and the unit of a heading such as `load_x [kN]`."""
     name, text = parted(cell)
     return name[:LONGEST_NAME] or f"column {place}", text
 
@@ -339,7 +336,7 @@ def _bare(cell: str) -> str:
 
 
 def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults: _Faults) -> list[_Unit]:
-    """Return the units of a row, each checked; empty where there is none, None where it is wrong."""
+    """Return the checked units of a row; empty if there is none, None if it is wrong."""
     units: list[_Unit] = []
     for name, text in zip(names, texts, strict=True):
         try:
@@ -357,7 +354,7 @@ def _agreed(
     below: Sequence[_Unit],
     faults: _Faults,
 ) -> list[_Unit]:
-    """Return the units of the two rows of headings, which may not contradict each other."""
+    """Return the units of the two rows of headings, which must agree."""
     for name, one, other in zip(names, above, below, strict=True):
         if one and other and one.text and other.text and one.text != other.text:
             detail = f"the header says {one.text}, this row {other.text}; keep one of them"
@@ -369,7 +366,7 @@ def _agreed(
 
 
 def _numbers(line: _Line, names: Sequence[str], marks: _Marks, faults: _Faults) -> list[float]:
-    """Return the numbers of a line; what is none, and a line of another length, is added to the faults."""
+    """Return the numbers of a line; add a fault for each cell without a number and for a wrong length."""
     if len(line.cells) != len(names):
         detail = f"it has {len(line.cells)} cells, the first row has {len(names)}"
         hint = "; with decimal commas, separate the columns by semicolons or tabs" if marks.is_comma else ""
@@ -390,7 +387,7 @@ def _number(cell: str, is_comma: bool) -> float:
     Raises
     ------
     FaultyText
-        If there is none.
+        If the cell contains no number.
     """
     if cell.startswith("="):
         raise FaultyText("formula", f"{excerpt(cell)} is a formula; paste its value instead")

@@ -1,7 +1,7 @@
-"""The module from which calculation processes are forked: it has imported what they run.
+"""Import everything that calculation processes run: they are forked from a process that holds this module.
 
-Tables are read and formulas compiled at first use, in each process; that takes 0.3 s at most. Calculating
-every example here would avoid that, but the first calculation after a start would wait for all of them.
+Each process reads tables and compiles formulas at first use, which takes 0.3 s at most. Calculating every
+example here would avoid that, but would delay the first calculation after a start.
 """
 
 from __future__ import annotations

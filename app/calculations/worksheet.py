@@ -28,7 +28,7 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 
 
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
-    """Return an evaluation as `evaluate` answers it, in the system's units, with its formulas."""
+    """Return an evaluation, as `evaluate` answers it, in the system's units and with its formulas."""
     written = formulas(evaluation.template, system, evaluation.outputs)
     answer = {**json_values.evaluation(evaluation), "formulas": written}
     return answer if system == "si" else Worksheet.model_validate(answer).in_units(system).plain()

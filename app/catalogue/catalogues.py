@@ -1,6 +1,6 @@
-"""The parts of designs: versions of this program, of a team's files, and of released worksheets.
+"""Catalogues of the parts of designs: built-in versions, a team's files, and released worksheets.
 
-The files of a team are read again when they change; `app.worksheets` says which worksheets there are.
+The files of a team are reloaded when they change; `app.worksheets` lists the worksheets.
 """
 
 from __future__ import annotations
@@ -72,24 +72,24 @@ class Catalogues:
         self.snapshot = with_models(joined(self.files, self._sheets), self._brought)
 
     def to_try(self, id: str, version: int) -> type[Template]:
-        """Return a version, or the draft of a worksheet as it is now: for what is calculated and not kept.
+        """Return a version, or the present draft of a worksheet, for results that are not stored.
 
         Raises
         ------
         UnknownTemplate
-            If there is none, or the draft has faults.
+            If there is no such version, or the draft has faults.
         """
         if (id, version) not in self.templates.unreleased:
             return self.templates.get(id, version)
         return self._drafts(id, version)
 
     async def tried(self, id: str, version: int) -> type[Template]:
-        """Return the result of `to_try` to the event loop; a thread reads the draft.
+        """Return the result of `to_try` in the event loop; a thread reads the draft.
 
         Raises
         ------
         UnknownTemplate
-            As `to_try`.
+            As raised by `to_try`.
         """
         try:
             return self.templates.get(id, version)
@@ -97,9 +97,9 @@ class Catalogues:
             return await asyncio.to_thread(self.to_try, id, version)
 
     def with_drafts(self, wanted: Iterable[Key]) -> Catalogues:
-        """Return the same, and the drafts of worksheets that are wanted.
+        """Return the same catalogues with the requested drafts of worksheets.
 
-        One with faults cannot be used still.
+        A draft with faults is still unusable.
         """
         drafts: dict[Key, type[Template]] = {}
         faulty: dict[Key, str] = {}
@@ -115,13 +115,13 @@ class Catalogues:
         return Catalogues(replace(self.templates, versions=versions, unreleased=unreleased), self.models)
 
     def _take(self, files: Snapshot) -> None:
-        """Take notice of other files."""
+        """Replace the files."""
         with self._joining:
             self.files = files
             self._join()
 
     async def refresh(self) -> None:
-        """Take notice of files that have changed; nothing changes here."""
+        """Check the files for changes; this catalogue never changes."""
 
     def close(self) -> None:
         """Stop watching the files."""
@@ -146,7 +146,7 @@ class TeamCatalogues(Catalogues):
         self._team.check = check
 
     async def refresh(self) -> None:
-        """Take notice of files that have changed; called by every request, in the event loop."""
+        """Check the files for changes; every request calls it, in the event loop."""
         now = time.monotonic()
         if (self._looking is None or self._looking.done()) and now >= self._begun + EVERY:
             self._begun = now
@@ -180,7 +180,7 @@ def _no_drafts(id: str, version: int) -> type[Template]:
 
 
 async def _ended(future: Future[None], seconds: float) -> None:
-    """Wait for a future of a thread, for at most this time [s], without any hold on it."""
+    """Wait for a future of a thread, for at most this time [s], without keeping a reference."""
     loop, ended = asyncio.get_running_loop(), asyncio.Event()
 
     def wake(_: Future[None]) -> None:
@@ -193,9 +193,9 @@ async def _ended(future: Future[None], seconds: float) -> None:
 
 
 def loaded(folders: Sequence[Path]) -> Snapshot:
-    """Return everything in this process, for a command.
+    """Return the complete catalogues of this process, for a command.
 
-    Without the checks, and without what cannot be imported.
+    Files are not checked, and files that cannot be imported are left out.
     """
     team = TeamFiles(folders, lambda path, content: [])
     team.examine()

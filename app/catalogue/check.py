@@ -37,7 +37,7 @@ class CheckInProcess:
     light: Worker | None = None
 
     def __call__(self, path: Path, content: bytes) -> list[FileFault]:
-        """Return every fault of a file; that it did not come to an end is one.
+        """Return every fault of a file; a check that does not finish is a fault too.
 
         Raises
         ------
@@ -77,7 +77,7 @@ def check_content(path: str, content: bytes) -> list[FileFault]:
 
 
 def loaded_or_faulty(path: Path, content: bytes, digest: str = "") -> type[Template] | FileFault:
-    """Return the class that a file declares, or why there is none."""
+    """Return the class that a file declares, or the reason why there is none."""
     try:
         cls = declared_in(load(path, content, digest), path)
     except UnusableFile as error:
@@ -96,7 +96,9 @@ def _import_fault(error: BaseException, path: Path) -> FileFault:
             remedy = "correct this line" if line else "save the file as UTF-8"
             return FileFault("syntax", f"{type(error).__name__}: {error.msg}", remedy, line)
         case UnicodeError():
-            return FileFault("syntax", f"it is not text in UTF-8: {error}", "save the file as UTF-8", line)
+            return FileFault(
+                "syntax", f"it is not a text file in UTF-8: {error}", "save the file as UTF-8", line
+            )
         case ImportError():
             remedy = "correct the name, or install what is missing where the service runs"
             return FileFault("import", f"{type(error).__name__}: {error}", remedy, line)

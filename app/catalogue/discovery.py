@@ -1,4 +1,4 @@
-"""Find templates: the built-in ones, and those in a team's own folders beside its models."""
+"""Find templates: the built-in ones, and those in a team's own folders."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
 def find_templates(
     folders: Iterable[Path], id: str | None = None, version: int | None = None
 ) -> Catalogue[Template]:
-    """Return all templates that calculate, or those of an id and version.
+    """Return all templates for calculations, or those of an id and version.
 
     `cad.catalogue.models` has the others.
     """

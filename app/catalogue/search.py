@@ -1,8 +1,8 @@
-"""Search templates by what an engineer calls them: standards, authors, symbols, names of textbooks.
+"""Search templates by the terms of engineers: standards, authors, symbols, names from textbooks.
 
 A template is found by its title, its documentation with the references, and the names, words, symbols and
-sources of what it declares. Names under which textbooks know a quantity of another definition stand in
-`TERMS`, each with the factor between both.
+sources of what it declares. `TERMS` lists textbook names of quantities that are defined differently here,
+each with the conversion factor.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ _texts: WeakKeyDictionary[type[Template], str] = WeakKeyDictionary()
 
 
 def matching(versions: Iterable[type[T]], query: str) -> tuple[list[type[T]], list[str]]:
-    """Return the versions that fit a query, and notes on the names in it.
+    """Return the versions that match a query, and notes on its terms.
 
-    Every word of the query has to occur: one of up to two letters, such as a symbol, as a word of its own,
-    a longer one at the beginning of a word.
+    Every word of the query must occur: a word of up to two letters, such as a symbol, as a whole word, a
+    longer one at the beginning of a word.
     """
     asked = plain_words(query)
     terms = [term for term in TERMS if any(_has(asked, name) for name in term.names)]
@@ -57,7 +57,7 @@ def matching(versions: Iterable[type[T]], query: str) -> tuple[list[type[T]], li
 
 
 def plain_words(text: str) -> str:
-    """Return a text in small letters, words and numbers apart by one blank, Greek letters by their names."""
+    """Return a text in lower case, with words and numbers separated and Greek letters spelled out."""
     spelled = "".join(map(_spelled, unicodedata.normalize("NFKD", text[:20_000])))
     return " ".join(re.findall(r"[a-z]+|[0-9]+", spelled.casefold()))
 
@@ -79,7 +79,7 @@ def _fits(text: str, words: str) -> bool:
 
 
 def _text(cls: type[Template]) -> str:
-    """Return all words by which a version is found, which follow from its class alone."""
+    """Return all search terms of a version, which follow from its class alone."""
     if (text := _texts.get(cls)) is None:
         parts = [cls.id, cls.title(), cls.summary(), cls.__doc__ or ""]
         for declared in (*cls.inputs.values(), *cls.formulas.values()):

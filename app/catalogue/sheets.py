@@ -1,4 +1,4 @@
-"""Released worksheets among the templates."""
+"""Released worksheets as templates of the catalogue."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class TeamFile:
 
     @property
     def name(self) -> str:
-        """Return the file within its folder, as the pages name it: no address of this machine."""
+        """Return the file's path within its folder, as pages show it, without the address of this machine."""
         return str(Path(self.folder.name) / self.path.relative_to(self.folder))
 
     @property
@@ -51,7 +51,7 @@ class TeamFile:
         return self.cls is None
 
     def refused(self, fault: FileFault) -> TeamFile:
-        """Return the same file with one more fault, which quarantines it."""
+        """Return the same file with an additional fault, which quarantines it."""
         return replace(self, cls=None, faults=(*self.faults, fault))
 
 
@@ -76,7 +76,7 @@ class TeamFiles:
         self._files: dict[Path, TeamFile] = {}
 
     def examine(self) -> bool:
-        """Take notice of changes; whether there were any."""
+        """Check the files for changes, and return whether there were any."""
         present = dict(_scanned(self.folders))
         old = self._files
         self._files = {path: self._current(*place, path) for path, place in present.items()}
@@ -128,7 +128,7 @@ class TeamFiles:
 
 
 def _scanned(folders: Iterable[Path]) -> Iterator[tuple[Path, tuple[Path, Signature]]]:
-    """Yield every file that is, or looks meant as, a version, with its signature; a missing folder itself."""
+    """Yield every file that is, or seems meant as, a version, with its signature; also missing folders."""
     for folder in folders:
         if not folder.is_dir():
             yield folder, (folder.parent, (None,))
@@ -143,9 +143,9 @@ def _signature(path: Path) -> Signature:
 
 
 def _beside(path: Path) -> tuple[Path, ...]:
-    """Return the files beside a template that say more of it.
+    """Return the files that accompany a template.
 
-    Measured errors, digests of its release, results.
+    They hold measured errors, digests of its release, and results.
     """
     named = (path.with_name(f"{path.stem}.{kind}.json") for kind in ("accuracy", "release"))
     return (*named, *records(path))
@@ -160,7 +160,7 @@ def _state(path: Path) -> tuple[int, int, int] | None:
 
 
 def _digest(path: Path, content: bytes) -> str:
-    """Return the SHA-256 over a file and those beside it."""
+    """Return the SHA-256 over a file and its accompanying files."""
     digest = hashlib.sha256(content)
     for file in _beside(path):
         if file.is_file():
@@ -171,7 +171,7 @@ def _digest(path: Path, content: bytes) -> str:
 def merged(
     templates: Catalogue[Template], models: Catalogue[CadModel], files: Iterable[TeamFile]
 ) -> Snapshot:
-    """Return the built-in versions and those of a team; a version that is taken already is quarantined."""
+    """Return the built-in versions and a team's; a version that already exists is quarantined."""
     own_templates, own_models = dict(templates.versions), dict(models.versions)
     owners: dict[tuple[bool, Key], TeamFile] = {}
     settled: list[TeamFile] = []
@@ -200,8 +200,8 @@ def merged(
 def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
     """Return the versions of files and those of worksheets.
 
-    A released worksheet keeps its name: a file that comes with the same one later would change the numbers of
-    the designs that use it. Nor does a file stand in for a broken worksheet.
+    A released worksheet keeps its name: a later file with the same name would change the results of designs
+    that use it. A file does not replace a broken worksheet either.
     """
     released = {key: sheet.cls for key, sheet in sheets.released.items()}
     others = {key: cls for key, cls in files.templates.versions.items() if not sheets.owns(key)}
@@ -218,7 +218,7 @@ def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
 def with_models(files: Snapshot, imported: Mapping[Key, type[CadModel]]) -> Snapshot:
     """Return the models of files, and those that a team has imported.
 
-    A file does not stand in for one of these.
+    A file does not replace an imported model.
     """
     if not imported:
         return files

@@ -19,14 +19,21 @@ from templates.core.errors import plain
 @click.option("--revision", type=click.IntRange(1), required=True)
 @click.option("--step", type=click.Choice(ORDER), required=True)
 @click.option("--reason", default=None, help="of a withdrawal, which needs one")
+@click.option("--acknowledge", default=None, help="why criteria that are not confirmed may stand")
 @url_option
 @data_option
 def approve_command(
-    design: str, revision: int, step: Step, reason: str | None, url: str | None, data: Path | None
+    design: str,
+    revision: int,
+    step: Step,
+    reason: str | None,
+    acknowledge: str | None,
+    url: str | None,
+    data: Path | None,
 ) -> None:
     """Take a step of the approval of a revision of DESIGN: calculated, checked, released or withdrawn."""
     with connected(url, data) as client:
-        signed = client.approve(client.approvals(design, revision), step, reason)
+        signed = client.approve(client.approvals(design, revision), step, reason, acknowledged=acknowledge)
     last = signed.steps[-1]
     click.echo(
         plain(f"revision {revision}: {last.step} by {last.name} at {last.at}, digest {last.digest}", 500)
@@ -41,8 +48,9 @@ def approve_command(
 def verify_report_command(ctx: click.Context, file: Path, url: str | None, data: Path | None) -> None:
     """Verify FILE, a report (PDF), against the service that has the revision.
 
-    Prints what holds and what does not: every signature, that the revision still is as it was signed, that it
-    is released, and that the pages are those that the service prints. The exit code is 1 if something fails.
+    It prints the result of each check: every signature, that the revision is unchanged since it was signed,
+    that it is released, and that the pages equal those that the service prints. The exit code is 1 if a check
+    fails.
     """
     pdf = file.read_bytes()
     try:

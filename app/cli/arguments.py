@@ -15,12 +15,12 @@ from templates.core.errors import Fault, InvalidInputs
 def argument(name: str, text: str) -> Raw:
     """Return the value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
 
-    Of a file, the column named as the input is taken unless another is named.
+    From a file it takes the column with the name of the input, unless another column is named.
 
     Raises
     ------
     InvalidInputs
-        If a file or its column cannot be read, or a list is none.
+        If a file or its column cannot be read, or a list is invalid.
     """
     if text.startswith("@"):
         return _curve(name, text[1:])

@@ -1,4 +1,4 @@
-"""`crankwright audit …`: reads the audit in the database itself, whether the service runs or not."""
+"""`crankwright audit …`: reads the audit directly from the database, whether or not the service runs."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import click
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
-from app.identity import audit_rows, chain
-from app.identity.audit_rows import AuditFilter
+from app.identity import audit, chain
+from app.identity.audit import AuditFilter
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file
 from app.settings import Settings
@@ -28,7 +28,7 @@ _data = click.option(
 
 @click.group("audit")
 def audit_command() -> None:
-    """List who did what; verify the chain in which these rows are sealed."""
+    """List who did what, and verify the chain of these rows."""
 
 
 @audit_command.command("list")
@@ -42,7 +42,7 @@ def list_command(
 ) -> None:
     """Print changes, newest first."""
     with _reading(data) as session:
-        for row in audit_rows.page(session, limit, None, AuditFilter(object, principal, action))[:limit]:
+        for row in audit.page(session, limit, None, AuditFilter(object, principal, action))[:limit]:
             seal = f"{row.seq}" if row.seq is not None else "not sealed"
             click.echo(plain(f"{row.at}  {row.name}  {row.action}  {row.object}  ({seal})", 500))
 
@@ -54,9 +54,9 @@ def list_command(
 def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:
     """Verify the chain, and name the first changed, missing or inserted row.
 
-    The exit code is 0 if all is sound, 1 if not, 2 if the database cannot be read. Rows at the end that were
-    cut off, and a chain that was written again from the start, show only against a hash of `GET
-    /api/v1/audit/head` that was noted elsewhere: give it as --head.
+    The exit code is 0 if the chain is intact, 1 if not, 2 if the database cannot be read. Missing rows at the
+    end, or a chain that was completely rewritten, are detected only with a hash of `GET /api/v1/audit/head`
+    that was recorded elsewhere: pass it as --head.
     """
     with _reading(data) as session:
         result = chain.verify(session, head)

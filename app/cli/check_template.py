@@ -1,4 +1,4 @@
-"""`crankwright check-template FILE`: report a file's faults as the service would, before it is installed."""
+"""`crankwright check-template FILE`: report the faults of a template file before it is installed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def check_template_command(ctx: click.Context, file: Path, as_json: bool, second
 
 
 def _checked(path: Path, seconds: float | None) -> TeamFile:
-    """Return the file with its faults, also beside the built-in versions."""
+    """Return the file with its faults, including conflicts with built-in versions."""
     settings = Settings()
     limits = Limits(seconds or settings.template_seconds, settings.job_memory_mb)
     worker = LocalProcesses(PRELOAD)

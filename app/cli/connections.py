@@ -31,7 +31,7 @@ data_option = click.option(
 
 @contextmanager
 def connected(url: str | None, data: Path | None) -> Iterator[Client]:
-    """Open a client of the named service, or of one that is started on a data folder."""
+    """Open a client of the named service, or of a service started on a data folder."""
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         if data is not None:
@@ -48,12 +48,12 @@ def connected(url: str | None, data: Path | None) -> Iterator[Client]:
 
 
 def key_of_user() -> str | None:
-    """Return the key in CRANKWRIGHT_KEY, for a service that asks for one.
+    """Return the key in CRANKWRIGHT_KEY, for a service that requires one.
 
     Raises
     ------
     ClickException
-        If it has not the form of a key.
+        If it does not have the form of a key.
     """
     key = os.environ.get(KEY) or None
     try:
@@ -64,5 +64,5 @@ def key_of_user() -> str | None:
 
 
 def reasons(problem: Problem) -> str:
-    """Return a problem, and each of its faults on a line of its own."""
+    """Return a problem, with each of its faults on a separate line."""
     return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])

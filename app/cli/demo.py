@@ -1,4 +1,4 @@
-"""`crankwright demo`: the demonstration of the paper, on this machine or on a whole team of processes."""
+"""`crankwright demo`: run the paper's demonstration, in one process or on all processes of a team."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from app.settings import Settings
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="that of `serve`, if not given")
 @click.option("--team", is_flag=True, help="on PostgreSQL, S3, Dask and two servers; nothing stays")
 def demo_command(data: Path | None, team: bool) -> None:
-    """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
+    """Run the paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
 
-    Its design stays: `crankwright serve` shows it. With --team nothing stays.
+    The design is kept, and `crankwright serve` shows it. With --team nothing is kept.
     """
     if not team:
         demonstrate(data or Settings().data)

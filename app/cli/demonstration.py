@@ -1,7 +1,7 @@
-"""Demonstrate through the interface what Mathcad and Creo do together in the paper.
+"""Demonstrate through the REST interface the link between Mathcad and Creo that the paper shows.
 
 A ball bearing of 50 mm; SCALE = 1 as a worksheet input; D = SCALE · 48 mm as the worksheet's bearing
-diameter; a relation ties the model's inner diameter to it; regenerate: the bearing measures 48 mm.
+diameter; a relation sets the model's inner diameter to it; after regeneration the bearing measures 48 mm.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ HEADER = f"{'':28}{'before':>14}{'after':>14}"
 
 
 def demonstrate(data: Path) -> None:
-    """Run the demonstration on a service of its own; its data and STEP file stay in the folder `data`."""
+    """Run the demonstration on a separate service; its data and STEP file are kept in the folder `data`."""
     with service(data) as client:
         before = created(client)
         after = changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
@@ -48,7 +48,7 @@ def demonstrate(data: Path) -> None:
 
 
 def _point_to(design: Design, data: Path) -> None:
-    """Say how the design can be seen in the browser."""
+    """Print how to see the design in the browser."""
     settings = Settings()
     option = "" if data.absolute() == settings.data.absolute() else f" --data {shlex.quote(str(data))}"
     place = f"http://{LOOPBACK}:{settings.port}/designs/{design.id}"
@@ -64,9 +64,9 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 
 @contextmanager
 def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterator[Client]:
-    """Run a service in a process of its own on a free port and end it when done; `err` keeps the output free.
+    """Run a service in a separate process on a free port, and end it afterwards; `err` keeps the output free.
 
-    The client sends a key if one is given.
+    The client sends the key, if one is given.
     """
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
@@ -87,7 +87,7 @@ def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterato
 
 
 def _await(client: Client, process: subprocess.Popen[bytes], log: Path, *, err: bool = False) -> None:
-    """Wait until the service answers, as long as its process lives, and say so now and then.
+    """Wait until the service answers, as long as its process lives, and report progress now and then.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def created(client: Client) -> Design:
 
 
 def changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
-    """Return the design after a change, which is announced, and its regeneration."""
+    """Announce a change, and return the design after the change and its regeneration."""
     click.echo(f"changing: {what}")
     return _checked(client.change(design, patch, on_progress=_progress))
 

@@ -1,4 +1,4 @@
-"""`crankwright download`: a file of a design, from a running service, under its name."""
+"""`crankwright download`: download a file of a design from a running service."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def download_command(
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
     KIND is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP
-    files of all variants. A file that the service still has to make is waited for.
+    files of all variants. The command waits for a file that the service must create first.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:

@@ -1,4 +1,4 @@
-"""`crankwright impact`: show the effect of a template's version on designs that use another one."""
+"""`crankwright impact`: show how a new version of a template changes the designs that use another version."""
 
 from __future__ import annotations
 

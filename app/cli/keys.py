@@ -1,6 +1,6 @@
-"""`crankwright keys …`: manage principals and keys in the database itself, even if all keys are lost.
+"""`crankwright keys …`: manage principals and keys directly in the database, even if all keys are lost.
 
-A service may run meanwhile; it takes notice within a few seconds.
+A service may run meanwhile; it applies the change within a few seconds.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ data_option = click.option(
 
 @click.group("keys")
 def keys_command() -> None:
-    """Manage access: add, list, revoke, disable, enable keys. With the first, the service asks for keys."""
+    """Add, list, revoke, disable and enable keys. Once there is a key, the service requires keys."""
 
 
 @keys_command.command("add")
@@ -83,7 +83,7 @@ def add_command(
 @keys_command.command("list")
 @data_option
 def list_command(data: Path | None) -> None:
-    """Every principal with its keys, by their prefixes, and the key that made one, with which it ends."""
+    """List every principal with its keys, by prefix, and the key that created each, with which it ends."""
     with opened(data) as identity:
         after = None
         while rows := identity.page(_EVERY, after):
@@ -101,7 +101,7 @@ def list_command(data: Path | None) -> None:
 def revoke_command(prefix: str, data: Path | None) -> None:
     """Revoke the key with this PREFIX, the part between `cw_` and the next `_`.
 
-    Keys that it made are revoked too; the command names them.
+    Keys that it created are revoked too; the command names them.
     """
     with opened(data) as identity:
         key, *others = identity.revoke(prefix.removeprefix("cw_")[:10])
@@ -114,7 +114,7 @@ def revoke_command(prefix: str, data: Path | None) -> None:
 @click.argument("name")
 @data_option
 def disable_command(name: str, data: Path | None) -> None:
-    """Disable NAME: none of its keys and sessions is accepted."""
+    """Disable NAME: its keys and sessions are no longer accepted."""
     _set_disabled(name, data, True)
 
 
@@ -156,7 +156,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """Return the moment when a span such as `90d` from now has passed."""
+    """Return the moment at which a duration such as `90d` from now has passed."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
@@ -167,7 +167,7 @@ def _moment(span: str | None) -> datetime | None:
 
 @contextmanager
 def opened(data: Path | None) -> Iterator[Identity]:
-    """Open the principals and keys in the database of a data folder or of the settings, served or not."""
+    """Open the principals and keys in the database of a data folder or of the settings, in use or not."""
     settings = Settings() if data is None else Settings(data=data)
     try:
         database = Database(_prepared(settings))
@@ -182,9 +182,9 @@ def opened(data: Path | None) -> Iterator[Identity]:
 
 
 def _prepared(settings: Settings) -> str:
-    """Return the URL of the database, migrated; a server that holds the data folder has migrated its own.
+    """Return the URL of the database, migrated unless a server that holds the data folder has done so.
 
-    A database that servers share needs no folder: this may run where nothing can be written.
+    A shared database needs no folder, so this also works where nothing can be written.
     """
     if (shared := settings.database_url) is not None:
         require_connection(shared)
@@ -207,7 +207,7 @@ def _prepared(settings: Settings) -> str:
 
 
 def asks_for_keys(settings: Settings) -> bool:
-    """Return whether a service with these settings will ask for keys from its first request on."""
+    """Return whether a service with these settings requires keys from its first request on."""
     if settings.oidc_issuer is not None:
         return True
     url = settings.database_url

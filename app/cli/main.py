@@ -1,7 +1,7 @@
 """The command line: `crankwright serve | demo | study | sweep | impact | evaluate | template | …`.
 
-The module of a command is imported when the command is called. So `crankwright --version` imports none, and
-`evaluate` neither the service nor the geometry kernel.
+The module of a command is imported when the command is called. So `crankwright --version` imports no command,
+and `evaluate` imports neither the service nor the geometry kernel.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def check_command(repairing: bool, data: Path | None) -> None:
 @click.option("--no-files", is_flag=True, help="the database alone, for a bucket that keeps versions")
 @_data
 def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
-    """Back up the database and its artifacts into FILE (.tar or .tar.gz), while the service runs or not."""
+    """Back up the database and its artifacts into FILE (.tar or .tar.gz), whether or not the service runs."""
     settings = _settings(data)
     with _refusing():
         if url := _team_url(settings):
@@ -70,7 +70,7 @@ def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="a new or empty folder")
 def restore_command(file: Path, data: Path | None) -> None:
-    """Restore the backup FILE into a new folder, which appears only when all of it is verified.
+    """Restore the backup FILE into a new folder, which appears only after complete verification.
 
     A team's backup goes into the empty database of CRANKWRIGHT_DATABASE_URL and into its store of files.
     """
@@ -152,7 +152,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _refusing() -> Iterator[None]:
-    """End the command with a message for any error that keeps it from running."""
+    """End the command with a message for any error that prevents it from running."""
     try:
         yield
     except CannotRun as error:

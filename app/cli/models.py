@@ -1,4 +1,4 @@
-"""`crankwright model …`: models that a team brings from FreeCAD, Creo or a STEP file."""
+"""`crankwright model …`: import models from FreeCAD, Creo or a STEP file."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from templates.core.errors import plain
 
 @click.group("model")
 def model_command() -> None:
-    """Models that were drawn elsewhere: import a file, show its origin, get it back."""
+    """Manage models drawn by other programs: import a file, show its origin, save the original."""
 
 
 @model_command.command("programs")
 @url_option
 @data_option
 def programs_command(url: str | None, data: Path | None) -> None:
-    """List the programs that draw models for the service; of a missing one how to install it."""
+    """List the programs that draw models for the service, and how to install missing ones."""
     with connected(url, data) as client:
         for one in client.drawing_programs():
             click.echo(f"{one.name} ({one.files}): {'' if one.available else 'missing, '}{plain(one.detail)}")

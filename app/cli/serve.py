@@ -1,4 +1,4 @@
-"""`crankwright serve`: the service on one address, with the checks that come before it listens."""
+"""`crankwright serve`: check the settings and the address, then start the service."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from cad.catalogue import models
 def fork_ahead(settings: Settings) -> None:
     """Fork the servers that these settings need; call it before any thread or connection exists.
 
-    Built-in templates and models are imported first: the processes share the pages of all that is imported.
-    That of jobs loads the kernel while the server opens its data; the others are ready at once.
+    Built-in templates and models are imported first, so that the processes share their memory. The fork
+    server of jobs loads the kernel while the server opens its data; the others are ready at once.
 
     Raises
     ------
     UnusableFile
-        If one of them cannot be used.
+        If a template or model cannot be used.
     """
     find_templates(())
     models()
@@ -81,7 +81,7 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
 
 
 def _check_reach(settings: Settings, insecure: bool) -> None:
-    """Refuse to listen beyond this machine where nothing asks for a key, unless the operator insists.
+    """Refuse to listen beyond this machine if no key is required, unless the operator insists.
 
     Raises
     ------
@@ -98,6 +98,6 @@ def _check_reach(settings: Settings, insecure: bool) -> None:
     )
     if not insecure:
         raise click.ClickException(
-            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
+            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure to allow it."
         )
     click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)

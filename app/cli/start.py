@@ -1,12 +1,13 @@
-"""Prepare a command before its module is imported, to start quickly and use little memory.
+"""Prepare the imports of a command, so that it starts quickly and uses little memory.
 
 - Pint comes without Dask, which it would import for arrays that neither a command nor the server has, and
   which takes longer than Pint itself. Dask cannot hold the quantities of such a Pint, so a notebook imports
-  the unchanged Pint; a server of a team passes only packed bytes to Dask. Importing this module makes the
+  the unchanged Pint; a server of a team passes only packed bytes to Dask. Importing this module applies the
   change: import it before any module that imports Pint.
-- `serve` imports without the garbage collector, which would look through all that is new again and again,
-  HTTPX without its command line, which brings Rich and Pygments, and the kernel postponed: the server reads
-  parameters of models, and processes of their own draw them.
+- `serve` imports without the garbage collector, which would scan all new objects repeatedly. It imports HTTPX
+  without its command line, which needs Rich and Pygments, and Mako, which Alembic needs, without Pygments,
+  which colours its error pages. It postpones the kernel: the server reads only the parameters of models, and
+  other processes draw them.
 """
 
 from __future__ import annotations
@@ -36,3 +37,4 @@ def begin_serving() -> None:
     gc.disable()
     on_demand.postpone()
     import_alone("httpx", without="httpx._main")
+    import_alone("mako.exceptions", without="pygments")

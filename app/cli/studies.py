@@ -1,4 +1,4 @@
-"""`crankwright study | sweep`: many rows of a design, from a running service or on a data folder."""
+"""`crankwright study | sweep`: calculate many rows of a design, through a service or on a data folder."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _variant = click.option("--variant", help="of the design that is studied; the de
 def study_command(
     file: IO[str], variant: str | None, out: Path | None, url: str | None, data: Path | None
 ) -> None:
-    """Carry out the study in FILE, the JSON that POST /api/v1/studies takes; print what was found.
+    """Run the study in FILE, a JSON body for POST /api/v1/studies, and print its result.
 
     FILE may be - for the standard input.
     """
@@ -97,7 +97,7 @@ def sweep_command(
 
 
 def _varied(text: str) -> tuple[str, tuple[JsonObject, int]]:
-    """Return a place, what it takes, and the steps of an interval (0 for a list)."""
+    """Return a varied place, its values, and the number of steps of an interval (0 for a list)."""
     name, sign, what = text.partition("=")
     if match := _INTERVAL.fullmatch(what.strip()):
         low, low_unit, high, unit, steps = match.groups()
@@ -129,7 +129,7 @@ def _single_outputs(client: Client, design: str) -> list[str]:
 
 
 def _followed(study: ClientStudy) -> Study:
-    """Return the study at its end; its progress is a bar on a terminal."""
+    """Return the study at its end; show its progress as a bar on a terminal."""
     shown = study.study
     click.echo(f"study {study.id}: {shown.rows} rows, about {shown.estimate.seconds:.2g} s", err=True)
     with click.progressbar(length=1000, label="rows", file=sys.stderr) as bar:

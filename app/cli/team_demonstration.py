@@ -24,12 +24,12 @@ TIMEOUT = 120.0  # for an answer on a busy machine [s]
 
 
 def demonstrate_team(workers: int = WORKERS) -> None:
-    """Run the demonstration on a team of its own on loopback, and leave nothing behind.
+    """Run the demonstration on a temporary team on loopback, and leave nothing behind.
 
     Raises
     ------
     ClickException
-        Something is not installed, or a part does not start.
+        If a program is not installed, or a part does not start.
     """
     try:
         with _ending_in_order(), TemporaryDirectory(prefix="crankwright-team-") as folder:
@@ -71,7 +71,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _ending_in_order() -> Iterator[None]:
-    """Raise an exception when the terminal closes or the program is terminated, as Ctrl-C does."""
+    """Raise an exception when the terminal closes or the program is terminated, as with Ctrl-C."""
     numbers = (signal.SIGTERM, signal.SIGHUP)
     before = {number: signal.signal(number, _end) for number in numbers}
     try:

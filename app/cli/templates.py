@@ -1,4 +1,4 @@
-"""`crankwright evaluate | template | freeze`: the templates in this process, without a service.
+"""`crankwright evaluate | template | freeze`: use templates in this process, without a service.
 
 If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
 the models with the geometry kernel, and the schema are imported by the commands that need them.
@@ -23,6 +23,7 @@ from app.plain import Raw
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
+from templates.core.language.evaluate import assumed
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
 from templates.core.units.units import unit_symbol
@@ -75,10 +76,12 @@ def evaluate_command(
         click.echo(f"{name:32} {_result(answer)}")
     for warning in evaluation.warnings:
         click.secho(f"warning: {warning.name}: {warning.detail}", fg="yellow", err=True)
+    for one in assumed(evaluation.template, evaluation.outputs, evaluation.criteria):
+        click.secho(f"assumed: {one.detail}", err=True)
 
 
 def _result(answer: Answer) -> str:
-    """Return an answer on a line; of an array its length and its range."""
+    """Return an answer as one line; for an array its length and range."""
     printed = unit_symbol(answer.unit or "1")
     if answer.value is None:
         return f"{'none':>14} ({answer.reason})"
@@ -93,7 +96,7 @@ def _result(answer: Answer) -> str:
 def _pair(text: str) -> tuple[str, Raw]:
     name, sign, value = text.partition("=")
     if not sign:
-        raise click.BadParameter(f"{text!r} is not a NAME=QUANTITY, such as radial_load='25 kN'")
+        raise click.BadParameter(f"{text!r} is not of the form NAME=QUANTITY, such as radial_load='25 kN'")
     return name, argument(name, value)
 
 
@@ -105,7 +108,7 @@ def template_command() -> None:
 @template_command.command("list", cls=CatalogueCommand)
 @click.option("--search", default="", help="a title, standard, author, symbol, or name of a textbook")
 def list_templates(search: str) -> None:
-    """Every version of every template, or those that a search finds."""
+    """List every version of every template, or the results of a search."""
     from app.catalogue.search import matching
 
     kept, notes = matching(_catalogue(), search) if search.strip() else (list(_catalogue()), [])
@@ -120,7 +123,7 @@ def list_templates(search: str) -> None:
 @click.argument("id")
 @click.option("--version", type=int, default=None, help="the latest, if not given")
 def show_template(id: str, version: int | None) -> None:
-    """Inputs, outputs, limits and errata of one version."""
+    """Show inputs, outputs, limits and errata of one version."""
     from templates.core.paper.schema import describe
 
     cls = _find(id, version)
@@ -147,7 +150,7 @@ def _shown(default: object) -> str:
 @click.argument("version", type=int)
 @click.option("--folder", type=click.Path(path_type=Path), default=GOLDEN, show_default=True)
 def freeze_command(id: str, version: int, folder: Path) -> None:
-    """Write the golden record of a template or model about to be released; never over an existing one."""
+    """Write the golden record of a template or model before its release; never overwrite an existing one."""
     from templates.core.catalogue.golden import freeze
 
     snapshot = _snapshot()
@@ -172,14 +175,14 @@ def _find(id: str, version: int | None) -> type[Template]:
 def _catalogue(id: str | None = None, version: int | None = None) -> Catalogue[Template]:
     """Return all templates.
 
-    Where there are no files of a team to report, only those of the id and the version.
+    Without a team's files to report, it loads only those of the id and the version.
     """
     has_team = FOLDERS in map(str.upper, os.environ)
     return _snapshot().templates if has_team else find_templates((), id, version)
 
 
 def _snapshot() -> Snapshot:
-    """Return all templates and models; a file that cannot be used is reported, and the others are there."""
+    """Return all usable templates and models, and report files that cannot be used."""
     from app.catalogue.catalogues import loaded
     from app.settings import Settings
 

@@ -1,4 +1,4 @@
-"""`crankwright worker` and `crankwright scheduler`: the machines of a team and their scheduler."""
+"""`crankwright worker` and `crankwright scheduler`: run a worker machine of a team, or its scheduler."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BOOT = (
 def worker_command(scheduler: str | None, lanes: str | None) -> None:
     """Run jobs of the servers that use the same scheduler and the same program.
 
-    Without a scheduler it waits for one, and it connects again when that has gone.
+    Without a scheduler it waits for one, and it reconnects when the connection breaks.
     """
     given = {"CRANKWRIGHT_ENGINE": scheduler, "CRANKWRIGHT_LANES": lanes}
     os.environ.update({name: value for name, value in given.items() if value is not None})
@@ -52,7 +52,7 @@ def scheduler_command(host: str, port: int) -> None:
 
 
 def _become(module: str, *args: str) -> NoReturn:
-    """Turn this process into another, which imports nothing but its own modules."""
+    """Turn this process into another one, which imports only its own modules."""
     command = [sys.executable, "-c", _BOOT.format(module), json.dumps(sys.path), *args]
     sys.stdout.flush()
     os.execv(sys.executable, command)

@@ -1,7 +1,7 @@
-"""`crankwright worksheet …`: worksheets as text files, and their states in the service.
+"""`crankwright worksheet …`: exchange worksheets as text files with the service, and change their states.
 
-A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text as it
-was written, byte by byte.
+A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text byte for
+byte.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _files = click.argument(
 
 @click.group("worksheet")
 def worksheet_command() -> None:
-    """Templates that are written as text: check, import, test, review, release, withdraw, export."""
+    """Manage templates that are written as text: check, import, test, review, release, withdraw, export."""
 
 
 @worksheet_command.command("list")
 @url_option
 @data_option
 def list_command(url: str | None, data: Path | None) -> None:
-    """Every worksheet at its newest version."""
+    """List every worksheet at its newest version."""
     with connected(url, data) as client:
         for one in client.worksheets():
             review = f", reviewed by {one.reviewer}{_doubt(one, ', ')}" if one.reviewer else ""
@@ -63,7 +63,7 @@ def check_command(ctx: click.Context, files: tuple[Path, ...], url: str | None, 
 def import_command(files: tuple[Path, ...], author: str | None, url: str | None, data: Path | None) -> None:
     """Save FILES as drafts: `<id>.sheet` a new worksheet, or an edit of the one that is there.
 
-    The versions of one worksheet come in their order, and the earlier ones must be released.
+    Versions of one worksheet must be imported in order, and the earlier ones must be released.
     """
     named = sorted((_named(file), file) for file in files)
     with connected(url, data) as client:
@@ -88,7 +88,7 @@ def import_sheet_command(
 ) -> None:
     """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz), as a draft.
 
-    Prints what became of its regions. The exit code is 1 if some of them forbid a release.
+    It prints the outcome of each region. The exit code is 1 if some of them prevent a release.
     """
     with connected(url, data) as client:
         sheet = client.import_worksheet(id or _id_of(file), file.read_bytes(), file.name)
@@ -150,7 +150,7 @@ def test_command(id: str, url: str | None, data: Path | None) -> None:
 @url_option
 @data_option
 def review_command(id: str, reviewer: str, digest: str, url: str | None, data: Path | None) -> None:
-    """Note that you have reviewed the text of ID that has this digest, which `test` prints."""
+    """Record that you have reviewed the text of ID with this digest, which `test` prints."""
     with connected(url, data) as client:
         sheet = client.read_worksheet(id)
         if len(digest) < 12 or not (sheet.digest or "").startswith(digest):
@@ -165,7 +165,7 @@ def review_command(id: str, reviewer: str, digest: str, url: str | None, data: P
 @url_option
 @data_option
 def release_command(id: str, url: str | None, data: Path | None) -> None:
-    """Make the reviewed worksheet ID a template, which never changes."""
+    """Release the reviewed worksheet ID as a template, which never changes."""
     with connected(url, data) as client:
         _say(client.release_worksheet(client.read_worksheet(id)))
 
@@ -177,7 +177,7 @@ def release_command(id: str, url: str | None, data: Path | None) -> None:
 @url_option
 @data_option
 def withdraw_command(id: str, reason: str, version: int | None, url: str | None, data: Path | None) -> None:
-    """Say why a released version of ID shall not be used any longer."""
+    """Withdraw a released version of ID, with the reason."""
     with connected(url, data) as client:
         _say(client.withdraw_worksheet(id, reason, version))
 
@@ -189,12 +189,12 @@ def _saved(client: Client, id: str, text: str, author: str | None, sheet: Sheet 
 
 
 def _require_next(file: Path, number: int, sheet: Sheet | None) -> None:
-    """Refuse a file whose version is not the one that an edit would make; 0 is any.
+    """Refuse a file whose version differs from the version that an edit would create; 0 means any.
 
     Raises
     ------
     ClickException
-        If it is another one.
+        If it is a different one.
     """
     is_open = sheet is not None and sheet.state in OPEN
     possible = 1 if sheet is None else sheet.version if is_open else sheet.version + 1
@@ -206,7 +206,7 @@ def _require_next(file: Path, number: int, sheet: Sheet | None) -> None:
 
 
 def _export(client: Client, sheet: Sheet, folder: Path) -> None:
-    """Write every version of a worksheet into a folder, a file each."""
+    """Write every version of a worksheet into a folder, one file each."""
     for version in sheet.versions:
         name = f"{sheet.id}_v{version.version}.sheet" if len(sheet.versions) > 1 else f"{sheet.id}.sheet"
         (folder / name).write_bytes(client.worksheet_text(sheet.id, version.version).encode())
@@ -238,17 +238,17 @@ def _print(file: Path, check: SheetCheck) -> None:
 
 
 def _named(file: Path) -> tuple[str, int]:
-    """Return the id and the version that a file's name says; 0 where it says none."""
+    """Return the id and the version in a file name; version 0 if it has none."""
     if (match := FILE.fullmatch(file.name)) is None:
         raise click.ClickException(
-            f"{file.name} is no <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
+            f"{file.name} is not named <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
         )
     return match[1], int(match[2] or 0)
 
 
 def _text(file: Path) -> str:
-    """Return the text of a file, whose line ends stay as they are."""
+    """Return the text of a file with its original line ends."""
     try:
         return file.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
-        raise click.ClickException(f"{file} is not text in UTF-8") from None
+        raise click.ClickException(f"{file} is not a text file in UTF-8") from None

@@ -7,8 +7,8 @@ with Client("http://127.0.0.1:8000") as client:
     design = client.change(design, {"parameters": {"scale": "1.02"}})
     path = client.download(design.id, "step").save()  # main_bearing_model_r2.step
 
-Every call waits for its result: a job that the service starts is followed to its end. `AsyncClient` has the
-same methods, to be awaited.
+Every call waits for its result, even if the service starts a job for it. `AsyncClient` has the same methods,
+to be awaited.
 """
 
 from app.client.clients import AsyncClient, Client

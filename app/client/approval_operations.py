@@ -14,10 +14,20 @@ def approvals(id: str, revision: int) -> Exchange[Approvals]:
 
 
 def approve(
-    seen: Approvals, step: Step, reason: str | None = None, *, key: str | None = None
+    seen: Approvals,
+    step: Step,
+    reason: str | None = None,
+    *,
+    acknowledged: str | None = None,
+    key: str | None = None,
 ) -> Exchange[Approvals]:
-    """Take a step of an approval that was read; a withdrawal needs a reason."""
-    body = {"step": step} if reason is None else {"step": step, "reason": reason}
+    """Take the next step of an approval that was read; a withdrawal needs a reason.
+
+    To check or release a revision whose approvals list `unconfirmed` criteria, say in `acknowledged` why that
+    may stand.
+    """
+    said = {"step": step, "reason": reason, "acknowledged": acknowledged}
+    body = {name: text for name, text in said.items() if text is not None}
     path = f"/designs/{seen.design}/revisions/{seen.revision}/approvals"
     return answered(Approvals, post(path, body, {"If-Match": f'"{seen.to_sign}"', **once(key)}))
 
@@ -41,6 +51,6 @@ def comment(
 
 
 def resolve_comment(comment: Comment) -> Exchange[Comment]:
-    """Say that a comment is dealt with."""
+    """Mark a comment as resolved."""
     path = f"/designs/{comment.design}/revisions/{comment.revision}/comments/{comment.id}/resolve"
     return answered(Comment, post(path, {}))

@@ -1,6 +1,6 @@
 """The two clients, synchronous and asynchronous, with a method for each request.
 
-Their methods are the `operations`; how a request is sent is in `app.client.connections`.
+The methods come from `operations`; `app.client.connections` sends the requests.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class Client(BlockingConnection):
     """
 
     def study(self, design: str, *, key: str | None = None, **body: object) -> ClientStudy:
-        """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""
+        """Start a study of a design: `method`, `vary`, `outputs` and so on, as in `POST /studies`."""
         return ClientStudy(self, self.run(exchanges.begin(design, body, key)))
 
     def open_study(self, id: str) -> ClientStudy:
@@ -187,7 +187,7 @@ class AsyncClient(AwaitedConnection):
     """A connection to a service, whose calls are awaited. It is made as `Client` is."""
 
     async def study(self, design: str, *, key: str | None = None, **body: object) -> AsyncClientStudy:
-        """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""
+        """Start a study of a design: `method`, `vary`, `outputs` and so on, as in `POST /studies`."""
         return AsyncClientStudy(self, await self.run(exchanges.begin(design, body, key)))
 
     async def open_study(self, id: str) -> AsyncClientStudy:

@@ -50,7 +50,7 @@ class _Connection:
 
 
 def message(request: Request) -> _Message:
-    """Return a request as httpx takes it."""
+    """Return a request as httpx needs it."""
     return {
         "method": request.method,
         "url": request.path,
@@ -88,7 +88,7 @@ class BlockingConnection(_Connection):
             return False
 
     def run(self, exchange: Exchange[Result]) -> Result:
-        """Send the requests of an exchange, and return what it makes of their responses."""
+        """Send the requests of an exchange, and return its result."""
         try:
             request = next(exchange)
             while True:
@@ -138,7 +138,7 @@ class AwaitedConnection(_Connection):
             return False
 
     async def run(self, exchange: Exchange[Result]) -> Result:
-        """Send the requests of an exchange, and return what it makes of their responses."""
+        """Send the requests of an exchange, and return its result."""
         try:
             request = next(exchange)
             while True:

@@ -55,7 +55,7 @@ class DesignFilter(TypedDict, total=False):
 
 
 def designs(**wanted: Unpack[DesignFilter]) -> Exchange[list[DesignSummary]]:
-    """Return designs that are not archived, newest first; those that fit every filter given."""
+    """Return the designs that are not archived and match all filters, newest first."""
     return listed(DesignList, "/designs", [*_filters(wanted)])
 
 
@@ -69,7 +69,7 @@ def create(
 ) -> Exchange[Design]:
     """Create a design and wait until its models are built; see `state` for whether they are.
 
-    Two requests under one key make one design.
+    Two requests with the same key create one design.
     """
     return saved(post("/designs", document, once(key)), on_progress)
 
@@ -81,7 +81,7 @@ def change(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Make a new revision of a design that was read, and wait until its models are built."""
+    """Change a design that was read: create a new revision, and wait until its models are built."""
     headers = {"Content-Type": MERGE_PATCH, **_match(design), **once(key)}
     request = Request("PATCH", f"{BASE}/designs/{design.id}", written(patch), headers=headers)
     return saved(request, on_progress)
@@ -90,7 +90,7 @@ def change(
 def copy(
     id: str, name: str | None = None, *, on_progress: Progress | None = None, key: str | None = None
 ) -> Exchange[Design]:
-    """Make a new design with the newest document of this one; the service names it if no name is given."""
+    """Create a new design with the newest document of this one; without a name the service chooses one."""
     return saved(post(f"/designs/{id}/copy", {"name": name}, once(key)), on_progress)
 
 
@@ -102,13 +102,13 @@ def restore(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Make a new revision, equal to an old one, of a design that was read."""
+    """Create a new revision, equal to an old one, of a design that was read."""
     path = f"/designs/{design.id}/revisions/{number}/restore"
     return saved(post(path, {"note": note}, {**_match(design), **once(key)}), on_progress)
 
 
 def delete(id: str) -> Exchange[None]:
-    """Take a design from the lists; its revisions are kept."""
+    """Delete a design from the lists; its revisions are kept."""
     checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
 
 
@@ -120,7 +120,7 @@ def labels(id: str) -> Exchange[Labels]:
 def label(
     id: str, *, add_tags: Sequence[str] = (), remove_tags: Sequence[str] = (), archived: bool | None = None
 ) -> Exchange[Labels]:
-    """Add and remove tags of a design, archive it or fetch it back; this makes no revision."""
+    """Add and remove tags of a design, archive or restore it; this creates no revision."""
     change = {"add_tags": [*add_tags], "remove_tags": [*remove_tags], "archived": archived}
     return answered(Labels, post(f"/designs/{id}/labels", change))
 
@@ -135,7 +135,7 @@ def compare(
 ) -> Exchange[Comparison]:
     """Return the differences between two revisions, of the same design or of two designs.
 
-    Without numbers: the newest revision with the one before, or the newest ones of both designs.
+    Without numbers it compares the newest revision with the previous one, or the newest ones of both designs.
     """
     chosen = {"revision": revision, "with": other, "design": design}
     query = {name: str(value) for name, value in chosen.items() if value is not None}
@@ -159,7 +159,7 @@ def decide(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Decision]:
-    """Decide criteria that are undecided, all if none are named: finer levels where they are needed.
+    """Decide undecided criteria, all if none are named, with finer levels if necessary.
 
     The quantities of the answer are in `units`, "si" or "us".
     """
@@ -210,7 +210,7 @@ def design_worksheet(id: str, number: int | None = None) -> Exchange[RevisionWor
 
 
 def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
-    """Return the design once its job has ended; a failed regeneration is its `state`."""
+    """Return the design once its job has ended; its `state` shows a failed regeneration."""
     response = yield request
     answer = read(Design, response)
     if job := job_of(response):
@@ -220,7 +220,7 @@ def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
 
 
 def _filters(wanted: DesignFilter) -> Iterator[tuple[str, str]]:
-    """Yield the filters as a query, in which a tag may stand several times."""
+    """Yield the filters as query parameters, in which a tag may occur several times."""
     for name, value in wanted.items():
         texts = [value] if isinstance(value, str) else value
         assert isinstance(texts, Sequence), "filters are texts"

@@ -52,7 +52,7 @@ Exchange = Generator[Request, httpx.Response, Result]
 
 
 def get(path: str, params: Query | None = None) -> Request:
-    """Ask for what is at a path below `BASE`."""
+    """Request the resource at a path below `BASE`."""
     return Request("GET", BASE + path, params=params or {})
 
 
@@ -62,7 +62,7 @@ def post(path: str, body: object, headers: Mapping[str, str] | None = None) -> R
 
 
 def written(body: object) -> bytes:
-    """Return a body as JSON; models of answers, such as a quantity, may be part of it.
+    """Return a body as JSON; it may contain models of answers, such as a quantity.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def _plain(value: object) -> JsonObject:
 
 
 def read(model: type[Model], response: httpx.Response) -> Model:
-    """Return the answer as a model. A field that a newer service adds is not an error."""
+    """Parse the answer as a model."""
     return TypeAdapter(model).validate_json(checked(response).content, extra="allow")
 
 
@@ -100,7 +100,7 @@ def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] =
 
 
 def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """Send a request again once its job has ended, as for a file that must be made; return its answer.
+    """Repeat a request once its job has ended, as for a file that must be created; return its answer.
 
     Raises
     ------
@@ -115,12 +115,12 @@ def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[h
 
 
 def calculated(model: type[Model], request: Request, on_progress: Progress | None = None) -> Exchange[Model]:
-    """Return the answer of a calculation, from where its job leaves it if it became one."""
+    """Return the answer of a calculation, from its job if it became one."""
     return read(model, (yield from calculation(request, on_progress)))
 
 
 def calculation(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """Return the response of a calculation, from where its job leaves it if it became one."""
+    """Return the response of a calculation, from its job if it became one."""
     response = yield request
     if job := job_of(response):
         yield from done(job, on_progress)
@@ -129,14 +129,14 @@ def calculation(request: Request, on_progress: Progress | None = None) -> Exchan
 
 
 def job_of(response: httpx.Response) -> str | None:
-    """Return the job that an answer waits for: of a 202, or of a 503 while a lost file is made again."""
+    """Return the job that an answer waits for: of a 202, or of a 503 while a lost file is rebuilt."""
     place = response.headers.get("Location", "")
     waits = response.status_code in (202, 503) and place.startswith(_JOB)
     return place.removeprefix(_JOB) if waits else None
 
 
 def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
-    """Return a job that has done its work.
+    """Return a completed job.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
 
 
 def followed(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
-    """Return a job once it has ended, however it did."""
+    """Return a job once it has ended, whatever its outcome."""
 
     def listen(line: str) -> None:
         event = json.loads(line.removeprefix("data:")) if line.startswith("data:") else {}

@@ -23,7 +23,7 @@ class File:
 
     @classmethod
     def of(cls, response: httpx.Response) -> File:
-        """Return the file in an answer; one that the service does not name is called as the path ends."""
+        """Return the file in an answer; without a name from the service it is named after the path."""
         said = response.headers.get("Content-Disposition", "")
         if wide := _WIDE.search(said):
             name = unquote(wide[1])

@@ -16,7 +16,7 @@ def me() -> Exchange[Me]:
 
 
 def principals() -> Exchange[list[Principal]]:
-    """Return everybody who may use the service."""
+    """Return all principals that may use the service."""
     return listed(PrincipalList, _PATH)
 
 
@@ -26,7 +26,7 @@ def add_principal(name: str, roles: Sequence[Role], kind: str = "person") -> Exc
 
 
 def change_principal(id: str, **changes: object) -> Exchange[Principal]:
-    """Return another `name`, other `roles` or `limits`; `disabled` or not."""
+    """Change the name, roles or limits of a principal, or disable or enable it."""
     return answered(Principal, post(f"{_PATH}/{id}", changes))
 
 
@@ -43,7 +43,7 @@ def keys(principal: str) -> Exchange[list[Key]]:
 def add_key(
     principal: str, *, name: str = "", scopes: Sequence[Role] = (), expires_days: float | None = None
 ) -> Exchange[NewKey]:
-    """Return a new key, which only this answer has."""
+    """Return a new key, which appears only in this answer."""
     body = {"name": name, "scopes": list(scopes), "expires_days": expires_days}
     return answered(NewKey, post(f"{_PATH}/{principal}/keys", body))
 

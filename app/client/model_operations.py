@@ -14,23 +14,24 @@ _PATH = "/models"
 
 
 def drawing_programs() -> Exchange[list[DrawingProgram]]:
-    """Return the programs that draw imported models; of one that is missing how to install it."""
+    """Return the programs that draw imported models, and how to install missing ones."""
     return (yield from answered(DrawingPrograms, get(f"{_PATH}/import"))).items
 
 
 def import_model(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[CadModel]:
-    """Return the version that a file becomes once the service has examined it.
+    """Import a file as a version of a model; return it once the service has examined it.
 
     .FCStd, STEP, or a manifest for Creo.
 
-    Two requests under one key make one. A file that is there under this id already keeps its version.
+    Two requests with the same key create one version. A file that already exists under this id keeps its
+    version.
 
     Raises
     ------
     Problem
-        If the file is not taken, the id is, or the program that draws it is not there.
+        If the file is refused, the id is in use, or the program that draws it is missing.
     """
     headers = {"Content-Type": "application/octet-stream", "Idempotency-Key": key or uuid.uuid4().hex}
     query = {"id": id, "file": file}
@@ -50,5 +51,5 @@ def model_origin(id: str, version: int) -> Exchange[ModelOrigin]:
 
 
 def original_model(id: str, version: int) -> Exchange[File]:
-    """Return the file that a model was imported from, as it was sent, under its name."""
+    """Return the file from which a model was imported, unchanged and under its name."""
     return File.of(checked((yield get(f"{_PATH}/{id}/versions/{version}/original"))))

@@ -12,7 +12,7 @@ _KEY = re.compile("cw_[a-z0-9]{10}_[A-Za-z0-9_-]{43}")
 
 
 def user_at_host() -> str:
-    """Return the user and the machine, in printable ASCII: the same whenever this user calls from here."""
+    """Return the user and the machine in printable ASCII, which are the same for all calls of this user."""
     try:
         user = getpass.getuser()
     except (KeyError, OSError):  # a container may run under a number that has no name
@@ -21,7 +21,7 @@ def user_at_host() -> str:
 
 
 def checked_name(name: str | None) -> str:
-    """Return the name as it is; `user@host` if none is given.
+    """Return the name unchanged; `user@host` if none is given.
 
     Raises
     ------

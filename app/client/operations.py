@@ -94,7 +94,7 @@ class AnalysisOptions(TypedDict, total=False):
 
 
 def templates(search: str = "") -> Exchange[list[TemplateSummary]]:
-    """Return every version of every template, or those that a search finds."""
+    """Return every version of every template, or the results of a search."""
     return listed(TemplateList, "/templates", [("search", search)] if search else [])
 
 
@@ -119,7 +119,7 @@ def library_table(id: str) -> Exchange[LibraryTable]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
+    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 
@@ -127,9 +127,9 @@ def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) 
 def evaluate_array(
     id: str, version: int, inputs: Values, **options: Unpack[Options]
 ) -> Exchange[NDArray[np.void]]:
-    """Evaluate; the outputs as fields of one array, `array["minimum_film_thickness"]`.
+    """Evaluate a template; return the outputs as fields of one array, `array["minimum_film_thickness"]`.
 
-    The title of a field, in `array.dtype.fields`, adds the unit. Options are those of `evaluate`.
+    The title of a field, in `array.dtype.fields`, adds the unit. The options are those of `evaluate`.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def evaluate_array(
 
 
 def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Worksheet]:
-    """Evaluate a template and write every formula out."""
+    """Evaluate a template, and return every formula written out with numbers."""
     path = f"/templates/{id}/versions/{version}/worksheet"
     return calculated(Worksheet, post(path, {"inputs": inputs, **options}))
 
@@ -166,7 +166,7 @@ def solve(
 
 
 def curves(table: bytes | str) -> Exchange[Curves]:
-    """Read curves from a CSV or XLSX file; each can be an input. `assumed` says what was assumed."""
+    """Read curves from a CSV or XLSX file; each can be used as an input. `assumed` lists the assumptions."""
     content = table.encode() if isinstance(table, str) else table
     request = Request("POST", f"{BASE}/curves", content, headers={"Content-Type": "text/csv"})
     return answered(Curves, request)
@@ -193,14 +193,14 @@ def surface(analysis: str) -> Exchange[Surface]:
 
 
 def build(key: str) -> Exchange[Build]:
-    """Return a build: its files and what was measured on it."""
+    """Return a build: its files and its measurements."""
     return answered(Build, get(f"/builds/{key}"))
 
 
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
-    """Return a file of the design's newest good model.
+    """Return a file of the design's newest valid model.
 
-    It is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
+    The kind is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 
@@ -215,7 +215,8 @@ def download(
 ) -> Exchange[File]:
     """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
-    Of the newest good model if no revision is named; `model` says which one, if the design has several.
+    It comes from the newest valid model if no revision is named; `model` selects one, if the design has
+    several.
     """
     one = f"/revisions/{revision}" if revision else ""
     named = f"/models/{model}" if model else ""
@@ -233,9 +234,8 @@ def report(
 ) -> Exchange[bytes]:
     """Return the calculation report of a revision, the newest if none is named, with all its pictures.
 
-    Pdf or html.
-
-    `variants`: the report of all its variants. The quantities are in `units`, "si" or "us".
+    The format is pdf or html. `variants` selects the report of all its variants. The quantities are in
+    `units`, "si" or "us".
     """
     one, all = f"/revisions/{revision}" if revision else "", "/variants" if variants else ""
     return _file(f"/designs/{id}{one}{all}/report.{kind}?units={units}", on_progress)
@@ -263,12 +263,12 @@ def follow(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
 
 
 def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
-    """Return a file once it has been made."""
+    """Return a file once it has been created."""
     return (yield from _awaited(path, on_progress)).content
 
 
 def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response]:
-    """Return the answer with a file once it has been made.
+    """Return the answer with a file once it has been created.
 
     With `on_progress`, the job is followed from the start.
     """

@@ -32,12 +32,12 @@ class Problem(Exception):
 
     @property
     def errors(self) -> list[Fault]:
-        """Return every wrong input by name, where there are several."""
+        """Return every wrong input by name, if there are several."""
         return self.described.errors
 
     @classmethod
     def of(cls, response: httpx.Response) -> Problem:
-        """Return the problem in an answer; a proxy's page counts as one too."""
+        """Return the problem in an answer; an error page of a proxy is converted to one too."""
         try:
             return cls(response.status_code, response.json())
         except ValueError:  # no JSON, or JSON that is not a problem
@@ -45,7 +45,7 @@ class Problem(Exception):
 
 
 def checked(response: httpx.Response) -> httpx.Response:
-    """Return the answer as it is.
+    """Return the answer unchanged.
 
     Raises
     ------

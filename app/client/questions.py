@@ -1,4 +1,4 @@
-"""Questions about designs: solve for an input, analyse tolerances, impact of a version."""
+"""Questions about designs: solve for an input, analyse tolerances, show the impact of a version."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def solve_design(
 ) -> Exchange[DesignSolution]:
     """Return every value of a parameter or input between two bounds that gives a wanted output.
 
-    `others` are other values of the design for this question: `{"film.speed": "7000 rpm"}`.
+    `others` replaces values of the design for this question: `{"film.speed": "7000 rpm"}`.
     """
     body: dict[str, object] = {"unknown": unknown, "between": list(between), "target": dict(target)}
     body |= {} if tolerance is None else {"tolerance": tolerance}
@@ -62,7 +62,7 @@ def impact(
 ) -> Exchange[Impact]:
     """Return the effect of a version on the designs that use another one, worst first; nothing is saved.
 
-    All designs that are not archived, unless ids, a part of the name or tags select some.
+    It covers all designs that are not archived, unless ids, a part of the name or tags select some.
     """
     chosen = {"designs": None if designs is None else [*designs], "name": name}
     body = {**chosen, "tags": [*tags], "limit": limit}
@@ -78,7 +78,7 @@ def upgrade(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Make a new revision of a design that was read, in which every step of a template has this version."""
+    """Upgrade a design that was read: every step of a template gets this version in a new revision."""
     steps = {name: {"version": version} for name, step in design.steps.items() if step.template == template}
     patch = {"steps": steps, "note": f"{template} version {version}"}
     return change(design, patch, on_progress=on_progress, key=key)

@@ -1,4 +1,4 @@
-"""Studies as a client handles them: an object that waits, lists its rows and chooses one.
+"""Studies in the client: an object that waits for the study, lists its rows and chooses one.
 
 study = client.study(design.id, method="grid", vary={…}, steps=41, outputs=["film.power_loss"])
 study.wait(print).result
@@ -41,7 +41,7 @@ _JOB = f"{BASE}/jobs/"
 
 
 def begin(design: str, body: Mapping[str, object], key: str | None = None) -> Exchange[Study]:
-    """Begin a study; two requests under one key make one."""
+    """Start a study; two requests with the same key start one."""
     return answered(Study, post("/studies", {"design": design, **body}, _once(key)))
 
 
@@ -56,7 +56,7 @@ def find_all(design: str | None = None) -> Exchange[list[Study]]:
 
 
 def end_of(id: str, on_progress: Progress | None = None) -> Exchange[Study]:
-    """Return a study that has done its work.
+    """Return a completed study.
 
     Raises
     ------
@@ -104,13 +104,13 @@ def _once(key: str | None) -> dict[str, str]:
 
 
 def ended(id: str) -> Exchange[Study | None]:
-    """Cancel a study that waits or runs, and return it; remove one that has ended, and return None."""
+    """Cancel a waiting or running study, and return it; delete an ended one, and return None."""
     response = yield Request("DELETE", f"{BASE}/studies/{id}")
     return None if checked(response).status_code == 204 else read(Study, response)
 
 
 def filters(columns: Sequence[str] | None, where: Where | None, sort: str | None) -> list[tuple[str, str]]:
-    """Return the chosen rows and columns as parameters of a query."""
+    """Return the chosen rows and columns as query parameters."""
     given = {"columns": ",".join(columns) if columns else None, "where": where, "sort": sort}
     return [(name, value) for name, value in given.items() if value is not None]
 
@@ -127,14 +127,14 @@ class ClientStudy:
         return self.study.id
 
     def wait(self, on_progress: Progress | None = None) -> Study:
-        """Return the study once it has done its work; raises Problem if it failed or was cancelled."""
+        """Return the completed study; raises Problem if it failed or was cancelled."""
         self.study = self._client.run(end_of(self.id, on_progress))
         return self.study
 
     def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Return its rows, in their order or sorted by a column (`-` before it: the largest first)."""
+        """Return its rows, in order or sorted by a column (`-` in front: the largest first)."""
         return self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     def file(
@@ -156,11 +156,11 @@ class ClientStudy:
         on_progress: Progress | None = None,
         key: str | None = None,
     ) -> Design:
-        """Return the design with the values of a row, as a new revision of it."""
+        """Save the values of a row as a new revision of the design, and return the design."""
         return self._client.run(chosen(self.study, row, note, on_progress, key))
 
     def end(self) -> Study | None:
-        """Cancel it if it runs; remove it if it has ended."""
+        """Cancel the study if it runs; delete it if it has ended."""
         return self._client.run(ended(self.id))
 
 
@@ -176,14 +176,14 @@ class AsyncClientStudy:
         return self.study.id
 
     async def wait(self, on_progress: Progress | None = None) -> Study:
-        """Return the study once it has done its work; raises Problem if it failed or was cancelled."""
+        """Return the completed study; raises Problem if it failed or was cancelled."""
         self.study = await self._client.run(end_of(self.id, on_progress))
         return self.study
 
     async def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Return its rows, in their order or sorted by a column (`-` before it: the largest first)."""
+        """Return its rows, in order or sorted by a column (`-` in front: the largest first)."""
         return await self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     async def file(
@@ -205,9 +205,9 @@ class AsyncClientStudy:
         on_progress: Progress | None = None,
         key: str | None = None,
     ) -> Design:
-        """Return the design with the values of a row, as a new revision of it."""
+        """Save the values of a row as a new revision of the design, and return the design."""
         return await self._client.run(chosen(self.study, row, note, on_progress, key))
 
     async def end(self) -> Study | None:
-        """Cancel it if it runs; remove it if it has ended."""
+        """Cancel the study if it runs; delete it if it has ended."""
         return await self._client.run(ended(self.id))

@@ -33,7 +33,7 @@ Table = Mapping[str, Mapping[str, object]]
 
 
 def variants(id: str, revision: int | None = None, *, outputs: Sequence[str] = ()) -> Exchange[VariantsOut]:
-    """Return the variants of a design's revision, the newest if none is named; with some of their outputs."""
+    """Return the variants of a design's revision, by default the newest, with selected outputs."""
     one = f"/revisions/{revision}" if revision else ""
     return answered(VariantsOut, get(f"/designs/{id}{one}/variants", tuple(("output", o) for o in outputs)))
 
@@ -66,7 +66,8 @@ def put_variants(
 ) -> Exchange[VariantsOut]:
     """Replace the variants of a design that was read, and wait until their solids are built.
 
-    The same table makes no revision. A variant whose solid fails says why in its `state` and `problem`.
+    An unchanged table creates no revision. A variant whose solid fails states the reason in its `state` and
+    `problem`.
     """
     id = design.design if isinstance(design, VariantsOut) else design.id
     headers = {
@@ -94,7 +95,8 @@ def download_variant(
 ) -> Exchange[File]:
     """Return a file of a variant under its name, `{design}_{variant}_r{revision}.{kind}`.
 
-    Of its newest good solid if no revision is named; `model` says which one, if the design has several.
+    It comes from its newest valid solid if no revision is named; `model` selects one, if the design has
+    several.
     """
     one = f"/revisions/{revision}" if revision else ""
     named = f"/models/{model}" if model else ""

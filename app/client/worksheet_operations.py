@@ -36,20 +36,20 @@ def read_worksheet(id: str, version: int | None = None) -> Exchange[Sheet]:
 
 
 def worksheet_text(id: str, version: int | None = None) -> Exchange[str]:
-    """Return the text of a worksheet as it was written."""
+    """Return the text of a worksheet, unchanged."""
     query = {} if version is None else {"version": str(version)}
     return checked((yield get(f"{_PATH}/{id}/text", query))).content.decode()
 
 
 def check_worksheet(text: str, id: str | None = None) -> Exchange[SheetCheck]:
-    """Check a text: return all that is wrong with it, or every line on paper with the example's numbers."""
+    """Check a text: return all its faults, or every line on paper with the example's numbers."""
     return answered(SheetCheck, post(f"{_PATH}/check", {"text": text, **({"id": id} if id else {})}))
 
 
 def create_worksheet(
     id: str, text: str, *, author: str | None = None, key: str | None = None
 ) -> Exchange[Sheet]:
-    """Return a new worksheet, a draft; two requests under one key make one."""
+    """Create a worksheet as a draft, and return it; two requests with the same key create one."""
     body = {"id": id, "text": text, **({"author": author} if author else {})}
     return answered(Sheet, post(_PATH, body, {"Idempotency-Key": key or uuid.uuid4().hex}))
 
@@ -57,12 +57,12 @@ def create_worksheet(
 def import_worksheet(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[Sheet]:
-    """Return the draft that a sheet of Mathcad (.mcdx, .xmcd, .xmcdz) becomes, once it has been read.
+    """Import a sheet of Mathcad (.mcdx, .xmcd, .xmcdz), and return its draft.
 
     Raises
     ------
     Problem
-        If the file is not taken, or the id is.
+        If the file is refused, or the id is in use.
     """
     headers = {"Content-Type": "application/octet-stream", "Idempotency-Key": key or uuid.uuid4().hex}
     query = {"id": id, "file": file}
@@ -78,36 +78,36 @@ def read_import(id: str) -> Exchange[SheetImport]:
 
 
 def change_worksheet(sheet: Sheet, text: str, *, author: str | None = None) -> Exchange[Sheet]:
-    """Return an edit of a worksheet as it was read: a draft again, of a released version the next one."""
+    """Edit a worksheet that was read: return its draft, or the next version of a released one."""
     body = {"text": text, **({"author": author} if author else {})}
     headers = {"Content-Type": MERGE_PATCH, "Idempotency-Key": uuid.uuid4().hex, **_if_match(sheet)}
     return answered(Sheet, Request("PATCH", f"{BASE}{_PATH}/{sheet.id}", written(body), headers=headers))
 
 
 def test_worksheet(sheet: Sheet) -> Exchange[Sheet]:
-    """Run the tests and the golden steps of a worksheet as it was read: draft → tested."""
+    """Run the tests and the golden steps of a worksheet that was read: draft → tested."""
     return answered(Sheet, post(f"{_PATH}/{sheet.id}/test", {}, _if_match(sheet)))
 
 
 def review_worksheet(sheet: Sheet, reviewer: str) -> Exchange[Sheet]:
-    """Note who reviewed a worksheet as it was read: tested → reviewed."""
+    """Record the review of a worksheet that was read: tested → reviewed."""
     body = {"reviewer": reviewer, "digest": sheet.digest or ""}
     return answered(Sheet, post(f"{_PATH}/{sheet.id}/review", body, _if_match(sheet)))
 
 
 def release_worksheet(sheet: Sheet) -> Exchange[Sheet]:
-    """Make a worksheet a template that never changes: reviewed → released."""
+    """Release a worksheet as a template that never changes: reviewed → released."""
     return answered(Sheet, post(f"{_PATH}/{sheet.id}/release", {}, _if_match(sheet)))
 
 
 def withdraw_worksheet(id: str, reason: str, version: int | None = None) -> Exchange[Sheet]:
-    """Say why a released version, the newest if none is named, shall not be used any longer."""
+    """Withdraw a released version, by default the newest, with the reason."""
     body = {"reason": reason, **({} if version is None else {"version": version})}
     return answered(Sheet, post(f"{_PATH}/{id}/withdraw", body))
 
 
 def delete_worksheet(sheet: Sheet) -> Exchange[None]:
-    """Delete the newest version of a worksheet as it was read, which was never released."""
+    """Delete the newest version of a worksheet that was read, if it was never released."""
     checked((yield Request("DELETE", f"{BASE}{_PATH}/{sheet.id}", headers=_if_match(sheet))))
 
 

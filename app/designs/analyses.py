@@ -19,7 +19,7 @@ from templates.core.language.template import Template
 
 
 def measured_unit(reference: Reference) -> str:
-    """Return the unit of what is measured on a solid: `model.mass`, or `throw.torsion.stiffness`."""
+    """Return the unit of a measurement of a solid: `model.mass`, or `throw.torsion.stiffness`."""
     if reference.analysis is None:
         output = reference.output or ""
         return MEASURES.get(output) or BETWEEN[output.rpartition("_")[2]]
@@ -27,7 +27,7 @@ def measured_unit(reference: Reference) -> str:
 
 
 def is_measured(reference: Reference, declared: Iterable[str], cls: type[Template]) -> bool:
-    """Return whether a name within a model is a measure of its solid, or an output of a declared analysis."""
+    """Return whether a name within a model is a measurement of its solid or an output of an analysis."""
     if reference.analysis is None:
         return reference.output in MEASURES or reference.output in _further(cls)
     return reference.analysis in declared and reference.output in KINDS[reference.analysis]
@@ -42,7 +42,7 @@ def is_table(reference: Reference) -> bool:
 
 
 def axes_of(reference: Reference) -> int:
-    """Return the number of axes of an analysis' output: 2 of a table, 1 of a list, 0 of a single value."""
+    """Return the number of axes of an analysis' output: 2 for a table, 1 for a list, 0 for a single value."""
     if reference.analysis not in KINDS:
         return 0
     return 2 if reference.output in TABLES else int(reference.output in LISTS)
@@ -60,7 +60,7 @@ def _further(cls: type[Template]) -> Mapping[str, str]:
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
-    """Return the analyses that a model declares, as far as they can be made, and their faults."""
+    """Return the analyses that a model declares, as far as they are valid, and their faults."""
     if not model.analyses:
         return {}, []
     declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
@@ -75,9 +75,9 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
-    """Return a sentence on how to correct an unknown name that means an analysis.
+    """Return a remedy for an unknown name that refers to an analysis.
 
-    None if it does not mean one.
+    It is None if the name refers to no analysis.
     """
     model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
@@ -89,7 +89,7 @@ def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -
 
 
 def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
-    """Return the outputs of an analysis among what relations use of its model."""
+    """Return the outputs of an analysis that relations use."""
     return in_order(
         kind,
         {reference.output for reference in references if reference.analysis == kind and reference.output},

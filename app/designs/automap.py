@@ -1,12 +1,12 @@
-"""Proposals for model parameters that are not set, by kind, name and role of a quantity, with reasons.
+"""Proposals that link unset model parameters to values of a design, by kind, name and role, with reasons.
 
-A proposal is never applied unless its user says so. Three things must fit:
+A proposal is applied only if the user accepts it. Three things must fit:
 
-- the *kind*: both are measured alike, and a single value is not tied to a curve;
-- the *name*: the step's quantity is called as the parameter is, or as it is `also` known;
-- the *role*: a name of general words alone, such as `bore` or `width`, does not say of which part it is: the
-  bore of an engine is that of its cylinder. It counts only under the very name of the parameter, in a
-  template whose id shares a word with the model's.
+- the *kind*: both measure the same kind of quantity, and a single value is not linked to a curve;
+- the *name*: the step's quantity has the name of the parameter, or a name listed under `also`;
+- the *role*: a name of general words only, such as `bore` or `width`, does not say which part it belongs to:
+the bore of an engine is the bore of its cylinder. Such a name counts only if it equals the name of the
+parameter and the ids of template and model share a word.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ NO_SINGLE_VALUE = (Choice, Curve, Profile, Table, Text)
 
 
 def proposals(graph: Graph) -> list[Proposal]:
-    """Return one proposal for every unset model parameter that something fits."""
+    """Return one proposal for every unset model parameter that has a suitable value."""
     models = [block for block in graph.blocks.values() if block.is_model]
     candidates = (_proposal(graph, model, name) for model in models for name in model.cls.inputs)
     return [proposal for proposal in candidates if proposal is not None]
@@ -60,7 +60,7 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
 
 
 def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
-    """Yield the values of this name: outputs and inputs of steps first, then parameters of the design."""
+    """Yield the values with this name: outputs and inputs of steps first, then parameters of the design."""
     steps = [block for block in graph.blocks.values() if not block.is_model]
     fitting = [
         step for step in steps if _tells_its_part(called) or (called == name and _share_a_role(step, model))
@@ -72,7 +72,7 @@ def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Refer
 
 
 def _tells_its_part(called: str) -> bool:
-    """Return whether a name says of which part it is: `bearing_width` does, `width` does not."""
+    """Return whether a name identifies its part: `bearing_width` does, `width` does not."""
     return not GENERAL.issuperset(called.split("_"))
 
 
@@ -87,7 +87,7 @@ def _is_namesake(source: Reference, model: Block) -> bool:
 
 
 def _fits(graph: Graph, source: Reference, wanted: str) -> bool:
-    """Return whether a source is of the kind that is wanted, and a single value."""
+    """Return whether a source is a single value of the required kind."""
     if source.output is None:
         return misfit(graph.kinds[source.block], unit(wanted), source.block) is None
     cls = graph.blocks[source.block].cls

@@ -1,6 +1,6 @@
-"""The choices that relations test, `film.oil is "SAE 30"`: known from the document alone.
+"""Choices that relations test, as in `film.oil is "SAE 30"`: resolved from the document alone.
 
-A choice does not depend on other values. So its tests are decided when the network is built, and a test
+A choice does not depend on other values. So the network resolves each test when it is built, and a test
 creates no loop if a relation sets an input of the same step.
 """
 
@@ -33,9 +33,9 @@ class Choices:
     catalogues: Catalogues
 
     def decided(self, relation: Relation) -> Relation:
-        """Return a relation with words in place of the choices that it tests.
+        """Return a relation with its choices replaced by their words.
 
-        As it is, if a template is unknown.
+        It is unchanged if a template is unknown.
 
         Raises
         ------

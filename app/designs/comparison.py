@@ -1,4 +1,4 @@
-"""List all that differs between two stored revisions, of one design or of two; nothing is calculated."""
+"""List all differences between two stored revisions, of one design or of two; nothing is calculated."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Pair:
     number: int | None  # of the other side
 
     def rows(self, session: Session) -> tuple[RevisionRow, RevisionRow]:
-        """Return the older side and the newer one.
+        """Return the older and the newer revision.
 
-        Without numbers: of one design its newest revision with the one before, of two their newest ones.
+        Without numbers these are the last two revisions of one design, or the newest ones of two designs.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class _Parts:
 
 
 def _typed(document: JsonObject) -> dict[str, Json]:
-    """Return the parameters of a design as typed, and what its variants override."""
+    """Return the parameters of a design as typed, and the overrides of its variants."""
     variants = {f"variants.{name}": values for name, values in document.get("variants", {}).items()}
     return {**document["parameters"], **_named(variants)}
 
@@ -138,7 +138,7 @@ def _outputs(step: JsonObject) -> dict[str, Json]:
 
 
 def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObject]) -> dict[str, str]:
-    """Return the version of each step with the beginning of its code's digest, and its level."""
+    """Return the version of each step with the first digits of its code's digest, and its level."""
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})
@@ -176,7 +176,7 @@ def _verdicts(old: Mapping[str, VerdictOf], new: Mapping[str, VerdictOf]) -> lis
 
 
 def _measured(session: Session, row: RevisionRow) -> Iterator[tuple[str, Json]]:
-    """Yield the measures of a revision's solids, where they are built."""
+    """Yield the measurements of a revision's solids that are built."""
     for model in row.models:
         build = rows.build(session, model.build_key) if model.build_key else None
         if build is not None:

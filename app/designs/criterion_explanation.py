@@ -20,12 +20,12 @@ PREFIX = "criteria."  # before the name of a criterion that is called like a par
 
 
 def explain_any(document: Document, calculation: Calculation, name: str) -> JsonObject:
-    """Return the chain behind a parameter of a model, or behind the verdict of a criterion.
+    """Return the explanation of a model parameter, or of a criterion's verdict.
 
     Raises
     ------
     NotFound
-        If nothing is called so.
+        If there is no such name.
     """
     parameters, criteria = model_parameters(calculation), list(Verdicts(calculation).names())
     if (parameter := full_name(calculation, name)) in parameters:
@@ -37,7 +37,7 @@ def explain_any(document: Document, calculation: Calculation, name: str) -> Json
 
 
 def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
-    """Return the names that can be explained in a design, in words."""
+    """Return a sentence that lists the names in a design that can be explained."""
     kinds = {"parameters of models": parameters, "verdicts of criteria": criteria}
     there = [f"{kind} ({', '.join(names)})" for kind, names in kinds.items() if names]
     if not there:
@@ -46,9 +46,9 @@ def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
 
 
 def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:
-    """Return the chain behind a verdict: the values of both sides, each as far as it can be followed.
+    """Return the explanation of a verdict: the values of both sides, traced as far as possible.
 
-    A criterion whose step leaves out an output that it needs was not judged, and has no `criterion`.
+    A criterion whose step does not compute a required output was not judged, and has no `criterion`.
     """
     verdicts = Verdicts(calculation)
     name = name.removeprefix(PREFIX)
@@ -66,10 +66,7 @@ class _Sides:
         self.explainer = Explainer(calculation, depth=1)
 
     def all(self) -> Iterator[JsonObject]:
-        """Yield every name of the value, then every name of the limit.
-
-        A side without names stands for itself.
-        """
+        """Yield every name of the value, then of the limit; a side without names is yielded whole."""
         criterion = self.subject.criterion
         for link in self._side(criterion.value):
             yield {**link, "side": "value"}
@@ -84,15 +81,15 @@ class _Sides:
             yield {"name": relation.text, "kind": "written", **({"source": source} if source else {})}
 
     def _link(self, name: str) -> JsonObject:
-        """Return the values on which a name depends, or the person who gave it."""
+        """Return the values on which a name depends, or the user who gave it."""
         if name in self.subject.references:
             return self.explainer.of(self.subject.references[name])
         return self._limit(self.subject.criterion.limits_by_name[name])
 
     def _limit(self, limit: Limit) -> JsonObject:
-        """Return the origin of a limit that the calculation does not take.
+        """Return the origin of a limit that the calculation does not use.
 
-        The step, a row, a default, or nobody.
+        This is the step, a library row, a default, or none.
         """
         block = self.subject.block
         assert block is not None, "a criterion of the design declares no limits"

@@ -1,4 +1,4 @@
-"""Decisions about criteria: answered at once, or by a job where a level takes long."""
+"""Decide criteria of a design: answer at once, or start a job if a level takes long."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def read_budget(raw: Raw) -> float:
 def decided(
     asked: DecisionQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[DecisionQuestion, Decision]:
-    """Return the decision as far as it is known while its caller waits.
+    """Return the decision as far as it is known when the caller stops waiting.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def decided(
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
-    """Return the answer while the design itself is still calculated."""
+    """Return the answer while the design itself is still being calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
     return ClimbResult(judgements, (), (), (), "pending")
 

@@ -22,14 +22,14 @@ Numbers = NDArray[np.float64]
 
 
 def differing(old: Mapping[str, Json], new: Mapping[str, Json]) -> list[ValueDifference]:
-    """Return every quantity that is not the same, in the order of the newer ones."""
+    """Return every quantity that differs, in the order of the newer ones."""
     names = dict.fromkeys([*new, *old])
     pairs = ((name, old.get(name), new.get(name)) for name in names)
     return [_compared(*pair) for pair in pairs if not _is_same(pair[1], pair[2])]
 
 
 def differing_texts(old: Mapping[str, str], new: Mapping[str, str]) -> list[TextChange]:
-    """Return every text that is not the same, in the order of the newer ones."""
+    """Return every text that differs, in the order of the newer ones."""
     names = dict.fromkeys([*new, *old])
     changes = (TextChange(name=name, old=old.get(name), new=new.get(name)) for name in names)
     return [change for change in changes if change.old != change.new]
@@ -60,9 +60,9 @@ def _close(one: Numbers, other: Numbers) -> bool:
 
 
 def _parts(raw: Json) -> JsonObject:
-    """Return a value as plain parts.
+    """Return a value as a dictionary of parts.
 
-    What stands in no object, such as a text as typed, is the value itself.
+    A value that is not an object, such as a typed text, is the part `value`.
     """
     if isinstance(raw, Mapping):
         return {name: raw[name] for name in PARTS if raw.get(name) is not None}
@@ -82,7 +82,7 @@ def _is_same_kind(one: JsonObject, other: JsonObject) -> bool:
 
 
 def _numbers(parts: JsonObject) -> Numbers | None:
-    """Return the magnitudes in SI; None of a text, or of what has no unit."""
+    """Return the magnitudes in SI; None for a text, or without a unit."""
     scale = _unit_of(parts)
     if scale is None or isinstance(parts.get("value"), (str, bool)):
         return None
@@ -104,7 +104,7 @@ def _compared(name: str, old: Json, new: Json) -> ValueDifference:
 
 
 def _change(one: JsonObject, other: JsonObject, before: Numbers, after: Numbers) -> float | None:
-    """Return the relative change; None of temperatures, which have no zero that means anything here."""
+    """Return the relative change; None for temperatures, whose zero is arbitrary."""
     if _is_temperature(one) or _is_temperature(other):
         return None
     scale = _largest(before)

@@ -62,7 +62,7 @@ class Step(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Leave out empty limits, so that a document without limits has one form."""
+        """Remove empty limits, so that documents without limits have one form."""
         return _without_nothing(plain(self), "limits")
 
 
@@ -80,7 +80,7 @@ class Model(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Leave out empty analyses, so that a document without analyses has one form."""
+        """Remove empty analyses, so that documents without analyses have one form."""
         return _without_nothing(plain(self), "analyses")
 
 
@@ -150,7 +150,7 @@ class Document(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Leave out empty criteria and variants, so that a document without them has one form."""
+        """Remove empty criteria and variants, so that documents without them have one form."""
         return _without_nothing(plain(self), "criteria", "variants")
 
     @model_validator(mode="before")
@@ -179,12 +179,12 @@ class Document(Bounded):
 
 
 def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
-    """Return an object without those of the names that hold nothing."""
+    """Return an object without its empty members."""
     return {name: value for name, value in plain.items() if value or name not in names}
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that the steps and models of a document set, as far as it has the shape of one."""
+    """Return the number of values that the steps and models of a document set, even if it is malformed."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -193,14 +193,14 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that the variants of a document override, as far as it has the shape of one."""
+    """Return the number of values that the variants of a document override, even if it is malformed."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
 
 
 def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
-    """Return a document with `model` as an entry of `models`; as it is without `model`, or with both."""
+    """Return a document with `model` moved into `models`; unchanged without `model`, or if it has both."""
     if "model" not in raw or "models" in raw:
         return raw
     rest = {key: value for key, value in raw.items() if key != "model"}
@@ -228,9 +228,9 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """Return whether a patch continues within the value.
+    """Return whether a patch is merged into the value.
 
-    In the document, its groups, its steps and models, and their parts.
+    This holds for the document, its groups, its steps and models, and their parts.
     """
     match path:
         case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):

@@ -1,4 +1,4 @@
-"""The dependencies in a design: its blocks in columns, its relations, and the names that these may use."""
+"""The dependencies in a design: blocks in columns, relations, and the names that relations may use."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def network_of(graph: Graph) -> DesignNetwork:
 def _columns(graph: Graph) -> dict[str, int]:
     """Return the column of every parameter and block, in the order of calculation.
 
-    A block that uses an input of a later one, or what an iteration assumes, does not wait for it.
+    A block does not wait for a later block whose input it uses, or for the assumed value of an iteration.
     """
     columns: dict[str, int] = {}
     for name in _ordered(graph):
@@ -70,10 +70,7 @@ def _columns(graph: Graph) -> dict[str, int]:
 
 
 def _ordered(graph: Graph) -> Iterator[str]:
-    """Yield the names of parameters and blocks as the network orders them.
-
-    As written where it has no order.
-    """
+    """Yield the names of parameters and blocks in the network's order; as written if there is none."""
     nodes = graph.order or (*graph.parameters.values(), *graph.blocks.values())
     for node in nodes:
         if isinstance(node, Block) or (isinstance(node, Cell) and node.declared is None):
@@ -81,7 +78,7 @@ def _ordered(graph: Graph) -> Iterator[str]:
 
 
 def _cells(graph: Graph, name: str) -> list[Cell]:
-    """Return the cells of a block; of a parameter itself."""
+    """Return the cells of a block, or the parameter itself."""
     block = graph.blocks.get(name)
     return list(block.cells.values()) if block else [graph.parameters[name]]
 
@@ -93,7 +90,7 @@ def _kind(graph: Graph, name: str) -> Literal["parameter", "step", "model"]:
 
 
 def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
-    """Yield every name that every relation uses, where there is such a block."""
+    """Yield every name in every relation that refers to an existing block."""
     for cell in graph.cells():
         target = cell.reference.block
         for name, source in _sources(cell).items():
@@ -103,12 +100,12 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
 
 
 def _sources(cell: Cell) -> Mapping[str, Reference]:
-    """Return the references of a cell: quantities, and the choices that it tests."""
+    """Return the references of a cell: quantities, and tested choices."""
     return {**cell.uses, **cell.tests}
 
 
 def _text(cell: Cell) -> str:
-    """Return the relation as typed; of a list, its first."""
+    """Return the relation as typed; for a list its first one."""
     texts = cell.raw if isinstance(cell.raw, list) else [cell.raw]
     return next(str(text) for text in texts if is_relation(text))
 
@@ -141,7 +138,7 @@ def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
 
 
 def _words(measure: Reference) -> str:
-    """Return a measure in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
+    """Return a measurement in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
     origin = f"{measure.analysis} analysis" if measure.analysis else "measured"
     return f"{measure.own_name.replace('_', ' ')}, {origin}"
 

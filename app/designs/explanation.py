@@ -34,12 +34,12 @@ class ExplanationQuestion:
 def explanation(
     asked: ExplanationQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ExplanationQuestion, Explanation]:
-    """Return the explanation, unless its caller does not wait for the steps of the design.
+    """Return the explanation, unless the caller does not wait for the steps of the design.
 
     Raises
     ------
     NotFound
-        If there is no such design, or nothing in it is called so.
+        If there is no such design, or no such name in it.
     """
     row, document, calculation = calculated_revision(asked, database, catalogues)
     if calculation.deferred:
@@ -52,12 +52,12 @@ def explained(
 ) -> Explanation:
     """Explain where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
 
-    Quantities and slopes are in a system of units; what was typed stays as it is.
+    Quantities and slopes are in a system of units; typed values are not converted.
 
     Raises
     ------
     NotFound
-        If nothing is called so.
+        If there is no such name.
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
     subject = Verdicts(calculation).subject(chain.name) if chain.kind == "criterion" else None

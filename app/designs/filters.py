@@ -1,4 +1,4 @@
-"""A filter on the list of designs, and the SQL conditions that it stands for.
+"""A filter on the list of designs, and its SQL conditions.
 
 The database walks along the designs, newest first, until a page is full. A filter therefore costs time in
 proportion to the number of designs that it skips, and memory for one page.
@@ -70,7 +70,7 @@ def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[bool]:
-    """Return whether a step of the revision uses a template; a table of JSON values is made of its steps."""
+    """Return whether a step of the revision uses a template; its steps are read as a table of JSON values."""
     steps = func.json_each(_document(session)["steps"]).table_valued(column("value", JSON), name="step")
     step = steps.c.value
     query = select(1).select_from(steps).where(step["template"].as_string() == id)
@@ -80,7 +80,7 @@ def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[b
 
 
 def _document(session: Session) -> ColumnElement[JSON]:
-    """Return the document, which is stored as text, as JSON. SQLite reads JSON from text.
+    """Return the stored document as JSON.
 
     PostgreSQL has a type.
     """

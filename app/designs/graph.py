@@ -1,7 +1,7 @@
-"""Read a document as its user sent it, build its network, and check that before anything is calculated.
+"""Read a document as its user sent it, build its network, and check it before any calculation.
 
-Every check returns what it finds; nothing is changed on the way. The units of relations are checked before
-any value is known.
+Every check returns its findings and changes nothing. The units of relations are checked before any value is
+known.
 """
 
 from __future__ import annotations
@@ -30,11 +30,13 @@ from app.designs.network import (
     read_demands,
     unknown_names_in,
 )
+from app.designs.sizes import in_declared_sizes
 from app.plain import Json, Raw
 from app.reference import Reference
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
+from templates.core.language.intake import other_sizes
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
@@ -52,9 +54,9 @@ __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
 
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
-    """Return the network of a document, and everything that is wrong with it before any value is known.
+    """Return the network of a document, and all faults that can be found before any value is known.
 
-    A graph with faults is good for a preview of what is right, not for a save.
+    A graph with faults can be used for a preview of its valid parts, not for a save.
     """
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
@@ -90,7 +92,7 @@ def _graph(
 
 
 def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[Fault]]:
-    """Return the parameters and blocks of a document, and what of them cannot be read."""
+    """Return the parameters and blocks of a document, and the faults of those that cannot be read."""
     faults: list[Fault] = []
     parameters: dict[str, Cell] = {}
     choices = Choices(document, catalogues)
@@ -109,7 +111,7 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
 def _cell(
     choices: Choices, reference: Reference, name: str, raw: Raw, declared: Input | None = None
 ) -> tuple[Cell, list[Fault]]:
-    """Return a cell with those of its relations that can be read, and the faults of the others."""
+    """Return a cell with its readable relations, and the faults of the others."""
     if isinstance(raw, list):
         texts = [item for item in raw if is_relation(item)]
     else:
@@ -130,7 +132,7 @@ def _cell(
 
 
 def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
-    """Yield every step and every model, None where its template is unknown, with its faults."""
+    """Yield every step and every model with its faults; the block is None if its template is unknown."""
     for name, step in choices.document.steps.items():
         yield _step(choices, name, step)
     for name, model in choices.document.models.items():
@@ -152,7 +154,7 @@ def _step(choices: Choices, name: str, step: Step) -> tuple[Block | None, list[F
 def _related_limits(
     choices: Choices, name: str, step: Step, cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """Return the limits that a step gives by relations; names that are not limits are left to `_limits`."""
+    """Return the limits of a step that are set by relations; other names are left to `_limits`."""
     cells: dict[str, Cell] = {}
     faults: list[Fault] = []
     if not step.limits:
@@ -171,7 +173,7 @@ def _related_limits(
 def _limits(
     name: str, raw: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits that a step gives by quantities, or by a row of the library."""
+    """Return the limits of a step that are set by quantities, or by a library row."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -200,7 +202,7 @@ def _class(
 def _cells(
     choices: Choices, block: str, values: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """Return the cells of a block; names that its template does not know are faults."""
+    """Return the cells of a block; unknown names are faults."""
     cells: dict[str, Cell] = {}
     unknown = unknown_names(filterfalse(cls.inputs.__contains__, values), cls.inputs, "input")
     faults = [fault.within(block) for fault in unknown]
@@ -214,10 +216,7 @@ def _cells(
 
 
 def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
-    """Return the node behind each name that a cell uses, None if there is none.
-
-    An assumed value needs none.
-    """
+    """Return the node of each name that a cell uses, None if there is none; assumed values need none."""
     return {
         reference: network.node(reference)
         for reference in cell.uses.values()
@@ -229,7 +228,7 @@ Links = Mapping[Cell, Mapping[Reference, Node | None]]
 
 
 def _unknown(network: Network, links: Links) -> Iterator[Fault]:
-    """Yield names that mean nothing, in relations and in iterations."""
+    """Yield unknown names in relations and in iterations."""
     models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
     unknown: list[tuple[str, str]] = []  # where, and what
     for cell, linked in links.items():
@@ -255,7 +254,7 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
 
 
 def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
-    """Return the nodes from which each node follows directly."""
+    """Return the nodes on which each node depends directly."""
     sources: dict[Node, tuple[Node, ...]] = dict.fromkeys(network.cells(), ())
     for cell, linked in links.items():
         sources[cell] = tuple(dict.fromkeys(filter(None, linked.values())))
@@ -293,7 +292,7 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
 
 
 def _items(document: Document) -> Iterator[Raw]:
-    """Return every value of a document, and every item of those that are lists."""
+    """Return every value of a document, and every item of lists."""
     groups = [document.parameters]
     groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
     groups += [model.parameters for model in document.models.values()]
@@ -303,14 +302,14 @@ def _items(document: Document) -> Iterator[Raw]:
 
 
 def has_relation(raw: Raw) -> bool:
-    """Return whether a value is a relation, or a list that holds one."""
+    """Return whether a value is a relation, or a list that contains one."""
     return any(map(is_relation, raw)) if isinstance(raw, list) else is_relation(raw)
 
 
 def ordered(
     network: Network, sources: Mapping[Node, tuple[Node, ...]]
 ) -> tuple[tuple[Node, ...], list[Fault]]:
-    """Return all nodes, each after those from which it follows; or none, and a fault that names the loop."""
+    """Return all nodes in dependency order; or none, and a fault that names the loop."""
     try:
         return tuple(TopologicalSorter(sources).static_order()), []
     except CycleError as error:
@@ -322,7 +321,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Yield the nodes of a cycle (the last is the first) by the names that its relations use."""
+    """Yield the nodes of a cycle (the last is the first) with the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name
@@ -355,7 +354,7 @@ def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Ki
 
 
 def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
-    """Return the kind of a cell, if its relations fit what it sets."""
+    """Return the kind of a cell if its relations fit the declared unit."""
     if not cell.relations:
         return kind_of(read_any(cell.raw).unit, cell.name)
     used = {
@@ -387,7 +386,7 @@ def read_document(raw: Mapping[str, Raw]) -> Document:
     Raises
     ------
     InvalidInputs
-        With everything that has not the shape of a design.
+        With all parts that do not have the form of a design.
     """
     try:
         return Document.model_validate(raw)
@@ -401,10 +400,27 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """Return the document with every version pinned.
+    """Return the document with fixed versions, and every size by the name that its step declares.
 
-    Latest is resolved once, when a step or model comes in.
+    Both are resolved once, when a step or model is added.
     """
+    pinned = _pinned(document, catalogues)
+    pairs = {f"{step}.{other}": f"{step}.{name}" for step, other, name in _other_sizes(pinned, catalogues)}
+    return in_declared_sizes(pinned, pairs) if pairs else pinned
+
+
+def _other_sizes(document: Document, catalogues: Catalogues) -> Iterator[tuple[str, str, str]]:
+    """Yield step, name and declared name of each size that a document gives by another name."""
+    overridden = {place for overrides in document.variants.values() for place in overrides}
+    for name, step in document.steps.items():
+        cls, _ = _class(catalogues.templates, name, step.template, step.version)
+        for other, declared in other_sizes(cls) if cls else ():
+            if other in step.inputs or f"{name}.{other}" in overridden:
+                yield name, other, declared
+
+
+def _pinned(document: Document, catalogues: Catalogues) -> Document:
+    """Return the document with every version pinned."""
     versions = [step.version for step in document.steps.values()]
     versions += [model.version for model in document.models.values()]
     if all(isinstance(version, int) for version in versions):
@@ -425,7 +441,7 @@ def starts(document: Document) -> dict[Reference, float]:
     Raises
     ------
     InvalidInputs
-        If a start is not a quantity of its measure's kind.
+        If a starting value is not a quantity of its measurement's kind.
     """
     faults, values = list[Fault](), dict[Reference, float]()
     for iteration in document.iterations:
@@ -439,7 +455,7 @@ def starts(document: Document) -> dict[Reference, float]:
 
 
 def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
-    """Return the values [SI] with which the iterations of a revision ended, by its results."""
+    """Return the final values [SI] of the iterations of a revision, from its results."""
     rounds = (results or {}).get("iterations", [])
     values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
     return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}

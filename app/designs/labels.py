@@ -37,12 +37,12 @@ class LabelsIn(Bounded):
 
 
 def key_of(tag: str) -> str:
-    """Return the common key of all spellings of a tag: `Main  bearing` and `main bearing` are one."""
+    """Return the common key of all spellings of a tag: `Main  bearing` and `main bearing` are the same."""
     return clean(tag).casefold()
 
 
 def clean(tag: str) -> str:
-    """Return a tag as it is kept: composed letters, single blanks."""
+    """Return a tag in its stored form: composed letters, single blanks."""
     return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
@@ -91,7 +91,7 @@ def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
 
 
 def _record(session: Session, id: str, before: Labels, after: Labels) -> None:
-    """Record what changed, if anything did."""
+    """Record a change, if there is one."""
     if before.tags != after.tags:
         record(session, "design.tag", f"designs/{id}")
     if before.archived != after.archived:

@@ -1,8 +1,8 @@
-"""The network of a design: which value depends on which.
+"""The network of a design: the dependencies between its values.
 
-Its nodes are cells, which are the values that a user wrote (`scale`, `film.radial_load`); blocks, which are
-steps and models; solids, which are models when built; and analyses of solids. A block depends on its cells,
-and its outputs depend on the block. Measurements depend on the solid.
+Its nodes are cells (the values that a user wrote, such as `scale` or `film.radial_load`), blocks (steps and
+models), solids (built models) and analyses of solids. A block depends on its cells, and its outputs depend on
+the block. Measurements depend on the solid.
 
 Criteria name values of the network. A name without a dot is a criterion of the design itself, which needs
 `require`. `film.pressure` is the criterion `pressure` of the template of step `film`: the design may replace
@@ -56,12 +56,12 @@ class Cell:
 
     @cached_property
     def tests(self) -> Mapping[str, Reference]:
-        """Return the choices that its relations test; these are decided already."""
+        """Return the choices that its relations test; these are already resolved."""
         return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
 
     @cached_property
     def relations_by_text(self) -> Mapping[str, Relation]:
-        """Return its relations by their text, as the items of a list have it."""
+        """Return its relations by text, in the order of list items."""
         return {relation.text: relation for relation in self.relations}
 
 
@@ -147,7 +147,7 @@ class Network:
             yield from block.related.values()
 
     def cell(self, reference: Reference) -> Cell | None:
-        """Return the cell of this name."""
+        """Return the cell with this name."""
         if reference.output is None:
             return self.parameters.get(reference.block)
         block = self.blocks.get(reference.block)
@@ -158,7 +158,7 @@ class Network:
         return block.cells.get(reference.member)
 
     def node(self, reference: Reference) -> Node | None:
-        """Return the node from which a name in a relation takes its value; None if nothing is named so."""
+        """Return the node that gives a name in a relation its value; None if there is none."""
         block, output = self.blocks.get(reference.block), reference.output
         if block is None or output is None:
             return self.parameters.get(reference.block) if output is None else None
@@ -193,10 +193,7 @@ class Network:
         return {block: tuple(references) for block, references in blocks.items()}
 
     def computed(self, step: Block) -> tuple[str, ...] | None:
-        """Return the outputs that a step computes.
-
-        All (None), or those that it names and those that are used.
-        """
+        """Return the outputs that a step computes: all (None), or those named and those used."""
         if step.outputs is None:
             return None
         linked = (reference.member for reference in self.used.get(step.name, ()))
@@ -212,7 +209,7 @@ class Network:
         return declared.meaning.unit if declared else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit by which it is known what may be typed for a name inside a block."""
+        """Return the unit that decides which units a user may type for a name inside a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.accepted if declared else measured_unit(reference)
 
@@ -227,7 +224,7 @@ def limits_of(cls: type[Template]) -> dict[str, Limit]:
 
 
 def _declared(block: Block, reference: Reference) -> Input | Formula[Template] | None:
-    """Return the input or formula of a block that a reference names; None of what is measured."""
+    """Return the input or formula of a block that a reference names; None for a measurement."""
     if reference.analysis is not None or reference.output is None:
         return None
     return block.cls.inputs.get(reference.output) or block.cls.formulas.get(reference.output)
@@ -252,7 +249,7 @@ class Subject:
 
     @cached_property
     def references(self) -> Mapping[str, Reference]:
-        """Return the values that it names, without limits that follow from nothing."""
+        """Return the values that it names, without limits that have no relation."""
         if self.block is None:
             return self.demand.uses if self.demand else {}
         limits = self.criterion.limits_by_name
@@ -266,7 +263,7 @@ class Subject:
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 
     def is_due(self, graph: Graph) -> bool:
-        """Return whether judging it computes no output that the design leaves out."""
+        """Return whether judging it needs no output that the design leaves out."""
         if self.block is None or self.block.is_model:
             return True
         computed = graph.computed(self.block)
@@ -275,7 +272,7 @@ class Subject:
 
 
 def subjects(graph: Graph) -> dict[str, Subject]:
-    """Return all criteria by their names; one that the design writes again replaces that of a template."""
+    """Return all criteria by name; a criterion of the design replaces that of a template."""
     by_name: dict[str, Subject] = {}
     for block in graph.blocks.values():
         for criterion in block.cls.declared_criteria:
@@ -288,7 +285,7 @@ def subjects(graph: Graph) -> dict[str, Subject]:
 
 
 def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[str, Demand], list[Fault]]:
-    """Return the criteria of a document with the names that they use, and what of them cannot be read."""
+    """Return the criteria of a document with the names that they use, and the faults of unreadable ones."""
     demands: dict[str, Demand] = {}
     faults: list[Fault] = []
     for name, written in document.criteria.items():
@@ -302,14 +299,14 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """Return whether a criterion belongs to a step of an unknown template, which is a fault of its own."""
+    """Return whether a criterion belongs to a step with an unknown template, which is a separate fault."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks
 
 
 def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, Block]) -> None:
-    """Refuse a criterion of no template, and one of the design that demands nothing."""
+    """Refuse a criterion that no template has, and a criterion of the design without `require`."""
     criterion = Reference.parse(name)
     if criterion.output is None:
         if written.require is None:
@@ -321,7 +318,7 @@ def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, 
     if criterion.member not in names:
         there = [f"{b.name}.{c.name}" for b in blocks.values() for c in b.cls.declared_criteria]
         detail = unknown_name(name, there, "criterion").detail if there else "no template here has criteria"
-        raise FaultyText("unknown_name", f"{detail}; a criterion of the design has no dot in its name")
+        raise FaultyText("unknown_name", f"{detail}; the name of a design's criterion must not contain a dot")
 
 
 def _uses(require: str | None) -> dict[str, Reference]:
@@ -332,9 +329,9 @@ def _uses(require: str | None) -> dict[str, Reference]:
 
 
 def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[Fault]:
-    """Return a fault for every name in a criterion of the design that means no number.
+    """Return a fault for every name in a criterion of the design that is not a number.
 
-    `unread` are blocks whose template is not known, which is a fault of its own.
+    `unread` are blocks with an unknown template, which is a separate fault.
     """
     unknown = [
         (demand.name, used)
@@ -364,7 +361,7 @@ def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[s
 
 
 def _is_value(network: Network, reference: Reference) -> bool:
-    """Return whether a name means a number: no word, and no table."""
+    """Return whether a name refers to a number, not to a word or a table."""
     if reference in network.assumed:
         return True
     if network.node(reference) is None or is_table(reference):
@@ -386,7 +383,7 @@ def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Cri
 
 
 def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> NameDescription:
-    """Return the unit in which a value is shown, and its words."""
+    """Return the display unit and the words of a value."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
         return NameDescription(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
@@ -397,5 +394,5 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:
-    """Return the fault of a criterion, by its place in the document."""
+    """Return the fault of a criterion, located in the document."""
     return error.fault(f"criteria.{name}")

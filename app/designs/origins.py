@@ -1,4 +1,4 @@
-"""Trace values of a design to their origins: the literal quantities behind them, the solids on the way."""
+"""Trace values of a design to their origins: the typed quantities, and the solids in between."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from templates.core.errors import FaultyText
 
 
 def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> list[Cell]:
-    """Return the single quantities as typed that values follow from, each formula by what it uses itself.
+    """Return the single typed quantities on which values depend, tracing each formula separately.
 
-    What acts through a measure of a solid is among them.
+    Quantities that act through a measurement of a solid are included.
     """
     graph, cells = calculation.graph, list[Cell]()
     left, seen = [*starts][::-1], set[Reference]()
@@ -34,7 +34,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
-    """Return the cells of a block that an input or output of it follows from; all, if a measure does."""
+    """Return the cells of a block on which its input or output depends; all for a measurement."""
     block = graph.blocks[reference.block]
     if not is_member(graph, reference):
         return [cell.reference for cell in block.cells.values()]
@@ -52,7 +52,7 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
 def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
     """Return the cells that act on values through a solid, each with the model of one such solid.
 
-    A step counts as a whole, as it is calculated: all its inputs are needed.
+    A step counts as a whole, because its calculation needs all its inputs.
     """
     cells: dict[Reference, Block] = {}
     left, seen = [*_needs(graph, wanted).waiting], set[str]()
@@ -67,7 +67,7 @@ def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
 
 
 def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference, float]:
-    """Return the measures of solids [SI] that values follow from, as far as they are known; no tables."""
+    """Return the known measurements of solids [SI] on which values depend, without tables."""
     measures: dict[Reference, float] = {}
     for reference in _needs(calculation.graph, wanted).waiting:
         if is_table(reference):

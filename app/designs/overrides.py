@@ -20,12 +20,12 @@ WITH = "with"
 
 
 def changed(document: Document, catalogues: Catalogues, others: Overrides, unknown: str) -> Document:
-    """Return the document with other values; nothing of the original changes.
+    """Return the document with replaced values; the original is not changed.
 
     Raises
     ------
     InvalidInputs
-        With places that the design does not have, values that do not fit them, and the unknown itself.
+        If a place does not exist, a value does not fit its place, or the unknown itself is given.
     """
     graph, faults = build_graph(document, catalogues)
     raise_if(faults)
@@ -39,16 +39,13 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
         yield from unknown_names(absent, list(places(graph)), "parameter or input")
     for name, raw in others.items():
         if name == unknown:
-            yield Fault(name, "conflict", f"{name} is the unknown that is solved for; do not give it a value")
+            yield Fault(name, "conflict", f"{name} is the unknown of `solve`; do not give it a value")
         elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
             yield from _misfit(graph, name, raw)
 
 
 def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
-    """Yield a fault if a value is none of its place.
-
-    A word that is not an option, a quantity of another kind.
-    """
+    """Yield a fault if a value does not fit its place: a word that is not an option, or a wrong quantity."""
     reference = Reference.parse(name)
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None

@@ -21,9 +21,9 @@ DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by
 
 
 def explain(calculation: Calculation, parameter: str) -> JsonObject:
-    """Return the chain behind a model parameter, as nested `because`; what was explained once is named only.
+    """Return the explanation of a model parameter as nested `because`; repeated parts are only named.
 
-    A chain is followed over 50 links; what lies `deeper` has its value only.
+    A chain is followed over 50 links; `deeper` values are not explained.
     """
     return Explainer(calculation).of(Reference.parse(parameter))
 
@@ -34,7 +34,7 @@ def model_parameters(calculation: Calculation) -> list[str]:
 
 
 def full_name(calculation: Calculation, name: str) -> str:
-    """Return the name with its model, where there is one model: `inner_diameter` is enough then."""
+    """Return the name with its model; with a single model, `inner_diameter` is enough."""
     models = _models(calculation)
     return f"{models[0].name}.{name}" if len(models) == 1 and name in models[0].cls.inputs else name
 
@@ -93,7 +93,7 @@ class Explainer:
         return {"kind": kind, "template": json_values.identity(cls), **paper, "because": because}
 
     def _value(self, reference: Reference) -> JsonObject | None:
-        """Return the value with its unit; null while it waits for a solid or is not set."""
+        """Return the value with its unit; null while it is pending or unset."""
         if reference.output is None:
             kind = self.graph.kinds[reference.block].unit
             column = self.calculation.values.get(reference.block)
@@ -116,13 +116,13 @@ class Explainer:
 
 
 def _on_paper(cell: Cell) -> JsonObject:
-    """Return a relation as LaTeX and MathML, where it is more than a name."""
+    """Return a relation as LaTeX and MathML, if it is more than a name."""
     latex = relation_latex(cell.raw)
     return {"latex": latex, "mathml": mathml(latex)} if latex else {}
 
 
 def shown(si: Value, unit_name: str) -> JsonObject:
-    """Return a value [SI] in a unit; null where there is none."""
+    """Return a value [SI] in a unit; null if missing."""
     values = np.asarray(unit(unit_name).from_si(si), dtype=float)
     plain = values.astype(object)
     plain[~np.isfinite(values)] = None

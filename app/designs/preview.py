@@ -56,13 +56,12 @@ def preview(
 ) -> Reply[PreviewRequest, Preview]:
     """Return old and new values for a patch of a design; nothing is saved or built.
 
-    The answer is incomplete where something depends on deferred steps.
+    The answer is incomplete if values depend on deferred steps.
 
     Raises
     ------
     InvalidInputs
-        With everything that is wrong, except relations of model parameters with wrong units: their status
-        says so.
+        With all faults, except relations of model parameters with wrong units, which appear in their status.
     """
     with database.read() as session:
         head = (
@@ -104,7 +103,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 def _variants(
     database: Database, catalogues: Catalogues, document: Document, base: Calculation
 ) -> list[Outcome]:
-    """Return the variants of a document, refused as a save refuses them."""
+    """Return the variants of a document, with the same refusals as a save."""
     outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
     raise_if(faults)
     return outcomes
@@ -144,7 +143,7 @@ def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:
 
 
 def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
-    """Return the outputs of analyses that relations use, by their names there; null while pending."""
+    """Return the outputs of analyses that relations use, by name; null while pending."""
     outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
@@ -164,7 +163,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 
 def _values(new: Calculation) -> dict[str, Shown]:
-    """Return the values of the design's parameters in SI, without those that wait for a solid."""
+    """Return the values of the design's parameters in SI, without pending ones."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {name: Shown(**shown(new.values[name].value, new.graph.kinds[name].unit)) for name in names}
 

@@ -49,7 +49,7 @@ class DesignQuestion:
 def in_a_process(
     name: str, answer: type[A], answered: Callable[[DesignTask, int, str], A]
 ) -> Kind[DesignQuestion, A]:
-    """Return a kind of questions that are calculated in the pool as a whole.
+    """Return a kind of question that is calculated in the pool as a whole.
 
     `answered` answers a body [JSON text] about a revision of a design, by its number and in SI units.
     """
@@ -95,10 +95,10 @@ R = TypeVar("R", bound=AboutRevision)
 
 
 def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, Iterable[str]]:
-    """Return a question with its revision, and what the answer follows from.
+    """Return a question with its revision, and the data on which the answer depends.
 
-    That is the code of the versions that the revision uses, and the number of the design's newest event: a
-    solid that is built for it makes one.
+    These are the code of the versions that the revision uses, and the number of the design's newest event,
+    which changes when a solid is built.
 
     Raises
     ------
@@ -118,9 +118,9 @@ def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, It
 def calculated_revision(
     asked: AboutRevision, database: Database, catalogues: Catalogues
 ) -> tuple[RevisionRow, Document, Calculation]:
-    """Return the revision of a question, the newest if it names none, and its document as calculated.
+    """Return the calculated revision of a question, by default the newest, and its document.
 
-    Iterations stand where they ended. Faults are left in the calculation.
+    Iterations have their final values. Faults stay in the calculation.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def calculated_revision(
 
 
 def _digests(catalogue: Catalogue[T], versions: Iterable[tuple[str, object]]) -> Iterator[str]:
-    """Yield the digests of versions; of one that there is no longer, that it is unknown."""
+    """Yield the digests of versions; for a version that no longer exists, a mark."""
     for id, version in versions:
         assert isinstance(version, int), "a revision pins every version"
         try:

@@ -15,7 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if, starts
 from app.designs.results import Outcome
-from app.designs.service import REGENERATE, CalculationCache, Prepared
+from app.designs.service import REGENERATE, CalculationCache, DocumentCalculation
 from app.designs.variants.checks import row_faults
 from app.designs.variants.solids import Describe, VariantSolids, plain_problem
 from app.designs.variants.together import Available, together
@@ -70,7 +70,7 @@ class Regeneration:
         Raises
         ------
         JobFailed
-            With the problem, for anything that the design itself brings about.
+            With the problem, for every fault of the design itself.
         """
         assert job.design is not None
         assert job.revision is not None
@@ -101,19 +101,21 @@ class Regeneration:
             changed = repository.changed_since_good(session, job.design, job.revision)
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
-    def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
-        """Return a revision's document and its calculation: that of its save, or calculated again."""
+    def _prepared(self, plain: Mapping[str, Json]) -> DocumentCalculation:
+        """Return a revision's document and its calculation, from its save or calculated again."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        return Prepared(document, self._calculated(graph, starts(document)))
+        return DocumentCalculation(document, self._calculated(graph, starts(document)))
 
     def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
         return calculate(graph, *self._solids, assumed)
 
-    def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
+    def _settled(
+        self, prepared: DocumentCalculation, context: JobContext
+    ) -> tuple[Calculation, list[JsonObject]]:
         """Return the calculation with all solids built and iterations converged, and its rounds."""
         document, calculation = prepared
         rounds = list[JsonObject]()
@@ -135,7 +137,7 @@ class Regeneration:
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
-        """Return the variants of a document, each with its solids or with the reason why it has none."""
+        """Return the variants of a document, each with its solids or with the reason of a failure."""
         if not document.variants:
             return []
         raise_if(row_faults(base))
@@ -143,13 +145,13 @@ class Regeneration:
         settling = VariantSolids(self.builds, self._settle, self.describe, context)
         return settling.settled(together(document, available))
 
-    def _settle(self, prepared: Prepared, context: JobContext) -> Calculation:
+    def _settle(self, prepared: DocumentCalculation, context: JobContext) -> Calculation:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """Return the calculation once all its models are built and all used analyses are done.
+        """Return the calculation once all its models are built and all used analyses are finished.
 
-        Models may wait for each other's measures, so each round makes what can be made.
+        Models may wait for each other's measurements, so each round builds the models that can be built.
         """
         while True:
             raise_if(calculation.faults)
@@ -165,7 +167,7 @@ class Regeneration:
             calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
-        """Analyse every solid whose analysis is waited for; whether there was any."""
+        """Analyse every solid that needs it; return whether there was any."""
         waiting = calculation.waiting()
         for node in waiting:
             name, kind = node.model.name, node.kind

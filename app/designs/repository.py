@@ -61,7 +61,7 @@ def design(session: Session, id: str) -> DesignRow:
 
 
 def locked(session: Session, id: str) -> DesignRow:
-    """Return a design that is not deleted, as it is now; no other unit changes it before the end of this one.
+    """Return the present state of a design that is not deleted; lock it until the end of this unit.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def locked(session: Session, id: str) -> DesignRow:
 
 
 def heads(session: Session, rows: Sequence[DesignRow]) -> dict[str, RevisionRow]:
-    """Return the newest revision of each design by the design's id, without results; read at once."""
+    """Return the newest revision of each design by the design's id, without results."""
     places = [(row.id, row.head) for row in rows]
     query = select(RevisionRow).where(tuple_(RevisionRow.design_id, RevisionRow.number).in_(places))
     return {row.design_id: row for row in session.scalars(query.options(_LEAN))}
@@ -116,7 +116,7 @@ def head(session: Session, id: str) -> RevisionRow:
 
 
 def lean_head(session: Session, id: str) -> RevisionRow:
-    """Return the newest revision of a design, as `lean` has it."""
+    """Return the newest revision of a design, with results as in `lean`."""
     return lean(session, id, design(session, id).head)
 
 
@@ -190,7 +190,7 @@ def newest_number(session: Session, id: str) -> int:
 def designs(
     session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
 ) -> list[DesignRow]:
-    """Return one page of the designs that a filter selects, newest first, and one more if there are more."""
+    """Return one page of the designs that a filter selects, newest first, plus one if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
     if wanted is not None:
         query = query.where(*conditions(session, wanted))
@@ -200,7 +200,7 @@ def designs(
 
 
 def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
-    """Return one page of a design's revisions, newest first, and one more if there are more."""
+    """Return one page of a design's revisions, newest first, plus one revision if there are more."""
     query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
     query = query.options(_LEAN)
     if before is not None:
@@ -209,24 +209,21 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 
 def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
-    """Return a new design with its first revision, `at` the time given or now.
-
-    Its id and the revision's number.
-    """
+    """Create a design with its first revision, `at` a time or now; return its id and revision number."""
     id, created = new_id(session), at or now()
     statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)
 
 
 def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
-    """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
+    """Append a revision to a design whose newest one is `base`, `at` a time or now; return its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
 
     Raises
     ------
     StaleRevision
-        If there is a newer revision by now.
+        If there is already a newer revision.
     NotFound
         If there is no such design, or it is deleted.
     """
@@ -279,7 +276,7 @@ def attach(session: Session, id: str, number: int, results: JsonObject, models: 
 
 
 def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
-    """Say in a revision why its regeneration failed."""
+    """Record in a revision why its regeneration failed."""
     row = revision(session, id, number)
     row.state, row.problem = "failed", problem
 
@@ -326,7 +323,7 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Standing:
+class RegenerationState:
     """The state of a design's regeneration, and the newest event that it includes."""
 
     number: int
@@ -336,13 +333,13 @@ class Standing:
 
 
 def note_revision(session: Session, events: Events, design: str, revision: int, state: str) -> None:
-    """Note a new revision and its state, in the unit that writes it."""
+    """Record a new revision and its state as an event, in the unit that writes it."""
     topic, data = f"design:{design}", {"revision": revision}
     events.note(session, Event(topic, "revision", data), Event(topic, state, data))
 
 
-def standing(session: Session, id: str) -> Standing:
-    """Return at which revision a design is, and how its regeneration stands.
+def standing(session: Session, id: str) -> RegenerationState:
+    """Return the newest revision of a design, and the state of its regeneration.
 
     Raises
     ------
@@ -351,10 +348,10 @@ def standing(session: Session, id: str) -> Standing:
     """
     newest = head(session, id)
     number = design(session, id).event
-    return Standing(number, newest.number, newest.state, newest.problem)
+    return RegenerationState(number, newest.number, newest.state, newest.problem)
 
 
 def can_resume(session: Session, id: str, last: int | None) -> bool:
-    """Return whether all events of a design after the one that a reader got last are kept."""
+    """Return whether all events of a design after a reader's last one are still stored."""
     until = design(session, id).event
     return last is not None and are_events_kept(session, f"design:{id}", last, until)

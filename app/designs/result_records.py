@@ -1,4 +1,4 @@
-"""The results that a revision stores, as models; equal texts are read once.
+"""The results stored with a revision, as models; equal texts are parsed once.
 
 A revision stores its results once, but every page reads them several times. The cache is keyed by the stored
 text, so it cannot return outdated results.

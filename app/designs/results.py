@@ -1,4 +1,4 @@
-"""The results of a revision and of its variants, as it stores them: outputs and criteria, models, solids."""
+"""The stored results of a revision and its variants: outputs, criteria, models and solids."""
 
 from __future__ import annotations
 
@@ -26,7 +26,6 @@ from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
 from templates.core.language.criteria import warned
-from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import record
 
 VARIANTS = "variants"
@@ -48,7 +47,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return the results of a calculation and its variants that a revision keeps beside the models."""
+    """Return the results of a calculation and its variants that a revision stores besides the models."""
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
@@ -64,7 +63,7 @@ def stored(
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
-    """Return by model every analysis that it declares, with its used and known outputs."""
+    """Return by model every declared analysis, with its used and known outputs."""
     return {
         block.name: {
             kind: in_design(
@@ -80,9 +79,9 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
-    """Return every step: its evaluation, or that it waits for a solid or for its job.
+    """Return every step: its evaluation, or that it waits for a solid or a job.
 
-    Its criteria stand with those of the design; it keeps the warnings of those that are not met.
+    Its criteria are listed with those of the design; the step keeps the warnings of unmet ones.
     """
     return {
         name: _step(calculation, block, criteria)
@@ -100,20 +99,20 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
     if evaluation.seconds > EXPENSIVE:
         remember(answer, evaluation)
     del answer["seconds"]  # equal revisions are equal
-    answer["warnings"] = _warnings(evaluation, block, criteria)
+    own = _own(block, criteria)
+    answer["warnings"] = json_values.warnings([*evaluation.warnings, *warned(block.cls, own)])
+    answer["assumed"] = json_values.assumptions(evaluation, own)
     return {**answer, "relations": relations, "record": vars(record(evaluation.template))}
 
 
-def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
-    """Return the warnings of a step, those of criteria as they were judged in the design."""
+def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
+    """Return the criteria of a step's template, as they were judged in the design, by their own names."""
     prefix = f"{block.name}."
-    own = [
+    return [
         replace(judgement, name=judgement.name.removeprefix(prefix))
         for judgement in criteria
         if judgement.name.startswith(prefix)
     ]
-    notices = [*evaluation.warnings, *warned(block.cls, own)]
-    return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
 def models(calculation: Calculation, outcomes: Iterable[Outcome] = ()) -> list[ModelState]:
@@ -147,7 +146,7 @@ def _variant(
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
 ) -> JsonObject:
-    """Return one variant as a revision keeps it, without empty members."""
+    """Return one variant as a revision stores it, without empty members."""
     parts: JsonObject = {
         "values": dict(values),
         "outputs": dict(outputs),
@@ -206,7 +205,7 @@ class Outcome:
 def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
     """Return every output of every step that is not an array, by its name in relations.
 
-    Null with its reason.
+    A missing value is null with its reason.
     """
     shown: dict[str, JsonObject] = {}
     for step, evaluation in calculation.evaluations.items():

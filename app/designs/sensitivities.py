@@ -1,7 +1,8 @@
-"""Sensitivities of a design's value or criterion to each quantity that its user typed.
+"""Sensitivities of a value or criterion of a design to each quantity that its user typed.
 
-Slopes by central differences, local to the design: 1 + 2 n rows in one array call, at the levels that the
-design itself used. What acts through a solid has a reason instead: each of its values needs its own solid.
+The slopes are central differences at the design point: 1 + 2 n rows in one array call, at the levels that the
+design used. A quantity that acts through a solid gets a reason instead of a slope, because each of its values
+needs another solid.
 """
 
 from __future__ import annotations
@@ -50,12 +51,12 @@ class SensitivityQuestion:
 
     @property
     def values(self) -> list[Reference]:
-        """Return the name, if it is that of a value."""
+        """Return the name if it is a value."""
         return [] if self.subject else [Reference.parse(self.name)]
 
     @property
     def criteria(self) -> list[str]:
-        """Return the name, if it is that of a criterion."""
+        """Return the name if it is a criterion."""
         return [self.name] if self.subject else []
 
     @property
@@ -68,7 +69,7 @@ class SensitivityQuestion:
         return self.subject.criterion.unit if self.subject else engine.unit(*self.values)
 
     def columns(self, table: Table) -> tuple[Array, Array | None]:
-        """Return the value [SI] of each row, and of a criterion the margin, positive where it is met."""
+        """Return the value [SI] of each row; for a criterion its margin, positive if it is met."""
         if self.subject is None:
             return table.columns[Reference.parse(self.name)], None
         judged = table.judged[self.name]
@@ -86,7 +87,7 @@ class Sensitivities:
 def sensitivities(
     document: Document, calculation: Calculation, catalogues: Catalogues, asked: SensitivityQuestion
 ) -> Sensitivities:
-    """Return the sensitivities of a value to the single quantities, as typed, that it follows from."""
+    """Return the sensitivities of a value to the typed single quantities on which it depends."""
     wanted = asked.wanted
     behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
     solids = through_solids(calculation.graph, wanted)
@@ -110,14 +111,14 @@ def _of_solid(place: str, model: str) -> Sensitivity:
 
 
 def _rank(item: Sensitivity) -> tuple[int, float]:
-    """Return the largest elasticity first, then slopes without one, then places without a slope."""
+    """Return a sort key: the largest elasticity first, then slopes without one, then missing slopes."""
     if item.elasticity is not None:
         return 0, -abs(item.elasticity)
     return (2 if item.slope is None else 1), 0.0
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """Return a sentence on the places that the list leaves out; None if it has all."""
+    """Return a sentence on the places that the list omits; None if it is complete."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
@@ -138,11 +139,8 @@ class DifferenceRows:
     def items(self) -> Iterator[Sensitivity]:
         """Yield the sensitivity to each place, in the order of the places.
 
-        Raises
-        ------
-        InvalidInputs
-            If the design cannot be calculated for rows, if that would take long, or if the value itself is
-            missing or no single number.
+        Raises ------ InvalidInputs If the design cannot be calculated for rows, if that would take too long,
+        or if the value is missing or not a single number.
         """
         table = self._table()
         value, margin = self.asked.columns(table)
@@ -167,7 +165,7 @@ class DifferenceRows:
         return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
 
     def _check_cost(self) -> None:
-        """Refuse rows that take long, or many operations in relations between lists."""
+        """Refuse rows that take too long, or too many operations in relations between lists."""
         count, wanted = self._points.count, self.asked.wanted
         seconds = self._engine.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
         values = count * sum(self._engine.design.sizes(wanted).values())
@@ -177,7 +175,7 @@ class DifferenceRows:
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(
-                "too_many_values", f"{count} rows of lists this long would take too long; {STUDY}"
+                "too_many_values", f"{count} rows with lists of this length would take too long; {STUDY}"
             )
 
     def _at(self) -> str:
@@ -187,7 +185,7 @@ class DifferenceRows:
         return f" ({', '.join(used)})" if used else ""
 
     def _check(self, value: Array, table: Table) -> None:
-        """Refuse a value that has no slope."""
+        """Refuse a value that cannot have a slope."""
         if value.ndim > 1:
             raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
@@ -244,7 +242,7 @@ class DifferenceRows:
 
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
-    """Return why a slope is missing, or is that of one side of the place."""
+    """Return why a slope is missing or one-sided."""
     missing = [row for row in (below, above) if not math.isfinite(value[row])]
     if not missing:
         return None
@@ -255,8 +253,8 @@ def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None
 
 
 def _is_temperature(*units: str) -> bool:
-    """Return whether any is a unit of temperatures, whose ratios mean nothing.
+    """Return whether any is a unit of temperature, whose ratios have no meaning.
 
-    Their differences have ratios.
+    Ratios of temperature differences have a meaning.
     """
     return any(unit(name).base == registry.kelvin and not unit(name).difference for name in units)

@@ -42,7 +42,7 @@ BYTES = 128
 """Taken for one character of a document: of the designs in the gallery 36 to 104 bytes of its calculation."""
 
 
-class Prepared(NamedTuple):
+class DocumentCalculation(NamedTuple):
     """A document as it was read, and what could be calculated of it."""
 
     document: Document
@@ -59,14 +59,14 @@ class CalculationCache:
     def __init__(self, cache: Cache | None = None) -> None:
         self._cache = cache or Cache(MEGABYTES)
 
-    def keep(self, plain: Mapping[str, Json], prepared: Prepared) -> None:
-        """Keep the calculation of a document, which is given as JSON too."""
+    def keep(self, plain: Mapping[str, Json], prepared: DocumentCalculation) -> None:
+        """Store the calculation of a document, which is also given as JSON."""
         text = canonical_json(plain).encode()
         self._cache.keep(_digest(text), prepared, BYTES * len(text))
 
-    def find(self, plain: Mapping[str, Json]) -> Prepared | None:
+    def find(self, plain: Mapping[str, Json]) -> DocumentCalculation | None:
         """Return the calculation of a document that was saved lately."""
-        prepared: Prepared | None = self._cache.get(_digest(canonical_json(plain).encode()))
+        prepared: DocumentCalculation | None = self._cache.get(_digest(canonical_json(plain).encode()))
         return prepared
 
 
@@ -153,7 +153,7 @@ class Designs:
         Raises
         ------
         InvalidInputs
-            With everything that is wrong; nothing is saved then.
+            With all faults; nothing is saved then.
         """
         if saved_before := self._repeated(once):
             return saved_before
@@ -172,7 +172,7 @@ class Designs:
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> SaveResult:
-        """Return a new revision with a merge patch applied; a patch that changes nothing makes none.
+        """Return a new revision with a merge patch applied; a patch without changes creates none.
 
         A new name alone keeps all results: nothing is calculated.
 
@@ -181,7 +181,7 @@ class Designs:
         StaleRevision
             If `expected` (an If-Match) is not the newest revision.
         InvalidInputs
-            With everything that is wrong; nothing is saved then.
+            With all faults; nothing is saved then.
         """
         if patch.keys() == {"name"} and (renamed := self._renamed(id, patch, note, expected, once)):
             return renamed
@@ -211,7 +211,7 @@ class Designs:
         return self.create(named, f"copy of {id}, revision {number}", once, "design.copy")
 
     def delete(self, id: str) -> None:
-        """Take a design from the lists; its revisions are kept. Raises DesignReleased."""
+        """Delete a design from the lists; its revisions are kept. Raises DesignReleased."""
         self.database.write(lambda session: repository.delete(session, id))
 
     def proposals(self, id: str) -> list[Proposal]:
@@ -239,7 +239,7 @@ class Designs:
         return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
     def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
-        """Return a document read and calculated with what is built already.
+        """Return a document, read and calculated with the existing solids.
 
         Faults are left in the calculation.
         """
@@ -260,7 +260,10 @@ class Designs:
         once: Once,
         action: str,
     ) -> SaveResult:
-        """Return the revision after `base` with another document; `base` itself if that has this document."""
+        """Return the revision after `base` with another document.
+
+        `base` itself if the document is unchanged.
+        """
         draft = self.draft(raw, note, action)
         is_changed = base.document != draft.written.document
 
@@ -281,9 +284,10 @@ class Designs:
     def _renamed(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> SaveResult | None:
-        """Return a revision with another name and the same results; None where the usual way has to do it.
+        """Return a revision with another name and the same results; None if a normal save is necessary.
 
-        That is so if the design has no results yet, has this name, or the request was carried out before.
+        A normal save is necessary if the design has no results yet, already has this name, or the request is
+        a repetition.
         """
 
         def unit(session: Session) -> SaveResult:
@@ -308,12 +312,12 @@ class Designs:
             return None
 
     def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
-        """Return the revision to write for a document; its results wait for a job if any part of it waits.
+        """Return the revision to write for a document; its results wait for a job if any part is pending.
 
         Raises
         ------
         InvalidInputs
-            With everything that is wrong.
+            With all faults.
         """
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
@@ -327,7 +331,7 @@ class Designs:
             bool(outcomes) and any(outcome.is_deferred for outcome in outcomes)
         )
         if pending and not calculation.deferred:
-            self.calculation_cache.keep(plain, Prepared(document, calculation))
+            self.calculation_cache.keep(plain, DocumentCalculation(document, calculation))
         written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
@@ -337,7 +341,7 @@ class Designs:
         Raises
         ------
         InvalidInputs
-            With everything that is wrong with the table.
+            With all faults of the table.
         """
         outcomes, faults = self._checked(document, base)
         raise_if(faults)
@@ -349,12 +353,12 @@ class Designs:
         return checked(document, base, Available(self.catalogues, *self._solids))
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
-        """Return all faults for which a save would refuse the variants of a document.
+        """Return all faults that would make a save refuse the variants of a document.
 
         Raises
         ------
         InvalidInputs
-            If the document itself is not sound.
+            If the document itself has faults.
         """
         document, calculation = self.prepare(raw)
         return self._checked(document, calculation)[1]
@@ -362,10 +366,7 @@ class Designs:
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
     ) -> SaveResult:
-        """Return the job of a revision, if it needs one, and the record of the request.
-
-        In one transaction.
-        """
+        """Return the job of a revision, if it needs one, and the record of the request, atomically."""
         job, answer, written = None, None, draft.written
         if written.state == "regenerating":
             job = self.jobs.enqueue(
@@ -397,9 +398,9 @@ class Designs:
 
 
 def _with_builds(session: Session, draft: Draft) -> Draft:
-    """Return the draft with its builds renewed.
+    """Return the draft with the ages of its builds renewed.
 
-    One that was deleted since it was looked up must be built again.
+    A build that was deleted in the meantime must be built again.
     """
     builds = [model.build for model in draft.written.models if model.build]
     if not builds or renew(session, builds):
@@ -443,5 +444,5 @@ def matches(expected: str, head: int) -> bool:
 
 
 def analyses_wanted(graph: Graph) -> bool:
-    """Return whether anything in a design uses finite elements."""
+    """Return whether a design uses finite elements."""
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)

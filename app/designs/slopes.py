@@ -34,7 +34,7 @@ class Local:
         return 1 + 2 * len(self.at)
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, with `last` excluded."""
         moved = np.diag(self.steps)
         with np.errstate(over="ignore"):
             return np.asarray(self.at + np.vstack([np.zeros_like(self.at), -moved, moved]))[first:last]
@@ -60,7 +60,7 @@ class Slopes:
 def slopes_at(points: Local, y: Array) -> Slopes:
     """Return the slopes of a value at a point from its values [SI] at the rows of `points`.
 
-    NaN is no value.
+    NaN means no value.
     """
     dimensions = len(points.at)
     value, below, above = float(y[0]), y[1 : 1 + dimensions], y[1 + dimensions :]
@@ -73,10 +73,7 @@ def slopes_at(points: Local, y: Array) -> Slopes:
 
 
 def slope_in(over: str, under: str, slope: float) -> Quantity | None:
-    """Return a slope [SI] of something declared in the unit `over`, for each unit `under` of a variable.
-
-    None where it is not finite.
-    """
+    """Return a slope [SI] in units `over` per `under`; None if it is not finite."""
     name = quotient(over, under)
     value = slope / unit(name).factor
     return Quantity(value=value, unit=name) if math.isfinite(value) else None

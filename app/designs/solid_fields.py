@@ -1,8 +1,8 @@
-"""Fields that a revision has for the surface of a crankshaft: use of its fillets, shapes of torsional modes.
+"""Fields that a revision has for the surface of a crankshaft: utilisation of fillets, torsional mode shapes.
 
 They come from steps that use finite-element results of the model: a `fatigue_life` with the tensors of
-`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. A user declares nothing for them, and
-the service stores none.
+`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. They need no declaration, and the
+service does not store them.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class ModeShape(SolidField):
 def fields_of(
     session: Session, catalogue: Catalogue[CadModel], id: str, number: int, name: str
 ) -> dict[str, SolidField]:
-    """Return the fields of a model in a revision, by their names; none of what is no crank.
+    """Return the fields of a model in a revision, by name; none if it is not a crank.
 
     Raises
     ------
@@ -161,9 +161,9 @@ def _modes(revision: Revision, name: str, whole: WholeShaft) -> Iterator[ModeSha
 def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | None:
     """Return the indices, from 0, of the inertias that are a shaft's throws, nose and flange.
 
-    The throws are those that cylinders excite, in their order. Nose and flange are the one inertia that an
-    elastic shaft joins to the first or the last throw; where there is not one, the throw's own. None if other
-    than all throws are excited.
+    The throws are the excited inertias, in order. Nose and flange are the single inertias that an elastic
+    shaft joins to the first and the last throw; if there is no such inertia, the throw itself is used. The
+    result is None unless exactly all throws are excited.
     """
     excited, stiffness = _given(step, "excited_inertias"), _given(step, "shaft_stiffness")
     start, end = _given(step, "shaft_from"), _given(step, "shaft_to")
@@ -184,9 +184,9 @@ def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | Non
 
 
 def _takes(step: RevisionStep, prefix: str) -> bool:
-    """Return whether a relation of a step uses what begins so.
+    """Return whether a relation of a step uses a name with this prefix.
 
-    `big_shaft.chain.` does not begin with `shaft.`.
+    The name `big_shaft.chain.` does not have the prefix `shaft.`.
     """
     begins = re.compile(rf"(?<![\w.]){re.escape(prefix)}")
     return any(begins.search(str(relation)) for relation in step.relations.values())

@@ -1,8 +1,9 @@
-"""The answer to a question of solving: read, calculated in a process, and written for the interface."""
+"""Answer a question of `solve`: read it, calculate it in a process, and return its answer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from typing import Annotated
 
 import numpy as np
@@ -20,14 +21,16 @@ from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solution_search import DesignRoots, RootQuestion, roots_of_design
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
+from app.presentation.numbers import percent
 from app.reference import Reference
 from app.schemas.answers import Quantity, Shown, Values, Warning
 from app.schemas.bounds import Bounded, at_most
-from app.schemas.criteria import Word
 from app.schemas.values import Given
+from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.confirmation import Root
 from templates.core.language.roots import Jump as FoundJump
+from templates.core.language.roots import TracedCurve as FoundCurve
 from templates.core.units.quantity import TypedQuantity, read, read_beside
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
@@ -80,7 +83,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     Raises
     ------
     InvalidInputs
-        With what is wrong with the question or the design.
+        With the faults of the question or the design.
     Unreachable
         If no value between the bounds gives the target.
     """
@@ -102,7 +105,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
 
 
 def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: str, name: str) -> float:
-    """Return one value [SI] as typed."""
+    """Return one typed value [SI]."""
     try:
         value = read_as(raw, unit).si
     except FaultyText as error:
@@ -121,7 +124,7 @@ class _SolutionText:
         self.x, self.y = self.curve.x.unit, self.curve.y.unit
 
     def answer(self, revision: int) -> DesignSolution:
-        roots, curve = self.solution.roots, self.solution.roots.curve
+        roots = self.solution.roots
         left = MOST_JUDGED - len(roots.roots)
         return DesignSolution(
             revision=revision,
@@ -130,25 +133,53 @@ class _SolutionText:
             roots=[self._root(root, n < MOST_JUDGED) for n, root in enumerate(roots.roots)],
             touching=[self._root(root, n < left) for n, root in enumerate(roots.touching)],
             jumps=[self._jump(jump) for jump in roots.jumps],
-            curve=TracedCurve(
-                x=Values(value=curve.x.tolist(), unit=self.x),
-                y=Shown(value=[None if np.isnan(y) else y for y in curve.y.tolist()], unit=self.y),
-                reasons=curve.reasons.tolist(),
-                level=curve.level,
-            ),
+            curve=self._curve(roots.curve),
+            finer=[self._curve(curve) for curve in roots.finer],
             warnings=[
-                Warning(code=w.code, name=w.name, detail=w.detail)
-                for w in roots.warnings
-                if w.code != "several_solutions"  # `roots` has them, and none is preferred
+                *(
+                    Warning(code=w.code, name=w.name, detail=w.detail)
+                    for w in roots.warnings
+                    if w.code != "several_solutions"  # `roots` has them, and none is preferred
+                ),
+                *self._missed_tolerance(),
             ],
             levels=dict(self.curve.levels),
+            finer_levels=dict(self.solution.requested.levels) if roots.finer else {},
         )
+
+    def _curve(self, curve: FoundCurve) -> TracedCurve:
+        return TracedCurve(
+            x=Values(value=curve.x.tolist(), unit=self.x),
+            y=Shown(value=[None if np.isnan(y) else y for y in curve.y.tolist()], unit=self.y),
+            reasons=curve.reasons.tolist(),
+            level=curve.level,
+        )
+
+    def _missed_tolerance(self) -> Iterator[Warning]:
+        """Yield a warning if the error of a solution exceeds the requested tolerance."""
+        tolerance, worst = self.solution.tolerance, 0.0
+        for root in (*self.solution.roots.roots, *self.solution.roots.touching):
+            worst = max(worst, math.inf if root.error is None else root.error) if root.confirmed else worst
+        if tolerance is None or worst <= tolerance:
+            return
+        error = "is not stated" if math.isinf(worst) else f"is up to {percent(worst)}"
+        detail = (
+            f"the error of the solutions {error}, which is not within the tolerance of {percent(tolerance)}"
+        )
+        yield Warning(code="tolerance_unmet", name=self.curve.y.name, detail=f"{detail}{self._kept_level()}")
+
+    def _kept_level(self) -> str:
+        """Return why the step of the target has no finer level: the design fixes its level."""
+        step = self.document.steps.get(self.solution.scanned.target.block)
+        level = step.level if step else None
+        return f": the design names level {level} for {self.solution.scanned.target.block}" if level else ""
 
     def _target(self) -> Target:
         value = float(np.asarray(self.curve.y.scale.from_si(self.curve.wanted)))
         return Target(name=self.curve.y.name, value=value, unit=self.y)
 
     def _root(self, root: Root, is_judged: bool) -> DesignRoot:
+        judgements = self._judgements(root.value) if is_judged else []
         return DesignRoot(
             value=root.value,
             unit=self.x,
@@ -156,20 +187,20 @@ class _SolutionText:
             level=root.level,
             error=root.error,
             confirmed=root.confirmed,
-            verdicts=self._verdicts(root.value) if is_judged else {},
+            verdicts={one.name: one.verdict for one in judgements},
+            error_unknown=[one.name for one in judgements if one.is_open and one.verdict != "undecided"],
         )
 
-    def _verdicts(self, value: float) -> dict[str, Word]:
-        """Return the verdict of every criterion with one value of the unknown.
+    def _judgements(self, value: float) -> list[Judgement]:
+        """Return every criterion as judged with one value of the unknown.
 
-        What needs a solid is not checked.
+        Criteria that need a solid are not checked.
         """
         own = applied(self.document, {self.curve.x.name: {"value": value, "unit": self.x}})
         graph, faults = build_graph(own, self.catalogues)
         if faults:
-            return {}
-        calculation = calculate(graph, lambda _: None, lambda *_: None, starts(own))
-        return {judgement.name: judgement.verdict for judgement in judged(calculation)}
+            return []
+        return judged(calculate(graph, lambda _: None, lambda *_: None, starts(own)))
 
     def _jump(self, jump: FoundJump) -> Jump:
         before, after = (Quantity(value=side, unit=self.y) for side in (jump.before, jump.after))

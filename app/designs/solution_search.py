@@ -1,13 +1,14 @@
-"""Solve a design: every value of one parameter or input between two bounds that gives a wanted output.
+"""Solve a design: find every value of an input between two bounds that gives a wanted output.
 
-The curve between the bounds is a few array calls of the whole design, every step at one level. Each crossing
-is confirmed at the levels of the design, or at those that a tolerance requires.
+The curve between the bounds takes a few array calls of the whole design, with each step at one level. Each
+crossing is then confirmed at the levels of the design, or at those that a tolerance requires.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ class DesignCurve(SampledCurve):
 
     @property
     def level(self) -> str | None:
-        """Return the level of the step whose output it is."""
+        """Return the level of the step that has the output."""
         return self.levels.get(self.target.block)
 
     @property
@@ -60,12 +61,16 @@ class DesignCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """Number of samples that one call takes: any number, in chunks."""
-        return 1_000_000
+        """Return the number of samples in one call at these levels."""
+        return self.engine.rows_at_once([self.target], self.levels)
 
     def at_level(self, level: str) -> DesignCurve:
-        """Return the same curve, with the step whose output it is at one level."""
+        """Return the same curve, with the step of its output at one level."""
         return replace(self, levels={**self.levels, self.target.block: level})
+
+    def is_at_levels_of(self, other: Self) -> bool:
+        """Return whether every step has the same level along another curve."""
+        return self.levels == other.levels
 
     def level_at(self, x: float) -> str | None:
         """Return the level at one value; raises InvalidInputs where the design is refused there."""
@@ -98,6 +103,7 @@ class DesignRoots:
     roots: Roots
     scanned: DesignCurve
     requested: DesignCurve
+    tolerance: float | None
 
 
 def roots_of_design(engine: DesignEngine, wanted: RootQuestion) -> DesignRoots:
@@ -114,7 +120,7 @@ def roots_of_design(engine: DesignEngine, wanted: RootQuestion) -> DesignRoots:
     x, y = (_meaning(engine, reference) for reference in (wanted.unknown, wanted.target))
     scanned = DesignCurve(x, y, wanted.value, engine, wanted.unknown, wanted.target, cheap)
     requested = replace(scanned, levels=fine)
-    return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested)
+    return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested, wanted.tolerance)
 
 
 def _levels(
@@ -122,7 +128,7 @@ def _levels(
 ) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels of the curve, and those of its solutions.
 
-    None of the first is finer than the second.
+    No level of the curve is finer than that of the solutions.
     """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
     cheap = engine.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
@@ -141,5 +147,5 @@ def _coarser(engine: DesignEngine, step: str, one: str | None, other: str | None
 
 
 def _meaning(engine: DesignEngine, reference: Reference) -> Meaning:
-    """Return a name of the design as messages call it, with its declared unit."""
+    """Return a name of the design as messages use it, with its declared unit."""
     return Meaning(words=str(reference), unit=engine.unit(reference), name=str(reference))

@@ -1,4 +1,4 @@
-"""The stamp that a downloaded file of a model carries: its design, revision, date, materials, signatures."""
+"""The stamp on a downloaded model file: its design, revision, date, materials and signatures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MM3 = 1e-9  # m³
 
 
 def stamp(session: Session, model: RevisionModelRow) -> Stamp:
-    """Return the stamp of a built model: always the same, because a revision never changes."""
+    """Return the stamp of a built model; it never changes, because a revision never changes."""
     about = {"of": model.design_id, "at": model.number}
     ((document, created),) = statements.DOCUMENT.run(session, about)
     build = rows.build(session, model.build_key or "")
@@ -33,16 +33,16 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
         materials=_materials(build) if build else {},
         variant=model.variant,
         is_only=len(document["models"]) == 1,
+        mass=build.measurements["measures"]["mass"] if build else None,
     )
 
 
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
-    """Return the stamp with what a title block says of the approval: it changes with every step of that.
+    """Return the stamp with the title-block entries of the approval, which change with every step.
 
-    From the hand-over on the author has the name of that time, as in a report.
+    After the submission the author keeps the name of that time, as in a report.
     """
     revision = repository.lean(session, model.design_id, model.number)
-    build = rows.build(session, model.build_key or "")
     of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number
     names = {row.step: row.name for row in session.scalars(select(ApprovalRow).where(*of_revision))}
     author = session.get(PrincipalRow, revision.author) if revision.author not in (None, LOCAL.id) else None
@@ -53,14 +53,13 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
         checker=names.get("checked", ""),
         approver=names.get("released", ""),
         status=next((step for step in reversed(ORDER) if step in names), "unsigned"),
-        mass=build.measurements["measures"]["mass"] if build else None,
     )
 
 
 def _materials(build: rows.Build) -> Mapping[str, str]:
     """Return the materials of a build's parts.
 
-    Of a build of an older recipe that of the whole, by its density.
+    For a build of an older recipe it is one material, identified by its density.
     """
     measured: Mapping[str, Json] = build.measurements
     if "materials" in measured:

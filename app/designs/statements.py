@@ -1,4 +1,4 @@
-"""Statements of designs and revisions, compiled once."""
+"""SQL statements of designs and revisions, compiled once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A design as it is sent to a calculation process: its document and the files of its templates."""
+"""A design as a calculation process receives it: its document and the files of its templates."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class CatalogueTask:
         Raises
         ------
         UnknownTemplate
-            The catalogue has no longer one of them.
+            The catalogue no longer has one of them.
         """
         return cls(_sources(catalogues.templates, templates), _sources(catalogues.models, models))
 
     def read(self) -> Catalogues:
-        """Return the versions in this process."""
+        """Load the versions in this process."""
         templates = _catalogue(self.templates, Template, "template")
         return Catalogues(templates, _catalogue(self.models, CadModel, "model"))
 
@@ -60,7 +60,7 @@ class DesignTask:
         Raises
         ------
         UnknownTemplate
-            The catalogue has no longer what a step or model of the design needs.
+            The catalogue no longer has a version that the design needs.
         """
         read = Document.model_validate(document)
         steps = {(step.template, _number(step.version)) for step in read.steps.values()}
@@ -68,7 +68,7 @@ class DesignTask:
         return cls(canonical_json(document), CatalogueTask.of(steps, models, catalogues))
 
     def read(self) -> tuple[Document, Catalogues]:
-        """Return the design in this process, with its templates and models."""
+        """Load the design in this process, with its templates and models."""
         return Document.model_validate(from_json(self.document)), self.parts.read()
 
 

@@ -35,7 +35,7 @@ def newest(session: Session, id: str, number: int | None = None) -> Design:
 
 
 def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
-    """Return a design as of a revision for which nothing is to be regenerated."""
+    """Return a design at a revision that needs no regeneration."""
     return _design(id, number, document, created, changed, "current", None)
 
 
@@ -70,7 +70,7 @@ def _design(
 def _variants(document: JsonObject) -> JsonObject:
     """Return the overrides of the variants of a design, in their natural order.
 
-    Empty if it has no variants.
+    The result is empty if it has no variants.
     """
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
@@ -144,7 +144,7 @@ def author(session: Session, id: str | None) -> Author | None:
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """Return a step as typed, while it waits for a solid or for its job."""
+    """Return a step as typed, while it waits for a solid or a job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
@@ -183,17 +183,17 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
 
 
 def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, ModelAnalysis]]:
-    """Return the analyses in a revision by model; none in revisions of before there were any."""
+    """Return the analyses in a revision by model; none in older revisions."""
     return results_of(session, repository.lean(session, id, number)).analyses
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """Return the model to serve: of one revision, or the newest good one of the design.
+    """Return the model to serve: of one revision, or the newest valid one.
 
     Raises
     ------
     NotFound
-        If there is none; the text says why.
+        If there is none; the message gives the reason.
     """
     at = repository.newest(session, id).number if number is None else number
     names = repository.model_names(session, id, at)
@@ -225,6 +225,6 @@ def _why(row: RevisionRow) -> str:
 
 
 def file(session: Session, model: RevisionModelRow, kind: str) -> File | None:
-    """Return a file of a model's build, or None if it is not made yet."""
+    """Return a file of a model's build, or None if it does not exist yet."""
     row = rows.artifact(session, model.build_key or "", kind)
     return File(kind, row.sha256) if row else None

@@ -38,7 +38,7 @@ def worksheet(
 ) -> RevisionWorksheet:
     """Return a revision with `formulas`, from the inputs and at the level that its job used.
 
-    With `only` it has no other step than this one; without formulas none is written out.
+    With `only` it contains only this step; without formulas none is written out.
 
     Raises
     ------
@@ -60,14 +60,14 @@ def worksheet(
 def previewed(
     calculation: Calculation, steps: Mapping[str, RevisionStep], system: System
 ) -> dict[str, PreviewedStep]:
-    """Return the steps of a preview with `formulas`; a step that waits for a solid has none yet."""
+    """Return the steps of a preview with `formulas`; a step that waits for a solid has none."""
     evaluations = calculation.evaluations
     written = {name: _formulas(e.template, system, e.outputs) for name, e in evaluations.items()}
     return {name: _with_formulas(step, written.get(name, []), system) for name, step in steps.items()}
 
 
 def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System) -> PreviewedStep:
-    """Return a step in a system of units, its inputs as typed."""
+    """Return a step in a system of units, with inputs as typed."""
     shown = step.in_units(system)
     fields = {name: getattr(shown, name) for name in shown.model_fields_set}
     return PreviewedStep.model_validate({**fields, "inputs": step.inputs, "formulas": rows})
@@ -76,7 +76,7 @@ def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System
 def checked(step: RevisionStep, catalogue: Catalogue[Template]) -> list[Check]:
     """Return every bound and rule of a revision's step, compared with its values.
 
-    None if these are not known.
+    It is None if the values are unknown.
     """
     template = _calculated(step, catalogue, with_arrays=True)
     return [] if template is None else list(checks(template))
@@ -91,11 +91,11 @@ def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: Sys
 def _calculated(
     step: RevisionStep, catalogue: Catalogue[Template], *, with_arrays: bool = False
 ) -> Template | None:
-    """Return the template of a step that has results, from its record, or calculated again as its job did.
+    """Return the template of a step that has results, from its record or recalculated.
 
-    It is calculated again if the revision was written before there were records, if the version has changed
-    since, and if arrays are wanted that the record leaves out. None if it has no results, if calculating is
-    deferred, or if the file of the version was taken away or refuses the inputs now.
+    It is recalculated if the revision has no record, if the version has changed since, or if arrays are
+    requested that the record omits. It is None if the step has no results, if the calculation is deferred, or
+    if the file of the version was removed or now refuses the inputs.
     """
     if not step.outputs:
         return None
@@ -115,7 +115,7 @@ def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
 
 
 def _retyped(used: UsedInput) -> Raw:
-    """Return an input as it was used, as one that can be given again."""
+    """Return a used input in a form in which it can be given again."""
     if "unit" not in used.model_fields_set:
         return used.value
     return {name: getattr(used, name) for name in used.model_fields_set if name != "source"}
@@ -140,13 +140,13 @@ class _Question(NamedTuple):
 
 
 def remember(answer: JsonObject, evaluation: Evaluation) -> None:
-    """Keep the evaluation of an expensive step, so that its worksheet does not calculate it again."""
+    """Cache the evaluation of an expensive step, so that its worksheet does not calculate it again."""
     question = _Question.of(RevisionStep.model_validate(answer))
     cache.keep(question.key(type(evaluation.template)), evaluation)
 
 
 def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:
-    """Return the formulas written out, or as they were written out for equal values before."""
+    """Return the formulas written out, from the cache if the values are equal."""
     key = _values_of(template)
     if key is None:
         return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
@@ -165,9 +165,9 @@ _writing = Lock()
 
 
 def _values_of(template: Template) -> Hashable | None:
-    """Return the single values that the template has, by which its formulas are written.
+    """Return the single values of the template, which determine its formulas.
 
-    None if it has arrays.
+    It is None if the template has arrays.
     """
     values = [vars(template).get(attribute) for attribute in template.declarations]
     if any(isinstance(value, (np.ndarray, tuple)) for value in values):
@@ -176,7 +176,7 @@ def _values_of(template: Template) -> Hashable | None:
 
 
 def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:
-    """Return the evaluation of a step as its job did it, kept because a revision never changes."""
+    """Return the evaluation of a step as its job calculated it, cached because a revision never changes."""
     question = _Question.of(step)
     kept: Evaluation | None = cache.get(question.key(cls))
     if kept is None:

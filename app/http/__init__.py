@@ -1,1 +1,1 @@
-"""Checks common to all requests: hosts, keys, sizes, times, strict reading, problems."""
+"""Checks common to all requests: hosts, keys, sizes, times, strict parsing, problems."""

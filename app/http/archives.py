@@ -1,4 +1,4 @@
-"""ZIP files written while they are sent: one file is in memory at a time; equal files give equal bytes."""
+"""ZIP files written while they are sent: one file at a time is in memory; equal files give equal bytes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class _Sink:
         self._parts: list[bytes] = []
 
     def write(self, part: bytes) -> int:
-        """Keep a part until it is taken."""
+        """Store a part until it is taken."""
         self._parts.append(bytes(part))
         return len(part)
 
@@ -34,7 +34,7 @@ class _Sink:
 
 
 def archived(members: Iterable[Member]) -> Iterator[bytes]:
-    """Yield a ZIP in parts: one for every file, and its directory."""
+    """Yield a ZIP in parts: one for every file, then its directory."""
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:  # type: ignore[call-overload]
         for name, read in members:
@@ -50,10 +50,7 @@ def _about(name: str) -> zipfile.ZipInfo:
 
 
 def distinct(names: Iterable[str]) -> list[str]:
-    """Return names of files that differ on every file system.
-
-    Of those that would be one, the later get a number.
-    """
+    """Return file names that differ on every file system; later duplicates get a number."""
     used, result = set[str](), list[str]()
     for name in names:
         stem, _, kind = name.rpartition(".")

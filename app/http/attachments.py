@@ -1,4 +1,4 @@
-"""Files that a client saves: under which name, whether it has them already, and bytes sent as a file."""
+"""Downloads: the file name, whether the client already has the file, and bytes sent as a file."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from cad.file_names import plain_name
 
 
 def disposition(plain: str, wide: str, how: str = "attachment") -> str:
-    """Return the Content-Disposition with the name in ASCII, and in all letters (RFC 6266, RFC 8187)."""
+    """Return the Content-Disposition with the name in ASCII and in Unicode (RFC 6266, RFC 8187)."""
     return f"{how}; filename=\"{plain}\"; filename*=UTF-8''{quote(wide, safe='')}"
 
 
 def named(design: str, revision: int, kind: str, how: str) -> str:
-    """Return the Content-Disposition of a file that is of a whole design: `{design}_r{revision}.{kind}`."""
+    """Return the Content-Disposition of a file about a whole design: `{design}_r{revision}.{kind}`."""
     tail = f"_r{revision}.{kind}"
     return disposition(plain_name(design) + tail, wide_name(design) + tail, how)
 
@@ -35,7 +35,7 @@ def tag(file: bytes) -> str:
 
 
 def is_at_hand(if_none_match: str | None, etag: str) -> bool:
-    """Return whether the client already has a file, by the tags that it sent."""
+    """Return whether the client already has a file, by the ETags that it sent."""
     tags = (one.strip().removeprefix("W/") for one in (if_none_match or "").split(","))
     return any(one in (etag, "*") for one in tags)
 
@@ -47,7 +47,7 @@ def unchanged(headers: Mapping[str, str]) -> Response:
 
 
 def http_time(date: str) -> str:
-    """Return a time in UTC (ISO 8601, without a zone) as HTTP writes it."""
+    """Return a time in UTC (ISO 8601, without a zone) in the format of HTTP."""
     return format_datetime(datetime.fromisoformat(date).replace(tzinfo=UTC), usegmt=True)
 
 
@@ -59,7 +59,7 @@ class MemoryFile(FileResponse):
         self._content = content
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send the file from one without a name, which goes when it is closed."""
+        """Send the content of an unnamed file, which is deleted when it is closed."""
         with tempfile.TemporaryFile() as file:
             file.write(self._content)
             file.flush()

@@ -3,9 +3,9 @@
 uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
 accepts headers of any length, and copies all of them again whenever another piece arrives.
 
-From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
-serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this
-service sends one: the protocol marks such a request, and the guard refuses it.
+If the request target is more than a path, such as `GET http://evil.example/healthz`, uvicorn drops its host
+and serves the path, although RFC 9112 gives that host priority over the header `Host`. No client of this
+service sends such a target: the protocol marks the request, and the guard refuses it.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class TimedProtocol(HttpToolsProtocol):
         self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _drop_dead_peer(self) -> None:
-        """Have the kernel end the connection of a dead machine, which it detects by a stream's pings."""
+        """Let the kernel close the connection of a dead machine, which the pings of a stream reveal."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
             milliseconds = int(1000 * (self.limits.write_seconds + _DEAD))  # a slow reader is judged before
@@ -96,9 +96,9 @@ class TimedProtocol(HttpToolsProtocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Parse; while nothing is being answered, what comes must become a request in time.
+        """Parse data; while no answer is being sent, it must become a complete request in time.
 
-        That is also so for the rest of a body of which the head was refused.
+        This also holds for the rest of a body whose head was refused.
         """
         before = self.cycle
         is_idle = before is None or before.response_complete
@@ -117,27 +117,27 @@ class TimedProtocol(HttpToolsProtocol):
             self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _unsupported_upgrade_warning(self) -> None:
-        """Do not warn: upgrades are ignored, which HTTP permits."""
+        """Suppress a warning: upgrades are ignored, as HTTP permits."""
 
     def on_message_begin(self) -> None:
-        """Note that a request begins; the parser calls this at its first byte."""
+        """Note the start of a request; the parser calls this at its first byte."""
         self._in_head = True
         super().on_message_begin()
 
     def on_headers_complete(self) -> None:
-        """Note that a head is complete; the parser calls this at its end."""
+        """Note the end of a head; the parser calls this."""
         self._in_head, self._pending = False, 0
         if not self.url.startswith(b"/"):
             self.scope["extensions"] = {_NO_PATH: {}}
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
-        """Take a piece of a body; the parser calls this for each."""
+        """Receive a piece of a body; the parser calls this for each."""
         self._pending = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Note that a request is complete; the parser calls this at its end."""
+        """Note the end of a request; the parser calls this."""
         self._pending = 0
         self.scope[WHOLE] = True  # type: ignore[literal-required]
         super().on_message_complete()
@@ -177,12 +177,12 @@ class TimedProtocol(HttpToolsProtocol):
         self.transport.close()
 
     def pause_writing(self) -> None:
-        """Pause writing; the transport calls this when the client does not read."""
+        """Pause writing; the transport calls this if the client does not read."""
         super().pause_writing()
         self._watch_reader()
 
     def resume_writing(self) -> None:
-        """Resume writing; the transport calls this when the client has read most."""
+        """Resume writing; the transport calls this once the client has read most of the data."""
         super().resume_writing()
         if self._write_timer is not None:
             self._write_timer.cancel()
@@ -208,14 +208,14 @@ class TimedProtocol(HttpToolsProtocol):
         self.transport.abort()
 
     def _reset_on_close(self) -> None:
-        """Have the kernel drop the unsent bytes, instead of delivering megabytes for hours."""
+        """Let the kernel drop the unsent bytes, instead of delivering megabytes for hours."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6):
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
 def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
-    """Return the protocol for a server with these limits; `busy` answers beyond the number of connections."""
+    """Return the protocol for a server with these limits; `busy` answers connections beyond their maximum."""
     return type("Protocol", (TimedProtocol,), {"limits": limits, "busy": staticmethod(busy)})
 
 

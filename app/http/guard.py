@@ -1,4 +1,4 @@
-"""The outermost layer of the application: it keeps other sites from reading, writing or framing pages.
+"""The guard stops other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
@@ -11,11 +11,10 @@ Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the r
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 
-from fastapi import FastAPI, Response
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Scope
 
 from app.http.connections import is_mere_path
 from app.http.strict_requests import HttpError
@@ -57,72 +56,34 @@ class CrossSite(HttpError):
     """The request comes from a page of another site."""
 
 
-class Guard:
-    """ASGI middleware with the three rules.
-
-    Parameters
-    ----------
-    app
-        The application.
-    hosts
-        The hosts that it answers to.
-    refuse
-        Makes the answer to an error.
-    """
-
-    def __init__(self, app: ASGIApp, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
-        self.app, self.hosts, self.refuse = app, hosts, refuse
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse, or pass on; add the headers to what is answered."""
-        if scope["type"] not in ("http", "websocket"):
-            await self.app(scope, receive, send)
-            return
-        try:
-            check(scope, self.hosts)
-        except HttpError as error:
-            await self._refused(error, scope, receive, send)
-            return
-        await self.app(scope, receive, protected(send))
-
-    async def _refused(self, error: HttpError, scope: Scope, receive: Receive, send: Send) -> None:
-        logger.info("refused %s %.200r: %s", scope.get("method", "websocket"), scope["path"], error)
-        if scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 1008, "reason": type(error).__name__})
-            return
-        await self.refuse(error)(scope, receive, protected(send))
+_NAMES = frozenset(name for name, _ in HEADERS)
 
 
-def install(app: FastAPI, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
-    """Wrap a whole app in the guard, its answer to an unexpected error included."""
-    # `add_middleware` would leave Starlette's handler of unexpected errors outside.
-    build = app.build_middleware_stack
-    app.build_middleware_stack = lambda: Guard(build(), hosts, refuse)  # type: ignore[method-assign]
-
-
-def protected(send: Send) -> Send:
-    """Return a `send` that adds the headers which an answer does not have."""
-
-    async def add(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            given = list(message.get("headers", ()))
-            names = {name.lower() for name, _ in given}
-            message = {**message, "headers": given + [pair for pair in HEADERS if pair[0] not in names]}
-        await send(message)
-
-    return add
+def protected(given: Iterable[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Return the headers of an answer, with those of every answer that it does not have."""
+    headers = list(given)
+    own = _NAMES.intersection([name.lower() for name, _ in headers])
+    return [*headers, *(HEADERS if not own else (pair for pair in HEADERS if pair[0] not in own))]
 
 
 def check(scope: Scope, hosts: Hosts) -> None:
-    """Refuse what another site may have had a browser send.
+    """Refuse requests that another site may have made a browser send.
 
     Raises
     ------
     BadHost, HostNotAllowed
-        If the request is not for this service by a name that it answers to.
+        If the host is not a name of this service.
     CrossSite
-        If it comes from another site and is not a mere link.
+        If it comes from another site and is not a plain link.
     """
+    try:
+        _check(scope, hosts)
+    except HttpError as error:
+        logger.info("refused %s %.200r: %s", scope.get("method", "websocket"), scope["path"], error)
+        raise
+
+
+def _check(scope: Scope, hosts: Hosts) -> None:
     looked = _looked_at(scope["headers"])
     scheme = SCHEMES[scope["scheme"]]
     server = scope.get("server")  # a list, where a server of a test passes it on
@@ -150,7 +111,7 @@ def _host(looked: Looked, scope: Scope) -> bytes:
     if len(given) != 1:
         raise BadHost(f"send exactly one header Host; there are {len(given)}")
     if not is_mere_path(scope):
-        raise BadHost("send the path alone as the target of the request, such as /healthz, without a host")
+        raise BadHost("send only a path as the request target, such as /healthz, without a host")
     if len(given[0]) > LONGEST:
         raise BadHost(_no_host(given[0]))
     return given[0]
@@ -169,14 +130,14 @@ def _allowed(hosts: Hosts, given: bytes, scheme: str, server: tuple[str, int | N
     if not hosts.allows(asked, scheme, server):
         name = f"[{asked.name}]" if ":" in asked.name else asked.name
         raise HostNotAllowed(
-            f"this service does not answer to the host {name!r}; if that is its name, the operator allows it "
-            f"by the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
+            f"this service does not answer to the host {name!r}; if the service has this name, the "
+            f"operator must add it to the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
         )
     return asked
 
 
 def _check_site(looked: Looked) -> None:
-    """Refuse what the browser itself calls foreign."""
+    """Refuse requests that the browser itself marks as cross-site."""
     if foreign := [site for site in looked.get(b"sec-fetch-site", ()) if site not in OWN]:
         raise CrossSite(
             f"the browser says that this request comes from another site (Sec-Fetch-Site: "
@@ -185,14 +146,14 @@ def _check_site(looked: Looked) -> None:
 
 
 def _check_link(looked: Looked) -> None:
-    """Allow links from other sites to a page, and refuse every other request of theirs."""
+    """Allow links from other sites to a page, and refuse all their other requests."""
     modes, places = looked.get(b"sec-fetch-mode", ()), looked.get(b"sec-fetch-dest", ())
     if any(mode != b"navigate" for mode in modes) or any(place != b"document" for place in places):
         _check_site(looked)
 
 
 def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -> None:
-    """Refuse what a page of another origin sends; a client that is not a browser sends no Origin."""
+    """Refuse requests of pages from another origin; a client that is not a browser sends no Origin."""
     for origin in looked.get(b"origin", ()):
         if not _is_own(origin.decode("latin-1"), asked, scheme, hosts):
             raise CrossSite(
@@ -202,7 +163,7 @@ def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -
 
 
 def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
-    """Return whether an origin is that of the service's own pages, for the host that was asked."""
+    """Return whether an origin is that of the service's own pages, for the requested host."""
     kind, _, rest = origin.partition("://")
     source = parse(rest)
     if source is None or kind not in ("http", "https"):

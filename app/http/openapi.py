@@ -3,9 +3,10 @@
 FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of a
 path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
 refused; `itemSchema` is OpenAPI 3.2. Some parts are written in the form that client generators understand.
-Problems that follow from what an operation takes are added here too; a route declares those of its own.
+Problems that follow from an operation's parameters and body are added here too; a route declares only its
+own.
 
-`Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.
+FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
 """
 
 from __future__ import annotations
@@ -29,9 +30,8 @@ REFERENCE = "#/components/schemas/{model}"
 def operation_id(route: APIRoute) -> str:
     """Return the name of an operation in a generated client.
 
-    `evaluate_template`, `show_report_of_revision_as`.
-
-    It is the name of the route's function; one that serves several paths says which.
+    Examples are `evaluate_template` and `show_report_of_revision_as`. It is the name of the route's function,
+    with a suffix if the function serves several paths.
     """
     if not route.name.endswith(("_report", "_worksheet", "_file", "show_variant", "show_variants")):
         return route.name
@@ -42,7 +42,7 @@ def operation_id(route: APIRoute) -> str:
 def include(app: FastAPI, router: APIRouter) -> None:
     """Serve the routes of a router as routes of the app itself, with the app's responses and names.
 
-    FastAPI keeps a router that it includes whole, and looks through it twice for each request.
+    FastAPI keeps an included router as a whole, and searches it twice for each request.
     """
     for route in router.routes:
         if isinstance(route, APIRoute):
@@ -78,7 +78,7 @@ def _operations(described: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]
 
 
 def _name_bodies(operation: dict[str, Any], schemas: dict[str, Any]) -> None:
-    """Give an object that stands in an operation a name of its own, under which generators make one class."""
+    """Give an inline object of an operation its own name, from which generators create one class."""
     for content in operation.get("requestBody", {}).get("content", {}).values():
         schema = content["schema"]
         if schema.get("type") == "object" and "title" in schema:
@@ -113,7 +113,7 @@ def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
 
 
 def _declare_problems(operation: dict[str, Any]) -> None:
-    """Declare the refusals of every operation that takes a body or a parameter, or uses stored rows."""
+    """Declare the refusals of every operation that has a body or a parameter, or uses stored rows."""
     if "requestBody" in operation:
         _refused(operation, 408, 413, 415, 422)
     if operation.get("parameters"):
@@ -128,10 +128,10 @@ def _refused(operation: dict[str, Any], *statuses: int) -> None:
 
 
 def _simplify(schema: Any) -> None:
-    """Say the same in words that generators of clients understand, here and in all parts.
+    """Express the schema in a form that client generators understand, recursively.
 
-    Names that follow a pattern are `propertyNames`, and no others are taken; one allowed text is a choice of
-    one (openapi-python-client compares every value of a union with a `const`).
+    Names with a pattern become `propertyNames` without other properties; a single allowed text becomes an
+    enumeration of one (openapi-python-client compares every value of a union with a `const`).
     """
     if isinstance(schema, list):
         for part in schema:
@@ -151,7 +151,10 @@ _INLINE = re.compile(rb"<script>(.*?)</script>", re.DOTALL)
 
 
 def install(app: FastAPI) -> None:
-    """Add `/docs`, Swagger UI from local files; its script holds `app.swagger_ui_parameters` of now."""
+    """Install `/docs`, Swagger UI from local files.
+
+    Its script contains the present `app.swagger_ui_parameters`.
+    """
     page = get_swagger_ui_html(
         openapi_url=app.openapi_url or "/openapi.json",
         title=f"{app.title} - Swagger UI",
@@ -170,7 +173,7 @@ def install(app: FastAPI) -> None:
 def policy(page: bytes) -> str:
     """Return the policy of a page with inline scripts.
 
-    They may run, and nothing else that is not from here.
+    Only inline scripts and content from this service are allowed.
     """
     digests = (b64encode(hashlib.sha256(script).digest()).decode() for script in _INLINE.findall(page))
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests)

@@ -1,4 +1,4 @@
-"""Large bodies and large answers are transferred in pieces, one piece per turn of the event loop.
+"""Transfer large bodies and large answers in pieces, one piece per turn of the event loop.
 
 Otherwise each of twenty simultaneous uploads would transfer a piece in every turn, and a short request would
 wait for all of them several times.

@@ -19,7 +19,7 @@ Cursor = Annotated[str | None, Query(max_length=200, description="`next` of the 
 def page(
     kind: type[Pages], rows: Sequence[T], limit: int, show: Callable[[T], Answer], cursor: Callable[[T], str]
 ) -> Pages:
-    """Return one page from rows, of which one more than `limit` was read to see if there are more."""
+    """Return one page from rows; one row more than `limit` was read to see if there are more."""
     items = rows[:limit]
     following = cursor(items[-1]) if len(rows) > limit else None
     return kind(items=[show(row) for row in items], next=following)
@@ -28,7 +28,7 @@ def page(
 def page_of(
     kind: type[Pages], everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Answer]
 ) -> Pages:
-    """Return one page of a short list that is known whole; the cursor is the place in it."""
+    """Return one page of a short list that is completely known; the cursor is a position in it."""
     start = int(after) if after and after.isdecimal() and len(after) < 9 else 0
     following = str(start + limit) if start + limit < len(everything) else None
     return kind(items=[show(row) for row in everything[start : start + limit]], next=following)

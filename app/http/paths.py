@@ -1,4 +1,4 @@
-"""Ids at the end of a path, beside words that have a path of their own, such as `/worksheets/check`."""
+"""Path parameters that are ids, beside fixed words of the same path, such as `/worksheets/check`."""
 
 from __future__ import annotations
 

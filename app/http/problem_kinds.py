@@ -1,4 +1,4 @@
-"""The kinds of problems, and the table from errors to them: the domains know nothing of HTTP.
+"""The kinds of problems, and the table that maps errors to them; the domains know nothing of HTTP.
 
 A kind names its `type`, `/problems/<slug>`, its status, title and remedy.
 """
@@ -81,6 +81,12 @@ TABLE: dict[type[Exception], Kind] = {
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
     designs.DesignReleased: Kind(
         "design-released", 409, "A released revision keeps its design", "archive the design instead"
+    ),
+    approvals.Unacknowledged: Kind(
+        "acknowledgement",
+        409,
+        "What is said of unconfirmed criteria is missing, or needless",
+        "send `acknowledged` where the approvals list `unconfirmed`",
     ),
     approvals.NotReady: Kind(
         "not-ready-to-sign", 409, "The revision cannot be signed as it is", "see `detail`"
@@ -239,5 +245,5 @@ SLUGS = {
 
 
 def kind_of(error: Exception) -> Kind:
-    """Return the kind of problem that an error is: that of its nearest class in the table."""
+    """Return the kind of problem of an error: that of its nearest class in the table."""
     return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)

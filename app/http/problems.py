@@ -1,4 +1,4 @@
-"""Errors → RFC 9457 problems, by the table of `app.http.problem_kinds`.
+"""Turn errors into RFC 9457 problems, by the table of `app.http.problem_kinds`.
 
 A problem's `type` is a relative link, `/problems/<slug>`, which answers with its meaning and remedy.
 """
@@ -38,7 +38,7 @@ LONGEST_PLACE = 200  # characters of where in a body something is wrong; its nam
 
 
 def describe(error: Exception) -> JsonObject:
-    """Return an error as a problem (RFC 9457), with all that it carries."""
+    """Return an error as a problem (RFC 9457), with all its data."""
     kind = kind_of(error)
     detail = kind.remedy if kind is INTERNAL else _detail(error)
     carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
@@ -46,7 +46,10 @@ def describe(error: Exception) -> JsonObject:
 
 
 def _detail(error: Exception) -> str:
-    """Return the text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
+    """Return the text of an error. FastAPI's own text would quote the whole body.
+
+    `_validation` replaces it.
+    """
     return "" if isinstance(error, RequestValidationError) else str(error)
 
 
@@ -135,7 +138,7 @@ router = APIRouter(tags=["problems"])
 
 @router.get("/problems/{slug}", responses=refusals(404), dependencies=[public()])
 def explain_problem(slug: str) -> ProblemKind:
-    """The meaning of a kind of problem, and the remedy."""
+    """Return the meaning of a kind of problem, and its remedy."""
     if slug not in SLUGS:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return ProblemKind(**vars(SLUGS[slug]))
@@ -196,9 +199,10 @@ METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 
 
 def allowed_methods(request: Request) -> str:
-    """Return all methods that some route takes for the path of a request, as the header Allow has them.
+    """Return all methods of the routes for the path of a request, as in the header Allow.
 
-    Starlette names the methods of the first route that fits; here a path has a route for each method.
+    Starlette names only the methods of the first matching route; here each method of a path is a separate
+    route.
     """
     root = request.scope.get("app_root_path", request.scope.get("root_path", ""))
     return ", ".join(method for method in METHODS if _takes(request, method, root))

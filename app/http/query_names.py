@@ -1,4 +1,4 @@
-"""Names of parameters in an address: a misspelt one is refused, since it would change nothing."""
+"""Check the names of query parameters: a misspelt name is refused, since the route would ignore it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from templates.core.nearest import nearest
 
 
 def refuse_unknown(request: Request) -> None:
-    """Refuse parameters of the address that the route does not have.
+    """Refuse query parameters that the route does not have.
 
     Raises
     ------
     InvalidInputs
-        Naming each of the first few, what comes nearest to it, and all that the route has.
+        Naming the first few, their nearest matches, and all parameters of the route.
     """
     if not request.scope["query_string"]:
         return

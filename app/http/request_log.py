@@ -1,4 +1,4 @@
-"""Every request gets an id, is counted and timed, and leaves a line in the log."""
+"""Give every request an id, count and time it, and log one line for it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RequestLog:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, with an id, and look at what comes back."""
+        """Pass the request on with an id, and observe the response."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -75,13 +75,13 @@ def what_is_in_flight() -> list[str]:
 
 
 def install(app: FastAPI) -> None:
-    """Put this around all of an app, its answer to an unexpected error included."""
+    """Wrap all of an app, including its answer to an unexpected error."""
     build = app.build_middleware_stack  # `add_middleware` would leave Starlette's handler of those outside
     app.build_middleware_stack = lambda: RequestLog(build())  # type: ignore[method-assign]
 
 
 def route_of(scope: Scope) -> str:
-    """Return the template of the path, of which there are few; never the path."""
+    """Return the path template of the route, of which there are few; never the path itself."""
     route = scope.get("route")
     if route is not None:
         return route.path  # type: ignore[no-any-return]
@@ -89,12 +89,12 @@ def route_of(scope: Scope) -> str:
 
 
 def method_of(scope: Scope) -> str:
-    """Return the method, or `other`: anybody may invent one."""
+    """Return the method, or `other`: a client may invent methods."""
     return scope["method"] if scope["method"] in _METHODS else "other"
 
 
 def _log(scope: Scope, status: int, seconds: float) -> None:
-    """Write one line; without a status, the client left before there was an answer."""
+    """Write one log line; without a status, the client disconnected before the answer."""
     path = scope["path"][:_LONGEST]
     about = {
         "client": logs.without_secret(from_whom(scope)),

@@ -1,4 +1,4 @@
-"""Every request is a span; only with traces is this imported, see `app.observation.traces`."""
+"""Record every request as a span. Imported only if traces are on, see `app.observation.traces`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RequestSpans:
         self.app, self.traces = app, traces
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, within the span."""
+        """Pass the request on within the span."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -53,13 +53,13 @@ class RequestSpans:
 
 
 def install(app: FastAPI, traces: Traces) -> None:
-    """Put this around all of an app; what observes it comes outside."""
+    """Wrap all of an app; other observers must be installed outside."""
     build = app.build_middleware_stack
     app.build_middleware_stack = lambda: RequestSpans(build(), traces)  # type: ignore[method-assign]
 
 
 def _of_caller(scope: Scope) -> str:
-    """Return the context that a caller sends, if it has the right form."""
+    """Return the context that a caller sends, if it is well-formed."""
     for name, value in scope["headers"]:
         if name == b"traceparent" and _TRACEPARENT.fullmatch(value):
             return str(value.decode())

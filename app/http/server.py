@@ -1,10 +1,10 @@
 """The web server: uvicorn with limits on connections, and a shutdown that never exceeds the drain time.
 
-SIGTERM and SIGINT begin the end. Requests in flight have most of the drain time to be answered, then jobs are
+SIGTERM and SIGINT start the shutdown. Requests in flight have most of the drain time to finish; then jobs are
 put back into the queue and all rows are committed. If the process still hangs, a thread kills it; if that
 thread cannot run because something holds the interpreter lock, the interpreter's own watchdog does. A second
-signal ends at once. The process leaves without Python's own clean-up, which would wait for threads and run
-the destructors of the geometry kernel.
+signal ends the process at once. The process exits without Python's own clean-up, which would wait for threads
+and run the destructors of the geometry kernel.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 def run(app: FastAPI, settings: Settings) -> NoReturn:
-    """Serve until a signal; does not return."""
+    """Serve until a signal arrives; never return."""
     flush = logs.configure(settings.log_level, settings.log_format)
     answer_promptly()
     server = Server(configuration(app, settings), settings.drain_seconds, flush)
@@ -111,7 +111,7 @@ class Server(uvicorn.Server):
             self._leave(0)
 
     def _guard(self) -> None:
-        """Wait for a signal, then for the drain time or a second one, and end what is left."""
+        """Wait for a signal, then for the drain time or a second signal, and end the remaining work."""
         self._signals.get()
         start = time.monotonic()
         logger.info("stopping: requests in flight are answered within %g s", self.drain_seconds)
@@ -141,7 +141,7 @@ def what_runs() -> list[str]:
 
 
 def _busy_threads() -> list[str]:
-    """Return the threads that do more than wait for work, and where they are."""
+    """Return the threads that are working, not waiting for work, and their positions in the code."""
     frames, busy = sys._current_frames(), []
     for thread in threading.enumerate():
         frame = frames.get(thread.ident or 0)

@@ -28,7 +28,7 @@ class Streams:
         Raises
         ------
         TooManyStreams
-            There are as many as there may be.
+            If the maximum number of streams is open.
         """
         with self._lock:
             if self.open[client] >= self.most_of_client:

@@ -1,8 +1,8 @@
 """Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
-`StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
-nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
-calls its endpoint without FastAPI's machinery.
+`StrictRoute` replaces FastAPI's lenient parsing of bodies: pydantic's parser refuses lone surrogates and deep
+nesting, and a missing or wrong content type is refused. `PlainRoute` reads just as strictly, and calls its
+endpoint without FastAPI's machinery.
 """
 
 from __future__ import annotations
@@ -94,20 +94,20 @@ class StrictRequest(Request):
         return self.app.state.pace  # type: ignore[no-any-return]
 
     async def parts(self) -> tuple[bytes, ...]:
-        """Return the body as it came."""
+        """Return the body as received."""
         if not hasattr(self, "_parts"):
             self._parts = tuple([part async for part in self._received()])
         return self._parts
 
     async def body(self) -> bytes:
-        """Return the body as one object; to join a large one holds the interpreter, see `parts`."""
+        """Return the body as one object; joining a large one holds the interpreter lock, see `parts`."""
         if not hasattr(self, "_body"):
             parts = await self.parts()
             self._body = parts[0] if len(parts) == 1 else b"".join(parts)
         return self._body
 
     async def discard(self) -> None:
-        """Receive and discard the body, because a client that still sends may not read an answer yet."""
+        """Receive and discard the body, because a client that is still sending may not read an answer yet."""
         async for _ in self._received():
             pass
 
@@ -126,7 +126,7 @@ class StrictRequest(Request):
         Raises
         ------
         JSONDecodeError
-            If it is none, no UTF-8, or nested too deep; FastAPI answers it as an invalid input.
+            If it is not JSON, not UTF-8, or nested too deeply; FastAPI answers it as an invalid input.
         """
         if not hasattr(self, "_json"):
             try:
@@ -159,14 +159,14 @@ class StrictRoute(APIRoute):
         return strict
 
     async def check(self, request: StrictRequest) -> None:
-        """Refuse what is wrong before the meaning of a request is looked at.
+        """Refuse formally wrong requests before their meaning is examined.
 
         Raises
         ------
         HttpError
-            The precondition is missing, or the body is of another type, too large or too intricate.
+            If the precondition is missing, or the body has a wrong type, is too large or too complex.
         HTTPException, InvalidInputs
-            A text has U+0000.
+            If a text contains U+0000.
         """
         await _refreshed(request)
         refuse_nul_in_address(request)
@@ -188,7 +188,7 @@ class StrictRoute(APIRoute):
             raise
 
     async def admit(self, request: StrictRequest) -> None:
-        """Raise what refuses a request by its head alone; its body has not come yet."""
+        """Raise an error that follows from the head of a request, before its body arrives."""
 
 
 class _Parameter:
@@ -200,7 +200,7 @@ class _Parameter:
         self._is_required = field.field_info.is_required()
 
     def value(self, received: Mapping[str, str], faults: list[object]) -> object:
-        """Return the value that was received, or its default; add its faults to the list."""
+        """Return the received value or its default; add its faults to the list."""
         if (text := received.get(self.alias)) is None:
             faults += [_missing(*self._place)] if self._is_required else ()
             return self._default
@@ -226,7 +226,7 @@ class PlainRoute(StrictRoute):
         self._body = declared.body_params[0].name if self.body_field else None
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Read the request, and send what the endpoint answers."""
+        """Read the request, and send the answer of the endpoint."""
         if scope["method"] not in self.takes:
             await super().handle(scope, receive, send)  # 405
             return
@@ -245,7 +245,7 @@ class PlainRoute(StrictRoute):
         Raises
         ------
         RequestValidationError
-            With everything that is wrong.
+            With all faults.
         """
         faults: list[object] = []
         values = {one.name: one.value(request.path_params, faults) for one in self._in_path}
@@ -284,7 +284,7 @@ def _not_json(error: JSONDecodeError) -> dict[str, object]:
 
 
 async def _refreshed(request: Request) -> None:
-    """Take notice of a team's files that have changed."""
+    """Check whether a team's files have changed."""
     services = getattr(request.app.state, "services", None)
     if services is not None:
         await services.catalogues.refresh()
@@ -296,7 +296,7 @@ def check_type(request: Request, allowed: set[str], error: type[HttpError] = Not
     Raises
     ------
     HttpError
-        The error given, if there is a body, and its type is another or is not named.
+        The given error, if there is a body whose type differs or is missing.
     """
     if request.headers.get("content-type") in allowed:
         return
@@ -313,40 +313,40 @@ def _require_type(request: Request, allowed: Container[str], error: type[HttpErr
 
 
 def require_step(request: Request) -> None:
-    """Refuse a body that does not say that it is a STEP file; packed ones (`+zip`) are not understood.
+    """Refuse a body that is not declared as a STEP file; compressed ones (`+zip`) are not supported.
 
     Raises
     ------
     NotStep
-        If the content type is another, or missing.
+        If the content type differs or is missing.
     """
     _require_type(request, STEP_TYPES, NotStep, "the STEP file itself as model/step")
 
 
 def require_sheet(request: Request) -> None:
-    """Refuse a body that is said to be something else than a sheet of Mathcad.
+    """Refuse a body that is not declared as a sheet of Mathcad.
 
     Raises
     ------
     NotSheet
-        If the content type is another, or missing.
+        If the content type differs or is missing.
     """
     _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
 
 
 def require_model(request: Request) -> None:
-    """Refuse a body that is said to be something else than a file of a model.
+    """Refuse a body that is not declared as a file of a model.
 
     Raises
     ------
     NotModel
-        If the content type is another, or missing.
+        If the content type differs or is missing.
     """
     _require_type(request, MODEL_TYPES, NotModel, "the file itself as application/octet-stream")
 
 
 async def _read(request: StrictRequest) -> object:
-    """Return the body as JSON, or nothing if it is none: that is refused elsewhere."""
+    """Return the body as JSON, or nothing if it is invalid, which another check refuses."""
     try:
         return await request.json()
     except JSONDecodeError:
@@ -354,7 +354,7 @@ async def _read(request: StrictRequest) -> object:
 
 
 async def _check_intricacy(request: StrictRequest) -> bool:
-    """Count what makes parsing expensive; a large body in pieces, so that other requests run.
+    """Count the elements that make parsing expensive; a large body in pieces, so that other requests run.
 
     Returns whether a text may have U+0000.
     """
@@ -379,7 +379,7 @@ async def _check_intricacy(request: StrictRequest) -> bool:
 
 
 async def fingerprint(request: Request) -> str:
-    """Return the SHA-256 of a request's body; with parameters in its address, of these too."""
+    """Return the SHA-256 of a request's body, including its query parameters."""
     digest = hashlib.sha256(await request.body())
     if query := request.scope["query_string"]:
         digest.update(b"?" + query)
@@ -402,9 +402,9 @@ def refuse_nul_in_address(request: Request) -> None:
     Raises
     ------
     HTTPException
-        With 404, if the path has it: nothing is called so.
+        With 404, if the path contains it: no resource has such a name.
     InvalidInputs
-        If parameters behind the path have it.
+        If query parameters contain it.
     """
     if NUL in request.scope["path"]:
         raise HTTPException(404, "a name cannot contain U+0000")
@@ -420,7 +420,7 @@ def may_have_nul(part: bytes) -> bool:
 
 
 def has_nul(body: bytes) -> bool:
-    """Return whether JSON has U+0000 in a text; its time is linear in the length."""
+    """Return whether a text in JSON contains U+0000, in linear time."""
     return _JSON_NUL.search(body) is not None
 
 
@@ -430,13 +430,13 @@ def refuse_nul_in(value: object) -> None:
     Raises
     ------
     InvalidInputs
-        With the fields that have it.
+        With the fields that contain it.
     """
     _refuse_nul(dict(_nul_places(value)))
 
 
 def _refuse_nul(texts: Mapping[str, str]) -> None:
-    """Refuse fields by their names if there are any; each with the text, or the name, that has it."""
+    """Refuse fields with U+0000, if there are any; each is named with its text or name."""
     if texts:
         raise InvalidInputs(
             [
@@ -447,14 +447,14 @@ def _refuse_nul(texts: Mapping[str, str]) -> None:
 
 
 def _nul_position(text: str) -> str:
-    """Return line and column of the first U+0000 in a text, as editors count."""
+    """Return line and column of the first U+0000 in a text, numbered as in editors."""
     before = text[: text.index(NUL)]
     line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
     return f"line {line}, column {column}" if "\n" in text else f"character {column}"
 
 
 def _nul_places(value: object) -> Iterator[tuple[str, str]]:
-    """Yield the place of a U+0000 in JSON: the path with dots, and the text or name that holds it."""
+    """Yield the location of each U+0000 in JSON: the dotted path, and the text or name that contains it."""
     waiting: list[tuple[str, object]] = [("", value)]
     while waiting:
         place, part = waiting.pop()

@@ -1,11 +1,13 @@
-"""The record of who did what: a row in the transaction of the change itself."""
+"""The record of who did what: one row, written in the transaction of the change itself; and its listing."""
 
 from __future__ import annotations
 
 import secrets
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 
-from sqlalchemy import insert
+from sqlalchemy import ColumnElement, insert, or_, select
 from sqlalchemy.orm import Session
 
 from app.identity.principal import acting
@@ -28,10 +30,10 @@ _RECORDED = Statement(
 def record(
     session: Session, action: str, object: str, digest: str | None = None, at: str | None = None
 ) -> None:
-    """Record what the acting principal does to an object, in the unit of work that does it.
+    """Record an action of the acting principal on an object, in the same unit of work.
 
-    The id of the row begins with the time by this machine's clock, and is not a counter of the
-    database: units of work that only record something do not wait for each other.
+    The id of the row begins with the time of this machine's clock instead of a database counter, so that
+    units of work that only record something do not wait for each other.
 
     Parameters
     ----------
@@ -42,9 +44,9 @@ def record(
     object
         Its path in the interface, without `/api/v1/`, such as `designs/<id>/revisions/3`.
     digest
-        SHA-256 of what was written or signed, where there is one.
+        SHA-256 of the written or signed content, if there is one.
     at
-        The time that the change itself carries, as text; the present if not given.
+        The time stored with the change, as text; by default the present time.
     """
     who = acting()
     row = {
@@ -57,3 +59,31 @@ def record(
         "digest": digest,
     }
     _RECORDED.run(session, row)
+
+
+@dataclass(frozen=True)
+class AuditFilter:
+    """Filter of a list of rows; a field that is None lets every row pass."""
+
+    object: str | None = None  # its path, or that of what it belongs to: designs/<id>
+    principal: str | None = None  # id or name
+    action: str | None = None  # design.create, or all of a kind: design
+
+
+def page(session: Session, limit: int, before: str | None, wanted: AuditFilter) -> list[AuditRow]:
+    """Return one page of rows, newest first, plus one row if there are more."""
+    query = select(AuditRow).where(*_conditions(wanted)).order_by(AuditRow.id.desc())
+    if before:
+        query = query.where(AuditRow.id < before)
+    return list(session.scalars(query.limit(limit + 1)))
+
+
+def _conditions(wanted: AuditFilter) -> Iterator[ColumnElement[bool]]:
+    if wanted.object is not None:
+        inside = AuditRow.object.startswith(f"{wanted.object}/", autoescape=True)
+        yield or_(AuditRow.object == wanted.object, inside)
+    if wanted.principal is not None:
+        yield or_(AuditRow.principal == wanted.principal, AuditRow.name == wanted.principal)
+    if wanted.action is not None:
+        of_kind = AuditRow.action.startswith(f"{wanted.action}.", autoescape=True)
+        yield or_(AuditRow.action == wanted.action, of_kind)

@@ -71,7 +71,7 @@ def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
 
 
 def _said(row: AuditRow) -> dict[str, object]:
-    """Return the content of a row, by its columns."""
+    """Return the content of a row by column."""
     return {name: getattr(row, name) for name in _SAID}
 
 
@@ -81,7 +81,7 @@ def _hash(row: Mapping[str, object], seq: int, previous: str | None) -> str:
 
 
 def head(session: Session) -> Link:
-    """Return the newest sealed row; one whose number was replaced by what is none is passed over."""
+    """Return the newest sealed row; a row whose number was replaced by an invalid one is skipped."""
     is_number = cast(AuditRow.seq, BigInteger) == AuditRow.seq  # SQLite keeps what somebody wrote: 2.5 or 'x'
     numbered = select(AuditRow.seq).where(AuditRow.seq < NO_NUMBER, is_number)
     seq = session.scalar(numbered.order_by(AuditRow.seq.desc()).limit(1))
@@ -97,13 +97,8 @@ def head(session: Session) -> Link:
 def verify(session: Session, exported: str | None = None) -> ChainCheck:
     """Verify the chain up to its first broken row, or to its end.
 
-    Parameters
-    ----------
-    session
-        A snapshot of the database.
-    exported
-        A hash that was noted earlier. It has to be that of a row: a chain that was cut off at its end, or
-        written again as a whole, is sound in itself.
+    Parameters ---------- session A snapshot of the database. exported A hash that was recorded earlier, which
+    must be that of a row: a chain that was truncated or completely rewritten is consistent in itself.
     """
     unsealed = session.scalar(select(func.count()).where(AuditRow.seq.is_(None))) or 0
     last, met = START, exported is None
@@ -162,10 +157,7 @@ def _is_text(row: AuditRow) -> bool:
 
 
 def waiting(session: Session) -> list[AuditRow]:
-    """Return the oldest unsealed rows, without those whose values are not text.
-
-    `verify` names these.
-    """
+    """Return the oldest unsealed rows, without those whose values are not text, which `verify` names."""
     query = select(AuditRow).where(AuditRow.seq.is_(None)).order_by(AuditRow.id).limit(SOME)
     try:
         rows = list(session.scalars(query))
@@ -193,7 +185,7 @@ def _unsealed(session: Session) -> list[dict[str, object]]:
 
 
 def seal(session: Session) -> int:
-    """Number and chain rows that wait, in a unit of work; return how many."""
+    """Number and chain waiting rows in a unit of work; return their number."""
     last, sealed = head(session), list[Values]()
     for row in _unsealed(session):
         before, last = last, Link(last.seq + 1, _hash(row, last.seq + 1, last.hash))

@@ -1,7 +1,7 @@
 """Identify the sender of a request: by its key, or by the session of a browser.
 
-Before the first principal exists, everybody is LOCAL; from then on every request needs a key. A verified key
-is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
+Before the first principal exists, every sender is LOCAL; from then on every request needs a key. A verified
+key is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ class Door:
         self.forget()
 
     def forget(self) -> None:
-        """Verify every key and session again, because something has changed."""
+        """Verify every key and session again after a change."""
         self._by_key: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
-        """Return whether the service needs no keys; no request passes before this is known.
+        """Return whether the service needs no keys; no request is admitted before this is known.
 
         Raises
         ------
         DatabaseUnavailable
-            The database server cannot be reached.
+            If the database server cannot be reached.
         """
         if self._asks:
             return False
@@ -59,11 +59,11 @@ class Door:
         return not self._asks
 
     async def by_key(self, key: str) -> Guest | None:
-        """Return whom this key lets in; None if it is not valid."""
+        """Return the guest that a key admits; None if the key is not valid."""
         return await self._guest(digest(key), lambda: self._holder(key))
 
     async def by_session(self, token: str) -> Guest | None:
-        """Return the guest who has signed in by the session of this cookie; None if it is not valid."""
+        """Return the guest who signed in with the session of this cookie; None if it is not valid."""
         hash = digest(token)
         return await self._guest(hash, lambda: self._signed_in(hash))
 
@@ -73,7 +73,7 @@ class Door:
         Raises
         ------
         LimitReached
-            There were too many.
+            If there were too many.
         """
         limits = limits_of(self._settings, guest.limits)
         self._rate.take(guest.principal, limits.requests_per_minute)
@@ -81,7 +81,7 @@ class Door:
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
         """Return the guest of this hash, from the cache or from `find`.
 
-        Kept in the cache that there was before.
+        It is stored in the cache that existed before the search.
         """
         cache = self._by_key
         if (guest := cache.get(hash)) is not None:
@@ -93,7 +93,7 @@ class Door:
         return guest
 
     async def _keep_counts(self) -> None:
-        """Write now and then how many requests there were."""
+        """Store the number of requests now and then."""
         if (present := time.monotonic()) - self._kept_at >= _KEEP:
             self._kept_at = present
             await asyncio.to_thread(self._note, self._rate.counted())

@@ -1,4 +1,4 @@
-"""Errors of identity: a request is refused because of who sends it."""
+"""Errors of identity: a request is refused because of its sender."""
 
 from __future__ import annotations
 

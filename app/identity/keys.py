@@ -47,7 +47,7 @@ def digest(text: str) -> str:
 
 
 def is_same(text: str, stored: str) -> bool:
-    """Return whether a text has a stored hash, in a time that does not depend on where they differ."""
+    """Return whether a text has a stored hash, in constant time."""
     return hmac.compare_digest(digest(text), stored)
 
 

@@ -39,7 +39,7 @@ NAMES = tuple(field.name for field in fields(Limits))
 
 
 def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
-    """Return the limits of a principal whose row has these of its own."""
+    """Return the limits of a principal, with its own values where its row has them."""
     general = {
         "requests_per_minute": settings.principal_rate,
         "storage_mb": settings.principal_storage_mb,
@@ -61,7 +61,7 @@ class LimitReached(IdentityError):
 
 
 def today() -> str:
-    """Return the present day in UTC, as rows of usage have it."""
+    """Return the present day in UTC, in the format of the rows of usage."""
     return datetime.now(UTC).date().isoformat()
 
 

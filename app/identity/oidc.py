@@ -2,7 +2,7 @@
 
 OpenID Connect Core 1.0, section 3.1, and RFC 7636.
 
-Needs the extra `team`, of which the parts are imported where they are used.
+It needs the extra `team`, whose packages are imported where they are used.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ class Provider:
         self._transport = transport
 
     async def address(self, begun: Begun, back: str) -> str:
-        """Return the address at which the browser signs in; the provider sends it to `back`.
+        """Return the address at which the browser signs in; the provider redirects it to `back`.
 
         Raises
         ------
         ProviderRefused
-            The provider does not answer as one.
+            If the provider does not answer correctly.
         """
         async with self._http() as http:
             place = _text(await self._about(http), "authorization_endpoint")
@@ -92,12 +92,12 @@ class Provider:
         return f"{place}{'&' if '?' in place else '?'}{urlencode(query)}"
 
     async def person(self, begun: Begun, state: str, code: str, back: str) -> Person:
-        """Return the person who has signed in, by the code that the browser brought back.
+        """Return the person who has signed in, by the code that the browser returned.
 
         Raises
         ------
         ProviderRefused
-            The state is another, the code is not taken, or the token is not signed for this sign-in.
+            If the state differs, the code is refused, or the token is not signed for this sign-in.
         """
         if not hmac.compare_digest(state.encode(), begun.state.encode()):
             raise ProviderRefused("this sign-in did not start in this browser: sign in again")
@@ -143,14 +143,14 @@ class Provider:
         return claims
 
     def _require_own(self, claims: Mapping[str, object]) -> None:
-        """Refuse a token that another service asked for: OpenID Connect Core 1.0, section 3.1.3.7, 4 and 5.
+        """Refuse a token requested by another service: OpenID Connect Core 1.0, section 3.1.3.7, 4 and 5.
 
-        A token for several services (`aud`) names the one that asked for it (`azp`), which must be this one.
+        A token for several services (`aud`) names the requesting one (`azp`), which must be this one.
         """
         audience = claims["aud"]
         if "azp" not in claims and isinstance(audience, list) and len(audience) > 1:
             raise ProviderRefused(
-                "the provider's token is for several services and does not say which of them asked for it"
+                "the provider's token is for several services and does not name the one that requested it"
             )
         if claims.get("azp", self.client) != self.client:
             raise ProviderRefused("the provider's token is for another service")
@@ -168,7 +168,7 @@ class Provider:
 async def _asked(
     http: httpx.AsyncClient, method: str, place: str, sent: Mapping[str, str] | None = None
 ) -> Mapping[str, object]:
-    """Return the provider's answer; nothing of it is quoted."""
+    """Return the provider's answer; no part of it is quoted in messages."""
     try:
         answer = await http.request(method, place, data=sent)
         content: object = answer.json() if answer.is_success else None

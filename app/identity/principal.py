@@ -1,6 +1,6 @@
-"""The acting principal: set for each request and job, read wherever an action is recorded.
+"""The acting principal: set for each request and job, read where an action is recorded.
 
-Units of work run in the context of their caller, so a row that is written there has the right author.
+Units of work run in the context of their caller, so each row that they write has the right author.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Principal:
 
     @cached_property
     def included(self) -> frozenset[Role]:
-        """Return the roles with those that they include."""
+        """Return the roles together with the roles that they include."""
         return frozenset(role for own in self.roles for role in INCLUDED[own])
 
     def may(self, role: Role) -> bool:
@@ -59,7 +59,7 @@ BUILT_IN = frozenset({LOCAL.id, SYSTEM.id, ANONYMOUS.id})
 
 
 def client_of(principal: str) -> str:
-    """Return the client, whose turn jobs take, that a principal is."""
+    """Return the client name of a principal, under which its jobs take turns."""
     return f"principal:{principal}"
 
 

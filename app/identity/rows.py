@@ -26,14 +26,14 @@ class Guest:
 
 
 def any_principal(session: Session) -> bool:
-    """Return whether there is a principal, so that keys are asked for."""
+    """Return whether there is a principal, so that keys are required."""
     return bool(session.scalar(select(exists().where(PrincipalRow.id.is_not(None)))))
 
 
 def holder(session: Session, prefix: str, key: str) -> Guest | None:
-    """Return the owner of a key; None if the key is not valid, for any reason.
+    """Return the owner of a key; None if the key is not valid for any reason.
 
-    Whether there is such a prefix makes no difference in what is done.
+    The same work is done whether or not the prefix exists.
     """
     pair = session.execute(
         select(ApiKeyRow, PrincipalRow).join(PrincipalRow).where(ApiKeyRow.prefix == prefix)
@@ -46,7 +46,7 @@ def holder(session: Session, prefix: str, key: str) -> Guest | None:
 
 
 def signed_in(session: Session, hash: str) -> Guest | None:
-    """Return the guest of a session; None if it, or the key by which it began, is not valid."""
+    """Return the guest of a session; None if it, or the key with which it began, is not valid."""
     query = select(SessionRow, PrincipalRow, ApiKeyRow).join(
         PrincipalRow, SessionRow.principal_id == PrincipalRow.id
     )
@@ -103,7 +103,7 @@ def of_subject(session: Session, subject: str) -> PrincipalRow | None:
 
 
 def principals(session: Session, limit: int, after: str | None) -> list[PrincipalRow]:
-    """Return principals in the order of their creation, behind one of them if given."""
+    """Return principals in the order of their creation, after a given one if any."""
     query = select(PrincipalRow).order_by(PrincipalRow.id).limit(limit)
     return list(session.scalars(query.where(PrincipalRow.id > after) if after else query))
 
@@ -120,7 +120,7 @@ def keys_of(session: Session, principal: str) -> list[ApiKeyRow]:
 
 
 def find_key(session: Session, prefix: str, principal: str | None = None) -> ApiKeyRow:
-    """Return a key by its prefix; that of one principal, if it is named.
+    """Return a key by its prefix, optionally of one principal.
 
     Raises
     ------
@@ -134,9 +134,9 @@ def find_key(session: Session, prefix: str, principal: str | None = None) -> Api
 
 
 def keys_of_key(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
-    """Return a key, and those made by it or by one of these.
+    """Return a key, and the keys created by it, directly or indirectly.
 
-    Without a spared one and those that it has made.
+    A spared key and the keys created by it are left out.
     """
     keys = [session.get_one(ApiKeyRow, prefix)]
     for row in keys:  # grows meanwhile
@@ -161,13 +161,13 @@ def end_session(session: Session, hash: str) -> None:
 
 
 def asked_by(session: Session, id: str) -> Principal:
-    """Return on whose behalf a job runs; LOCAL where that principal is of another database."""
+    """Return the principal on whose behalf a job runs; LOCAL if it belongs to another database."""
     row = session.get(PrincipalRow, id)
     return LOCAL if row is None else principal(row)
 
 
 def names(session: Session, ids: Collection[str]) -> dict[str, str]:
-    """Return the names of principals by their ids; one without a row has none."""
+    """Return the names of principals by id; one without a row has none."""
     wanted = set(ids) - BUILT_IN
     by_id = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
     if not wanted:

@@ -1,7 +1,8 @@
 """The sealer of the audit: each second it numbers and chains the rows that units of work have added.
 
-To chain a row in its own unit of work would let every commit wait for the one before. Of several servers on
-one database one seals at a time, under a lock that PostgreSQL keeps until the end of its transaction.
+Chaining each row in its own unit of work would make every commit wait for the previous one. If several
+servers share a database, only one seals at a time, under a lock that PostgreSQL holds until the end of its
+transaction.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Principals, their keys and sessions: every change has its row in the audit, and counts here at once."""
+"""Principals, their keys and sessions: every change is audited and takes effect here at once."""
 
 from __future__ import annotations
 
@@ -57,22 +57,22 @@ class Identity:
     def add(
         self, name: str, roles: Iterable[Role], kind: Kind = "person", subject: str | None = None
     ) -> PrincipalRow:
-        """Make a principal.
+        """Create a principal.
 
         Raises
         ------
         NameTaken
-            Another one has the name.
+            If another principal has the name.
         """
         return self._write(lambda session: _added(session, name, roles, kind, subject))
 
     def add_another(self, name: str, roles: Iterable[Role], kind: Kind) -> PrincipalRow:
-        """Make a principal beside those there are: the first one has the service ask for keys.
+        """Add a principal to existing ones; the first one makes the service require keys.
 
         Raises
         ------
         FirstByCommand, NameTaken
-            It would be the first one; another one has the name.
+            If it would be the first one, or another one has the name.
         """
 
         def unit(session: Session) -> PrincipalRow:
@@ -88,7 +88,7 @@ class Identity:
         Raises
         ------
         NotFound
-            There is none of this id.
+            If there is none with this id.
         """
         with self._database.read() as session:
             return rows.find(session, id)
@@ -104,12 +104,12 @@ class Identity:
             return rows.principals(session, limit, after)
 
     def change(self, id: str, changes: Changes) -> PrincipalRow:
-        """Change a principal; who is disabled is signed out everywhere.
+        """Change a principal; a disabled one is signed out everywhere.
 
         Raises
         ------
         NotFound, NameTaken
-            There is no such principal; another one has the name.
+            If there is no such principal, or another one has the name.
         """
 
         def unit(session: Session) -> PrincipalRow:
@@ -132,16 +132,13 @@ class Identity:
     def add_key(
         self, principal: str, name: str = "", scopes: Iterable[Role] = (), expires: datetime | None = None
     ) -> tuple[NewKey, ApiKeyRow]:
-        """Make a key, which only this answer has.
+        """Create a key, which appears only in this answer.
 
-        A principal makes keys for itself with the roles and the life of the key that it acts by, at most; an
-        administrator makes them for others.
+        A principal creates keys for itself with at most the roles and the life of its present key; an
+        administrator creates keys for others.
 
-        Raises
-        ------
-        NotFound, NotOwn, RoleNeeded, Outlives
-            There is no such principal; it is another; a scope is not a role that the key may have; the key
-            would be valid for too long.
+        Raises ------ NotFound, NotOwn, RoleNeeded, Outlives If there is no such principal, it is another one,
+        a scope is not allowed, or the key would be valid for too long.
         """
         new = new_key()
 
@@ -168,7 +165,7 @@ class Identity:
         Raises
         ------
         NotFound, NotOwn
-            There is no such principal; it is another.
+            If there is no such principal, or it is another one.
         """
         _require_own(principal)
         with self._database.read() as session:
@@ -181,7 +178,7 @@ class Identity:
         Raises
         ------
         NotFound, NotOwn
-            There is no such principal; it is another.
+            If there is no such principal, or it is another one.
         """
         _require_own(principal)
         with self._database.read() as session:
@@ -191,15 +188,15 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """Revoke a key, of one principal if that is named; a revoked key stays as it is.
+        """Revoke a key, optionally of one principal; a revoked key stays unchanged.
 
-        The keys that its principal has made by it end as well, but for the one by which it is revoked: so one
-        changes from an old key to its successor. The key comes first in what is returned, then those others.
+        The keys that its principal created with it end as well, except the one that revokes it: so a user can
+        change to a successor. The result lists the key first, then those others.
 
         Raises
         ------
         NotFound, NotOwn
-            There is no such key; it, or the named principal, is another's.
+            If there is no such key, or it belongs to another principal.
         """
         if principal is not None:
             _require_own(principal)
@@ -218,16 +215,16 @@ class Identity:
         return self._write(unit)
 
     def sign_in(self, principal: str, key: str | None = None, before: str = "") -> str:
-        """Begin a session in a browser, by a key or by what a provider says; the value of its cookie.
+        """Start a session in a browser, by a key or a provider's statement; return the value of its cookie.
 
         Parameters
         ----------
         principal
-            Who signs in.
+            The principal who signs in.
         key
-            The prefix of the key by which they do: the session can do no more, and ends with it.
+            The prefix of the key used: the session has at most its rights, and ends with it.
         before
-            The cookie that the browser has sent: its session ends.
+            The cookie that the browser sent: its session ends.
         """
         token, form_token = (secrets.token_urlsafe(_TOKEN_BYTES) for _ in range(2))
         expires = as_text(datetime.now(UTC) + timedelta(hours=self._settings.session_hours))
@@ -246,7 +243,7 @@ class Identity:
         return token
 
     def signed_in_as(self, subject: str, name: str) -> str:
-        """Return the principal whom a provider names by a subject; a new one has no roles yet."""
+        """Return the principal that a provider identifies by a subject; a new one has no roles yet."""
 
         def unit(session: Session) -> str:
             if (principal := rows.of_subject(session, subject)) is not None:
@@ -303,12 +300,12 @@ def _end(session: Session, key: ApiKeyRow) -> None:
 
 
 def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
-    """Return the key by which a principal makes another one for itself; None for others, or without a key.
+    """Return the key with which a principal creates another one for itself; None in other cases.
 
     Raises
     ------
     NotSignedIn
-        That key has just ended, which the gate does not know yet.
+        If that key has just ended, and the access layer has not noticed yet.
     """
     who = acting()
     if who.key is None or who.id != owner.id:
@@ -320,10 +317,7 @@ def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
 
 
 def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> list[str]:
-    """Return the scopes of a new key.
-
-    As asked, within what its owner may, and within what whoever makes it may.
-    """
+    """Return the scopes of a new key, limited by its owner's roles and its creator's."""
     for scope in scopes:
         if not owner.may(scope):
             raise RoleNeeded(owner, [scope])
@@ -339,7 +333,7 @@ def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> li
 
 
 def _expires(asked: datetime | None, maker: ApiKeyRow | None) -> str | None:
-    """Return when a new key expires: as asked, at the latest with the key that makes it."""
+    """Return when a new key expires: as requested, at the latest with the key that creates it."""
     wanted = None if asked is None else as_text(asked)
     latest = None if maker is None else maker.expires
     if wanted and latest and wanted > latest:

@@ -1,4 +1,4 @@
-"""Usage of principals: rows by day, raised in the unit of work that uses something. LOCAL has no limits."""
+"""Usage of principals: one row a day, updated in the unit of work that causes it. LOCAL has no limits."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def note(
     seconds: float = 0.0,
     bytes: int = 0,
 ) -> None:
-    """Add to what a principal has used today; of a built-in one nothing is kept."""
+    """Add to the usage of a principal today; no usage is stored for a built-in one."""
     if principal not in BUILT_IN:
         day = {"principal": principal, "day": today()}
         session.execute(
@@ -73,7 +73,7 @@ def used(session: Session, principal: str) -> PrincipalUsage:
 
 
 def own_limits(session: Session, settings: Settings) -> Limits | None:
-    """Return the limits of the acting principal; None: nothing limits it."""
+    """Return the limits of the acting principal; None if it has no limits."""
     who = ACTING.get()
     if who.id in BUILT_IN:
         return None
@@ -87,7 +87,7 @@ def admit(session: Session, limits: Limits) -> None:
     Raises
     ------
     LimitReached
-        It has used its calculation of this day, or its storage.
+        If it has used up today's calculation time or its storage.
     """
     who = ACTING.get()
     check(limits, used(session, who.id), who.name)
@@ -100,7 +100,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
     Raises
     ------
     LimitReached
-        If so.
+        If it has.
     """
     if used.seconds >= limits.calculation_seconds:
         amounts = f"{used.seconds:.0f} s of {limits.calculation_seconds:.0f} s of calculation today (UTC)"
@@ -112,7 +112,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
 
 @contextmanager
 def working_for(database: Database, principal: str | None) -> Iterator[None]:
-    """Act for a principal by its id, LOCAL without one, and record the time that this takes."""
+    """Act for a principal by its id, or for LOCAL, and record the time used."""
     if principal is None or principal in BUILT_IN:
         with acting_as(LOCAL):
             yield

@@ -29,7 +29,7 @@ def key(row: ApiKeyRow) -> schemas.Key:
 
 
 def used(amounts: PrincipalUsage, limits: Limits | None) -> schemas.Usage:
-    """Return the usage beside the limits."""
+    """Return the usage together with the limits."""
     return schemas.Usage(
         requests=amounts.requests,
         jobs=amounts.jobs,

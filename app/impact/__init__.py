@@ -1,1 +1,1 @@
-"""The effect of a version of a template on the designs that use another one; nothing is written."""
+"""The effect of a template version on designs that use another version; nothing is written."""

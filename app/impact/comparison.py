@@ -1,4 +1,4 @@
-"""Compare one design, or variant, calculated with its own versions and with the new one."""
+"""Compare a design or variant, calculated with its own versions, with itself calculated with the new one."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Difference:
 
     @property
     def is_moved(self) -> bool:
-        """Return whether anything that is known moves."""
+        """Return whether any known value changes."""
         return bool(self.verdicts or self.outputs or self.gone or self.parameters)
 
 
@@ -89,7 +89,7 @@ def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[
 
 
 def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost | None:
-    """Return the criterion that loses the largest part of its margin; of those that had none, the first."""
+    """Return the criterion that loses the largest part of its margin; of those without margin, the first."""
     losses: list[tuple[float, MarginLost]] = []
     for name, old in before.judged.items():
         new = after.judged.get(name)
@@ -124,15 +124,15 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 
 
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
-    """Return whether a name has the same kind of quantity in both versions, in any units."""
+    """Return whether a name has the same kind of quantity in both versions, whatever the units."""
     one, other = before.units[name], after.units[name]
     return one == other or misfit(kind_of(one), unit(other), one) is None
 
 
 def change_size(old: Value, new: Value) -> float:
-    """Return the largest change by the largest old value.
+    """Return the largest change divided by the largest old value.
 
-    Infinite where a value appears, vanishes or leaves 0.
+    It is infinite if a value appears, vanishes or changes from 0.
     """
     if (
         isinstance(old, float)
@@ -153,7 +153,7 @@ def change_size(old: Value, new: Value) -> float:
 
 
 def _together(old: Value, new: Value) -> tuple[Array, Array]:
-    """Return both values as arrays of one shape, if one is a single value for all places of the other."""
+    """Return both values as arrays of the same shape, if one of them may be a single value."""
     one, other = np.asarray(old, dtype=float), np.asarray(new, dtype=float)
     if one.ndim and other.ndim:
         return one, other
@@ -175,13 +175,13 @@ def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> O
 
 
 def _place(one: Array, other: Array) -> tuple[np.intp, ...]:
-    """Return the place where two arrays differ most; a value that one of them lacks counts most."""
+    """Return the place where two arrays differ most; a missing value counts most."""
     steps = np.where(np.isnan(one) != np.isnan(other), INFINITE, np.abs(other - one))
     return np.unravel_index(int(np.argmax(np.nan_to_num(steps, nan=-1.0, posinf=INFINITE))), one.shape)
 
 
 def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) -> float | None:
-    """Return the change at a place by the largest old value."""
+    """Return the change at a place divided by the largest old value."""
     largest = float(np.nanmax(np.abs(one))) if not np.isnan(one).all() else 0.0
     step = float(other[place] - one[place])
     if is_temperature(scale) or largest == 0 or not np.isfinite(step / largest):
@@ -190,14 +190,14 @@ def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) ->
 
 
 def _quantity(si: Value, scale: str) -> Quantity | None:
-    """Return a single value [SI] in a unit; None of an array, or where there is none."""
+    """Return a single value [SI] in a unit; None for an array, or if missing."""
     if np.ndim(si) or not np.isfinite(si):
         return None
     return Quantity(value=float(unit(scale).from_si(float(si))), unit=scale)
 
 
 def _parameters(before: Outcome, after: Outcome, variant: str | None) -> Iterator[ModelParameterChange]:
-    """Yield parameters of models that change, or that are no longer known before a solid is built."""
+    """Yield parameters of models that change, or that become unknown until a solid is built."""
     for name in dict.fromkeys([*before.parameters, *after.parameters]):
         old, new = (outcome.parameters.get(name) for outcome in (before, after))
         if old is None or new is None or change_size(old, new) > SAME:

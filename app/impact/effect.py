@@ -40,7 +40,7 @@ def impact_of(
 
 
 def described(design: DesignAt, document: Document, template: str, version: int) -> dict[str, object]:
-    """Return the design, and its steps that use another version."""
+    """Return the design, with its steps that use another version."""
     return {
         "design": design.id,
         "name": document.name,
@@ -59,7 +59,7 @@ def used_steps(document: Document, template: str, version: int) -> list[StepUse]
 
 
 def _moved(differences: list[Difference]) -> dict[str, object]:
-    """Return the worst over a design and its variants."""
+    """Return the worst change over a design and its variants."""
     margins = [one.margin for one in differences if one.margin]
     largest = max(differences, key=lambda one: one.size)
     return {
@@ -73,7 +73,7 @@ def _moved(differences: list[Difference]) -> dict[str, object]:
 
 
 def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
-    """Yield why a save of the upgrade is refused; each reason once, at the first variant that has it."""
+    """Yield why a save of the upgrade is refused; each reason once, at its first variant."""
     listed = set[tuple[str, str, str]]()
     for variant, (before, after) in pairs.items():
         if before.faults and not after.faults:
@@ -88,7 +88,7 @@ def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
 
 
 def _remedies(batch: Batch, document: Document, pairs: Pairs, catalogues: Catalogues) -> dict[str, list[str]]:
-    """Return the names that the version needs, and those that it lacks."""
+    """Return the inputs that the version requires, and those that it lacks."""
     cls = catalogues.templates.get(batch.template, batch.version)
     steps = [use.step for use in used_steps(document, batch.template, batch.version)]
     remove = [name for step in steps for name in _left_over(step, document.steps[step], cls)]
@@ -110,16 +110,16 @@ def _is_missing(fault: Fault) -> bool:
 
 
 def _written(parts: dict[str, object]) -> DesignImpact:
-    """Return the answer without what is empty."""
+    """Return the answer without empty members."""
     return DesignImpact.model_validate(
         {name: part for name, part in parts.items() if part not in ([], None, 0)}
     )
 
 
 def unusable(about: dict[str, object], absent: list[str]) -> DesignImpact:
-    """Return a design that uses a version that the catalogue lacks.
+    """Return a design that uses a version that the catalogue lacks, so that it cannot be calculated.
 
-    Neither it nor its upgrade can be calculated.
+    Its upgrade cannot be calculated either.
     """
     detail = f"the catalogue does not have {', '.join(absent)}, so that the design cannot be calculated"
     return _refused(about, "unknown_name", detail)

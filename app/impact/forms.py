@@ -1,8 +1,8 @@
-"""The common part of designs of one structure, and the quantities in which they differ.
+"""The common form of several designs, and the quantities in which they differ.
 
-Two documents have one form if they are equal but for single quantities of equal kind: parameters, inputs of
-steps, parameters of models. Everything else, such as relations, choices, curves, limits and criteria, is part
-of the form as it is written.
+Two documents have the same form if they differ only in single quantities of the same kind: parameters, inputs
+of steps, parameters of models. Everything else, such as relations, choices, curves, limits and criteria, is
+part of the form as it is written.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class _PlaceRemoval:
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """Return a parameter of the design: its kind is that of its own unit."""
+        """Return a parameter of the design, with the kind of its typed unit."""
         if _is_written_out(raw):
             return raw
         try:

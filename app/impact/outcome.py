@@ -34,7 +34,7 @@ class JudgedCriterion:
 
 
 def is_temperature(name: str) -> bool:
-    """Return whether a unit is one of temperature, whose ratios mean nothing."""
+    """Return whether a unit is one of temperature, whose ratios have no meaning."""
     return bool(unit(name).base == registry.kelvin)
 
 

@@ -1,4 +1,4 @@
-"""The impact of a version in a calculation process: some designs, calculated with both versions."""
+"""The impact of a version in a calculation process: some designs are calculated with both versions."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _of_group(members: Sequence[_Member], catalogues: Catalogues, solids: Solids
 def _together(
     document: Document, quantities: Sequence[Quantities], catalogues: Catalogues
 ) -> list[Outcome] | None:
-    """Return the outcomes of documents of one form; None if they are calculated alone, as a single one is."""
+    """Return the outcomes of documents of one form; None if they must be calculated alone."""
     if len(quantities) < 2:
         return None
     columns = _columns(quantities)

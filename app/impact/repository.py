@@ -1,4 +1,4 @@
-"""All SQL of the impact of a version; nothing is written."""
+"""All SQL of the impact of a version; it only reads."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PAGE = 500  # designs of which the ids are read at once
 
 
 def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | None) -> list[str]:
-    """Return the designs that a filter selects, newest first; of those chosen, if any are."""
+    """Return the designs that a filter selects, newest first, optionally among the chosen ones."""
     ids: list[str] = []
     cursor: str | None = None
     while page := designs.designs(session, PAGE, cursor, wanted)[:PAGE]:
@@ -32,7 +32,7 @@ def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | Non
 
 
 def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Document]]:
-    """Yield the designs of these ids as of their newest revisions; those deleted meanwhile are left out."""
+    """Yield the designs of these ids at their newest revisions, without deleted ones."""
     heads = {row.id: row.head for row in designs.of_ids(session, ids)}
     query = select(RevisionRow.design_id, RevisionRow.number, RevisionRow.document)
     at = tuple_(RevisionRow.design_id, RevisionRow.number).in_(list(heads.items()))

@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{number}/impact`: which designs another version changes, and how."""
+"""`/templates/{id}/versions/{number}/impact`: the designs that this version would change, and how."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ async def show_impact(
 ) -> Response:
     """Calculate every design that uses another version as if it used this one; nothing is saved.
 
-    The worst of the designs that move come first. 202 with a job where it takes longer than is waited for.
+    The changed designs are sorted worst first. The answer is 202 with a job if the calculation takes longer
+    than the client waits.
     """
     asked = ImpactQuestion(id, number, body or ImpactIn(), units)
     return await answered(impacts, asked, request, client, patience(prefer, impacts.jobs.wait_seconds))

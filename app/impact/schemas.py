@@ -1,4 +1,4 @@
-"""The effect of a version of a template on the designs that use another one."""
+"""The effect of a template version on designs that use another version."""
 
 from __future__ import annotations
 

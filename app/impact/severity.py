@@ -1,4 +1,4 @@
-"""The order of the affected designs, worst first, and of the verdicts of one design."""
+"""The order of the affected designs and of the verdicts of one design, worst first."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
 
 
 def severity(moved: CriterionChange) -> int:
-    """Return the rank a change of a verdict; the worst change has the least rank."""
+    """Return the rank of a change of verdict; the worst change has the lowest rank."""
     if moved.new == "not_met":
         return NO_LONGER_MET if moved.old == "met" else NOT_MET
     if moved.old == "met":
@@ -19,7 +19,7 @@ def severity(moved: CriterionChange) -> int:
 
 
 def worst_first(moved: Iterable[CriterionChange]) -> list[CriterionChange]:
-    """Return changes of verdicts, those that matter most first."""
+    """Return changes of verdicts, the most important first."""
     return sorted(moved, key=lambda one: (severity(one), one.name, one.variant or ""))
 
 

@@ -1,4 +1,4 @@
-"""One design calculated by itself, as a save does, but with no solid that is not built."""
+"""Calculate one design by itself, as a save does, but without building any solid."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def outcome_alone(
 ) -> Outcome:
     """Return the result of a document.
 
-    `settled` are the values [SI] with which its iterations ended; they are taken as they are, because each
-    round would need a solid.
+    `settled` are the final values [SI] of its iterations; they are kept, because each round would need a
+    solid.
     """
     graph, faults = build_graph(document, catalogues)
     if faults:
@@ -70,7 +70,7 @@ def _parameters(calculation: Calculation) -> Iterator[tuple[str, tuple[float, st
 
 
 def _waiting(calculation: Calculation) -> Iterator[str]:
-    """Yield all that waits for solids: steps, values that follow from them, and iterations through them."""
+    """Yield everything that waits for solids: steps, dependent values, and iterations."""
     for node in calculation.pending:
         if isinstance(node, Cell) or (isinstance(node, Block) and not node.is_model):
             yield node.name

@@ -1,4 +1,4 @@
-"""The stored measurements of the solids of some designs, as a calculation process takes them."""
+"""The stored measurements of solids, as a calculation process receives them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Solids:
         return self.builds.get(build_key(shape))
 
     def analysed(self, shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
-        """Return the results of finite elements on a model, if all wanted results are among these."""
+        """Return the finite-element results of a model, if all requested results are among these."""
         outputs = self.analyses.get(question.key(build_key(shape)), {})
         if not set(wanted) <= outputs.keys():
             return None

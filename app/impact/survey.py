@@ -1,4 +1,4 @@
-"""All designs that use another version of a template, calculated batch by batch, and ranked."""
+"""Calculate all designs that use another version of a template, batch by batch, and rank them."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def check(asked: ImpactQuestion, database: Database, catalogues: Catalogues) -> 
     UnknownTemplate
         If there is no such version, or it is a draft with faults.
     NotFound
-        If a design is named that there is not.
+        If a named design does not exist.
     """
     catalogues.to_try(asked.template, asked.version)
     with database.read() as session:
@@ -64,7 +64,7 @@ def check(asked: ImpactQuestion, database: Database, catalogues: Catalogues) -> 
 def impact(
     asked: ImpactQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ImpactQuestion, Impact]:
-    """Return the impact of a version; a job asks for it, since it takes long."""
+    """Return the impact of a version; only a job calls this, since it takes long."""
     catalogues.to_try(asked.template, asked.version)
     drafts = catalogues.with_drafts([(asked.template, asked.version)])
     return Reply(Survey(asked, database, drafts).impact().in_units(asked.units))
@@ -82,7 +82,7 @@ class _Tally:
     variants: int = 0
 
     def add(self, batch: BatchResult) -> None:
-        """Take over the designs of a batch; no more than the limit are kept."""
+        """Add the designs of a batch; at most the limit are kept."""
         for impact in batch.designs:
             self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
         self.worst = sorted([*self.worst, *batch.designs], key=rank)[: self.limit]
@@ -100,7 +100,7 @@ class Survey:
     catalogues: Catalogues
 
     def impact(self) -> Impact:
-        """Return the effect of the version on them."""
+        """Return the effect of the version on these designs."""
         asked = self.asked
         chosen = None if asked.body.designs is None else set(asked.body.designs)
         tags = tuple(dict.fromkeys(map(key_of, asked.body.tags)))
@@ -126,7 +126,7 @@ class Survey:
         )
 
     def _concerned(self, ids: Sequence[str]) -> list[At]:
-        """Return those of some designs of which a step uses another version."""
+        """Return the designs with a step that uses another version."""
         with self.database.read() as session:
             newest = list(repository.newest(session, ids))
         return [
@@ -149,7 +149,7 @@ class Survey:
             yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
 
     def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[BatchResult]:
-        """Yield the comparisons of a batch; where its process ends, of smaller ones, down to one design."""
+        """Yield the comparisons of a batch; if its process dies, of smaller batches, down to one design."""
         try:
             yield self._compared(batch, share)
         except LOST as error:
@@ -163,7 +163,7 @@ class Survey:
             yield from self._of_batch(batch[half:], share)
 
     def _compared(self, batch: Sequence[At], share: _Share) -> BatchResult:
-        """Return a batch, calculated in the pool for the job that asks."""
+        """Return a batch, calculated in the pool for its job."""
         templates, models = uses(document for _, document in batch)
         parts = CatalogueTask.of(
             {*templates, (self.asked.template, self.asked.version)}, models, self.catalogues
@@ -196,7 +196,7 @@ class _Share:
         return self.begin + self.width * fraction
 
     def text(self, fraction: float) -> str:
-        """Return the same in words."""
+        """Return the same as a sentence."""
         return f"{int(self.at(fraction) * self.total)} of {self.total} designs"
 
 
@@ -206,7 +206,7 @@ def _pages(ids: Sequence[str]) -> Iterator[Sequence[str]]:
 
 
 def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
-    """Yield designs in batches of at most so many designs and variants; one design at least."""
+    """Yield designs in batches of at most this many designs and variants; each has at least one design."""
     batch: list[At] = []
     count = 0
     for at in designs:

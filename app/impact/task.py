@@ -31,7 +31,7 @@ class DesignAt:
         return Document.model_validate(from_json(self.document))
 
     def assumed(self) -> dict[Reference, float]:
-        """Return the values with which its iterations ended."""
+        """Return the final values of its iterations."""
         return {Reference.parse(name): value for name, value in self.settled}
 
 
@@ -58,7 +58,7 @@ def uses(documents: Iterable[Document]) -> tuple[set[tuple[str, int]], set[tuple
 def upgraded(document: Document, template: str, version: int) -> Document:
     """Return the document with one version in every step that uses the template.
 
-    Nothing of the original changes.
+    The original is not changed.
     """
     steps = {
         name: step.model_copy(update={"version": version}) if step.template == template else step

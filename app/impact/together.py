@@ -1,6 +1,6 @@
-"""Designs of one form calculated together: each is a row of the same array calls.
+"""Calculate designs of the same form together: each is one row of the same array calls.
 
-`alone` calculates the other designs: those with steps whose level follows from a tolerance, values that are
+`single` calculates the other designs: those with steps whose level follows from a tolerance, values that are
 measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
 refused.
 """
@@ -51,7 +51,7 @@ class Together:
 
     @classmethod
     def of(cls, document: Document, catalogues: Catalogues, varied: Collection[Reference]) -> Together | None:
-        """Return a form, by the document of one of its designs; None if its designs are calculated alone."""
+        """Return a form from the document of one of its designs; None if they must be calculated alone."""
         if document.iterations:
             return None
         try:
@@ -68,7 +68,7 @@ class Together:
         return cls(engine.design, outputs, parameters, subjects, units)
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
-        """Return the outcome of each row; None if they are calculated alone."""
+        """Return the outcome of each row; None if they must be calculated alone."""
         listed: list[Outcome] = []
         try:
             with np.errstate(all="ignore"):
@@ -89,7 +89,10 @@ class Together:
         return Targets(judged.references | cells, judged.inside | set(self.parameters))
 
     def _of_chunk(self, rows: Rows, part: Calculation) -> list[Outcome] | None:
-        """Return the outcomes of one array call; rows that start at different levels are calculated apart."""
+        """Return the outcomes of one array call.
+
+        Rows with different starting levels are calculated separately.
+        """
         groups = _by_levels(part)
         if len(groups) == 1:
             return list(self._read(part))
@@ -127,7 +130,7 @@ class Together:
             )
 
     def _parameter(self, part: Calculation, reference: Reference) -> Array:
-        """Return a parameter of a model as the model takes it."""
+        """Return a parameter of a model in the form that the model needs."""
         return part.taken(reference).spread(part.count)
 
 
@@ -136,7 +139,7 @@ def _chooses_by_tolerance(block: Block) -> bool:
 
 
 def _is_measured(graph: Graph) -> bool:
-    """Return whether anything follows from a measure or an analysis of a solid."""
+    """Return whether any value depends on a measurement or an analysis of a solid."""
     used = (reference for references in graph.used.values() for reference in references)
     inside = (reference for reference in used if reference.block in graph.blocks)
     return any(
@@ -145,7 +148,7 @@ def _is_measured(graph: Graph) -> bool:
 
 
 def _outputs(graph: Graph) -> Iterator[Reference]:
-    """Yield the outputs that the steps compute, without those that are words."""
+    """Yield the outputs that the steps compute, without words."""
     for block in graph.blocks.values():
         if not block.is_model:
             computed = graph.computed(block)
@@ -166,7 +169,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 def _is_incomplete(block: Block) -> bool:
     """Return whether a model lacks parameters, or no output of a step is requested.
 
-    It is checked alone.
+    Such a design is checked alone.
     """
     if not block.is_model:
         return block.outputs == ()
@@ -178,7 +181,7 @@ def _is_incomplete(block: Block) -> bool:
 
 
 def _by_levels(part: Calculation) -> list[Indices]:
-    """Return the rows in groups that start at the same levels when each stands alone."""
+    """Return the rows in groups that would start at the same levels as single designs."""
     keys: list[list[str]] = [[] for _ in range(part.count)]
     for step in part.steps.values():
         cls = step.block.cls
@@ -192,7 +195,7 @@ def _by_levels(part: Calculation) -> list[Indices]:
 
 
 def _started(step: StepRows) -> Iterator[tuple[int, str]]:
-    """Yield the level at which each row starts that has inputs."""
+    """Yield the starting level of each row that has inputs."""
     for part in step.parts:
         shape = part.template.shape_of_points()
         for place, row in enumerate(part.rows.tolist()):

@@ -1,1 +1,1 @@
-"""Models that a team brings: files of FreeCAD, sessions of Creo, STEP files as fixed parts."""
+"""Models that a team imports: FreeCAD files, Creo sessions, and STEP files as fixed parts."""

@@ -1,7 +1,7 @@
 """Build the description of an assembly from its manifest: find, pin and pack each fixed part.
 
-The package holds the STEP file of every fixed part. So an assembly can be built again whatever happens to the
-models and designs from which the parts came.
+The package holds the STEP file of every fixed part. So an assembly can be rebuilt even if the models and
+designs of its parts are gone.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class _Source:
 def described_assembly(
     content: bytes, id: str, file_name: str, database: Database, store: Artifacts, catalogues: Catalogues
 ) -> AssemblyDescription:
-    """Return the description of an assembly; stores the package of its fixed parts.
+    """Return the description of an assembly, and store the package of its fixed parts.
 
     Raises
     ------
     UnreadableModel
-        If the manifest is wrong, or names what is not there.
+        If the manifest is wrong, or names a missing part.
     ArtifactMissing, ArtifactDamaged
         If the file of a part is lost.
     """
@@ -98,7 +98,7 @@ class AssemblyFiles:
 
 
 def _packed(files: Mapping[str, bytes]) -> bytes:
-    """Return files by hash in one: equal files make equal bytes."""
+    """Return one package of files, by hash; equal files give equal bytes."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as package:
         for sha in sorted(files):
@@ -107,7 +107,7 @@ def _packed(files: Mapping[str, bytes]) -> bytes:
 
 
 def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
-    """Return the class of the model that an assembly stands on."""
+    """Return the class of the base model of an assembly."""
     if base is None:
         return None
     try:
@@ -186,7 +186,7 @@ def _of_design(session: Session, fixed: FixedPart) -> _Source:
 
 
 def _held(session: Session, id: str, number: int) -> tuple[str, ...]:
-    """Return the ids of the models of which an assembly is made; none of other models."""
+    """Return the ids of the models that an assembly contains; none for other models."""
     try:
         about = description_of(repository.version(session, id, number).description)
     except NotFound:
@@ -212,7 +212,7 @@ def _component(fixed: FixedPart, source: _Source) -> Component:
 def _require_distinct(
     base: type[CadModel] | None, components: Mapping[Component, Mapping[str, float]]
 ) -> None:
-    """Refuse components whose parameters have the name of others: `wall` with the model's `wall_x`."""
+    """Refuse components whose parameters would have the name of others, such as `wall` with `wall_x`."""
     taken = {*base.inputs, *base.formulas} if base else set[str]()
     for one in components:
         names = {parameter.name for parameter in one.parameters({})}

@@ -66,7 +66,7 @@ class FixedPart(Bounded):
         Raises
         ------
         ValueError
-            If it names no source, or both; or a number is none.
+            If it names no source or both, or a number is invalid.
         """
         if (self.model is None) == (self.design is None):
             raise ValueError("give either `model`, an imported STEP file, or `design`")
@@ -79,12 +79,12 @@ class FixedPart(Bounded):
         return self
 
     def place(self) -> dict[str, float]:
-        """Return its shifts [mm] and turns [deg], by parameter.
+        """Return its shifts [mm] and rotations [deg], by parameter.
 
         Raises
         ------
         ValueError
-            If one of them is no such quantity, or too large.
+            If one of them is not such a quantity, or is too large.
         """
         shifts = {name: _number(name, getattr(self, name), "mm", FARTHEST) for name in SHIFTS}
         return shifts | {name: _number(name, getattr(self, name), "deg", 360.0) for name in TURNS}
@@ -95,7 +95,7 @@ class FixedPart(Bounded):
         Raises
         ------
         ValueError
-            If it is none.
+            If it is not a density.
         """
         density = _number("density", self.density, "kg/m**3", 1e5)
         if density <= 0:
@@ -120,7 +120,7 @@ class AssemblyManifest(Bounded):
         Raises
         ------
         ValueError
-            If two components have the same name, or names whose parameters would be the same.
+            If two components have the same name, or their parameters would have the same names.
         """
         names = [one.name for one in self.components]
         if twice := sorted({name for name in names if names.count(name) > 1}):
@@ -131,7 +131,7 @@ class AssemblyManifest(Bounded):
 
 
 def is_assembly(content: bytes) -> bool:
-    """Return whether some JSON says that it is the manifest of an assembly."""
+    """Return whether a JSON text claims to be the manifest of an assembly."""
     if len(content) > LONGEST:
         return False  # whoever reads it says that it is too large
     try:
@@ -147,7 +147,7 @@ def read(content: bytes) -> AssemblyManifest:
     Raises
     ------
     UnreadableModel
-        Naming all that is wrong.
+        Naming all faults.
     """
     try:
         return AssemblyManifest.model_validate_json(content)
@@ -166,7 +166,7 @@ def _number(name: str, text: str, wanted: str, most: float) -> float:
     Raises
     ------
     ValueError
-        If it is none, or its amount is too large.
+        If it is not a number, or its magnitude is too large.
     """
     try:
         typed = read_quantity(text, wanted)

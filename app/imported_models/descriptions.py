@@ -30,12 +30,12 @@ class Deadline:
         self._limits, self._end = limits, time.monotonic() + limits.deadline
 
     def left(self) -> float:
-        """Return the time that is left [s].
+        """Return the remaining time [s].
 
         Raises
         ------
         DeadlineExceeded
-            If that is nothing.
+            If no time is left.
         """
         if (seconds := self._end - time.monotonic()) <= 0:
             raise DeadlineExceeded(self._limits.deadline)
@@ -43,12 +43,12 @@ class Deadline:
 
     @property
     def limits(self) -> Limits:
-        """Return the limits of a function that runs in what is left; raises as `left` does."""
+        """Return the limits of a function for the remaining time; raises like `left`."""
         return Limits(self.left(), self._limits.memory_mb)
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the time that was left."""
+        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the remaining time."""
         try:
             yield
         except DeadlineExceeded:
@@ -65,7 +65,7 @@ _BOUNDS: Mapping[str, float] = {"mm": 1e5, "deg": 360.0, "1": 1e6}
 def described_freecad(
     content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
-    """Return the description of a `.FCStd` file; stores the file as FreeCAD shall open it.
+    """Return the description of a `.FCStd` file, and store the file in the form that FreeCAD opens.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def described_creo(
     Raises
     ------
     UnreadableModel, GeometryError, DeadlineExceeded
-        If the manifest is wrong, Creo cannot draw the model, or a size that it names is not on the solid.
+        If the manifest is wrong, Creo cannot draw the model, or the solid lacks a named size.
     """
     described = read(content).described(store.put(content), file_name)
     context.progress(0.1, "Creo draws the model")
@@ -121,7 +121,7 @@ def described_step(content: bytes, file_name: str, store: Artifacts, context: Jo
     Raises
     ------
     UnreadableStep, GeometryError, DeadlineExceeded, MemoryExceeded
-        If it holds no solid.
+        If it contains no solid.
     """
     context.progress(0.1, "reading the STEP file")
     context.run(trial_sizes, ProgramResult(step=content))
@@ -156,7 +156,7 @@ def _trials(
     context: JobContext,
     deadline: Deadline,
 ) -> dict[str, Role]:
-    """Return how each length is measured on the solid: change it alone and compare the sizes."""
+    """Find how each length is measured on the solid: change it alone and compare the sizes."""
     before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
     lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
     for number, one in enumerate(lengths):
@@ -175,5 +175,5 @@ def _trials(
 
 
 def _stem(file_name: str) -> str:
-    """Return the name of a file without its ending, as the title of a model."""
+    """Return a file name without its extension, as the title of a model."""
     return (file_name.rpartition(".")[0] or file_name)[:100].rstrip(". ") or "model"

@@ -1,4 +1,4 @@
-"""Errors of an import of a model, beyond those of its file and of its program."""
+"""Errors of a model import, beyond those of its file and of its program."""
 
 
 class ModelIdTaken(Exception):

@@ -29,7 +29,7 @@ class FreeCad:
 
 
 def missing(reason: str) -> ProgramMissing:
-    """Return the refusal where FreeCAD cannot be used, with what to do."""
+    """Return the refusal for an unusable FreeCAD, with a remedy."""
     return ProgramMissing("program_missing", f"{reason}: {INSTALL}")
 
 
@@ -40,7 +40,7 @@ def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCa
     Raises
     ------
     ProgramMissing
-        If it is not there, or this machine cannot isolate it.
+        If it is missing, or this machine cannot isolate it.
     """
     if sys.platform != "linux" or platform.machine() not in _MACHINES:
         reason = f"FreeCAD is isolated on Linux of {' and '.join(_MACHINES)} only, and this is another system"

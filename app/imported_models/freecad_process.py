@@ -1,7 +1,7 @@
 """The server's side of the process in which FreeCAD opens one file.
 
-The process is isolated as `cad.freecad.drawing_process` says: no network, no other programs, files of one
-folder, limits of memory and processor time. Whatever it does, it is killed at its deadline.
+The process is isolated as `cad.freecad.drawing_process` says: no network, no other programs, only the files
+of one folder, limited memory and processor time. It is killed at its deadline in any case.
 """
 
 from __future__ import annotations
@@ -99,11 +99,11 @@ class FreeCadProcess:
         Raises
         ------
         DeadlineExceeded, MemoryExceeded, JobCancelled
-            The process was ended, or ended by itself.
+            If the process was ended, or exited by itself.
         GeometryError
-            FreeCAD refuses, or crashed.
+            If FreeCAD refuses or crashed.
         ProgramMissing
-            It did not start.
+            If it did not start.
         """
         self.is_sound = False
         if not self._is_ready:

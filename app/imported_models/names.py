@@ -25,25 +25,28 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     InvalidInputs
         If the id means something else.
     ModelIdTaken
-        If a template, or a model from elsewhere, has it.
+        If a template or another model has it.
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
         why = "has an address of its own" if id in RESERVED else "ends like a version"
         raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as main_cap")])
     snapshot = catalogues.snapshot
     if any(name == id for name, _ in (*snapshot.templates.quarantined, *snapshot.models.quarantined)):
-        raise ModelIdTaken(f"{id} is the id of one of the team's files")
+        raise ModelIdTaken(f"{id} is already the id of a file of the team")
     if id in snapshot.templates.ids:
-        raise ModelIdTaken(f"{id} is the id of a template")
+        raise ModelIdTaken(f"{id} is already the id of a template")
     if any(
         name == id and imported_description(cls) is None
         for (name, _), cls in snapshot.models.versions.items()
     ):
-        raise ModelIdTaken(f"{id} is the id of a model in a Python file")
+        raise ModelIdTaken(f"{id} is already the id of a model in a Python file")
 
 
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
-    """Return an API name for a parameter: `boreDiameter` → `bore_diameter`; its object before it if taken."""
+    """Return an API name for a parameter: `boreDiameter` → `bore_diameter`.
+
+    Prefixed by its object if it is in use.
+    """
     name = snake(key) or "parameter"
     if name in taken:
         name = f"{snake(thing) or 'object'}_{name}"[:LONGEST].strip("_")
@@ -54,9 +57,9 @@ def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
 
 
 def snake(text: str) -> str:
-    """Return a text in small ASCII letters, digits and single underscores, beginning with a letter.
+    """Return a text in lower-case ASCII letters, digits and single underscores, beginning with a letter.
 
-    Maybe empty.
+    The result may be empty.
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", plain).lower()

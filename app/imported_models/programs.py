@@ -1,4 +1,4 @@
-"""The programs that draw imported models, each behind the same interface: values in, solids out."""
+"""Programs that draw imported models, all behind the same interface: values in, solids out."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Drawing(Protocol):
         Raises
         ------
         GeometryError
-            If it cannot draw them; `ProgramMissing` if it is not there.
+            If it cannot draw them; `ProgramMissing` if it is missing.
         DeadlineExceeded, MemoryExceeded, JobCancelled
             If it was stopped.
         """
@@ -80,12 +80,12 @@ class FreeCadDrawing:
 
 
 def _changed(described: Description, values: Values) -> list[Parameter]:
-    """Return the parameters that are not as in the file; to set others again would change last digits."""
+    """Return the parameters that differ from the file; setting the others again would change last digits."""
     return [one for one in described.parameters if values.get(one.name, one.value) != one.value]
 
 
 def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
-    """Return a value as the process of FreeCAD takes it: object, kind, key, value, unit."""
+    """Return a value in the form of the FreeCAD process: object, kind, key, value, unit."""
     thing, kind, key = one.source.split(".", 2)
     return [thing, kind, key, value, one.unit]
 
@@ -124,7 +124,7 @@ class Programs:
 
 
 def values_of(shape: ImportedModel) -> Values:
-    """Return a model's parameters in their declared units, to the twelve digits that its key uses."""
+    """Return a model's parameters in their declared units, rounded to the twelve digits of its key."""
     return {
         name: float(f"{shape.inputs[name].meaning.scale.from_si(float(si)):.12g}")
         for name, si in shape.inputs_si().items()

@@ -21,7 +21,7 @@ EVERY = 1.0
 
 
 def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
-    """Yield the classes of rows; one that this program cannot read harms no other."""
+    """Yield the classes of rows; an unreadable row does not affect the others."""
     for row in rows:
         try:
             yield (row.id, row.number), class_of(row.description, row.id, row.number)
@@ -40,18 +40,18 @@ class ImportedModelRegistry:
         self.look()
 
     def start(self) -> None:
-        """Look what other servers import, if there may be others on this database."""
+        """Start looking for models that other servers import, if the database may have other servers."""
         if self._is_shared:
             self._thread.start()
 
     def stop(self) -> None:
-        """Look no more."""
+        """Stop looking."""
         self._ending.set()
         if self._thread.is_alive():
             self._thread.join()
 
     def look(self) -> None:
-        """Take notice of new versions."""
+        """Look for new versions."""
         with self._looking, self.database.read() as session:
             if (count := repository.count(session)) == self._count:
                 return

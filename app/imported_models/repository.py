@@ -42,7 +42,7 @@ def numbers(session: Session, id: str) -> list[int]:
 
 
 def add(session: Session, id: str, described: Description, sent: str) -> int:
-    """Add a version, the next of its id; the number of one that is the same already."""
+    """Add the next version of a model; return the number of an identical one if it exists."""
     rows = list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
     for row in rows:
         if row.description == described.text:

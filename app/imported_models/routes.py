@@ -37,7 +37,7 @@ FileName = Annotated[
 
 @router.get("/import")
 def list_programs(imports: TheModelImports) -> DrawingPrograms:
-    """The programs that draw imported models; of one that is missing how to install it."""
+    """Return the programs that draw imported models, and how to install missing ones."""
     reason, place = imports.available()
     freecad = DrawingProgram(
         name="FreeCAD",
@@ -73,11 +73,11 @@ async def import_model(
     id: NewId,
     file: FileName = "model",
 ) -> Response:
-    """A file of FreeCAD (.FCStd) or a manifest for Creo as a model, or a STEP file as a fixed part.
+    """Import a FreeCAD file (.FCStd) or a manifest as a model, or a STEP file as a fixed part.
 
     Aliases of spreadsheet cells and named constraints of sketches become parameters. Macros and Python
-    features never run: a file that has them is refused. The job answers with the version of the model once it
-    has ended. A file under an id that is there becomes its next version.
+    features never run: a file that has them is refused. The result of the job is the version of the model. A
+    file with an existing id becomes its next version.
     """
     body = await request.body()
     return accepted(await threads.run(imports.begin, body, id, file, once))
@@ -85,7 +85,7 @@ async def import_model(
 
 @router.get("/{id}/versions/{number}/origin", responses=refusals(404))
 def read_origin(id: Id, number: Number, database: TheDatabase) -> ModelOrigin:
-    """The file from which a model was imported, its parameters there, and how far to trust its solids."""
+    """Return the file from which a model was imported, its parameters there, and the trust in its solids."""
     return origin(database, id, number)
 
 
@@ -95,7 +95,7 @@ def read_origin(id: Id, number: Number, database: TheDatabase) -> ModelOrigin:
     responses={200: {"content": {"application/octet-stream": {}}}, **UNCHANGED, **refusals(404, 503)},
 )
 def read_original_model(id: Id, number: Number, database: TheDatabase, store: TheStore) -> Response:
-    """The file that a model was imported from, as it was sent."""
+    """Return the file from which a model was imported, unchanged."""
     shown = origin(database, id, number)
     headers = {"ETag": f'"{shown.sha256}"'}
     return StoredFile(store, shown.sha256, "application/octet-stream", headers, shown.file)

@@ -1,14 +1,12 @@
-"""Imports of models as jobs: the file is kept by its hash, examined, and becomes a version of a model."""
+"""Import models as jobs: store the file by its hash, examine it, and make it a version of a model."""
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import Literal
 
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.identity.usage import note_bytes
 from app.imported_models import repository
 from app.imported_models.assemblies import described_assembly
 from app.imported_models.assembly_manifest import is_assembly
@@ -20,7 +18,7 @@ from app.imported_models.names import require_free
 from app.imported_models.programs import Programs
 from app.imported_models.registry import ImportedModelRegistry
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.plain import JsonObject
+from app.jobs.uploads import last_name, queue_upload
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database, after_commit
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
@@ -41,7 +39,10 @@ FAILURES = (
 
 
 class ModelImports:
-    """Queues imports of models, and is the handler of such jobs."""
+    """Queues imports of models, and is the handler of such jobs.
+
+    A failed import leaves nothing behind, and retention takes its file.
+    """
 
     def __init__(
         self,
@@ -61,9 +62,9 @@ class ModelImports:
         Raises
         ------
         UnreadableModel
-            If the file is empty, or of no kind that is taken.
+            If the file is empty, or of an unsupported kind.
         ProgramMissing
-            If the program that draws it is not here.
+            If the program that draws it is missing.
         ModelIdTaken, InvalidInputs
             If no imported model may have the id.
         QueueFull
@@ -77,27 +78,8 @@ class ModelImports:
             read(content)
         if kind == "assembly":
             read_assembly(content)
-        sha = self.store.put(content)
-        name = PurePath(file.replace("\\", "/")).name or "model"
-        payload = {
-            "file": sha,
-            "id": id,
-            "name": name,
-            "kind": kind,
-            "client": once.client,
-        }
-
-        def unit(session: Session) -> str:
-            if before := once.begin(session):
-                return str(before["job"])
-            job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
-            note_bytes(session, len(content))
-            once.keep(session, 202, {"job": job})
-            return job
-
-        job = self.database.write(unit)
-        self.jobs.wake()
-        return job
+        about = {"id": id, "name": last_name(file) or "model", "kind": kind}
+        return queue_upload(self.jobs, self.store, IMPORT, content, about, once)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Import the file of a job; its result is the version of the model.
@@ -105,7 +87,7 @@ class ModelImports:
         Raises
         ------
         JobFailed
-            The file is not taken, or the id is taken meanwhile.
+            If the file is refused, or the id is in use by now.
         """
         id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
         try:
@@ -122,11 +104,8 @@ class ModelImports:
 
         return completion
 
-    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Do nothing: a failed import leaves nothing behind, and retention takes its file."""
-
     def available(self) -> tuple[str | None, str | None]:
-        """Return the reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
+        """Return the reason why FreeCAD cannot draw here, or None; and its folder."""
         try:
             return None, self.programs.freecad.warm.find().modules
         except ProgramMissing as error:
@@ -148,7 +127,7 @@ def kind_of(content: bytes) -> Kind:
     Raises
     ------
     UnreadableModel
-        If it is none that is taken.
+        If the kind is not supported.
     """
     if content.startswith(b"PK\x03\x04"):
         return "freecad"

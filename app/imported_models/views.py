@@ -14,7 +14,7 @@ def origin(database: Database, id: str, number: int) -> ModelOrigin:
     Raises
     ------
     NotFound
-        If it was not imported, or is not there.
+        If it was not imported, or does not exist.
     """
     with database.read() as session:
         row = repository.version(session, id, number)

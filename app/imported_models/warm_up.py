@@ -1,8 +1,8 @@
 """Idle FreeCAD processes, one for each file drawn recently, so that its next drawing is quick.
 
-FreeCAD takes seconds to start, and a tenth of one to draw. A process serves only one file, so a harmful file
-affects no other. The process ends after a number of drawings, after any failure, and when other files need
-its memory.
+FreeCAD takes seconds to start, but only a tenth of a second to draw. A process serves only one file, so a
+harmful file affects no other. The process ends after a number of drawings, after any failure, and when other
+files need its memory.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class WarmProcesses:
         cancelled: threading.Event,
         seconds: float = math.inf,
     ) -> FreeCadAnswer:
-        """Ask the process of a file for an answer within some seconds; raises as `FreeCadProcess.ask`."""
+        """Send a request to the process of a file, with a time limit; raises like `FreeCadProcess.ask`."""
         process = self._taken(sha, content)
         try:
             return process.ask(do, given, cancelled, seconds)

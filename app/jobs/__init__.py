@@ -1,1 +1,1 @@
-"""Long work: jobs are rows in the database, run outside the server's process, and can be watched."""
+"""Long work: jobs are rows in the database, run outside the server's process, and report progress."""

@@ -67,7 +67,7 @@ class JobContext:
         Raises
         ------
         JobCancelled
-            Somebody cancelled the job, or the server stops.
+            If somebody cancelled the job, or the server stops.
         WorkerError
             See `Worker.run`.
         """
@@ -80,7 +80,7 @@ class JobContext:
         )
 
     def quietly(self) -> Runner:
-        """Run many functions without reporting the progress of each; the job counts them."""
+        """Run several functions without reporting the progress of each; the job counts them."""
         return _Quietly(self._batch, self._limits, self._cancelled)
 
     def close(self) -> None:
@@ -88,7 +88,7 @@ class JobContext:
         self._batch.close()
 
     def progress(self, fraction: float, text: str) -> None:
-        """Publish how far the job is (0 to 1) and what it does next, and have it stored."""
+        """Publish and store the progress of the job (0 to 1) and its next action."""
         self.log = [*self.log, text][-_LINES:]
         publish(self._events, self._job, fraction, text)
         self._keep(self._job, fraction, self.log)
@@ -106,13 +106,13 @@ class _Quietly:
 
 
 def publish(events: Events, job: Job, fraction: float, text: str) -> None:
-    """Send how far a job is to all who listen to it, or to its design, in this process."""
+    """Send the progress of a job to all its listeners, or those of its design, in this process."""
     data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
     events.publish(*map(partial(Event, name="progress", data=data), job.topics))
 
 
 def note(session: Session, events: Events, job: Job, name: str, **more: object) -> None:
-    """Note an event of a job in the unit that makes it true, for those who watch the job or its design."""
+    """Record an event of a job, in the same unit of work, for those who watch the job or its design."""
     after_commit(session, partial(_record, job, name))
     data = {"job": job.id, "revision": job.revision, **more}
     events.note(session, *[Event(topic, name, data) for topic in job.topics])

@@ -1,4 +1,4 @@
-"""The threads that take jobs from the queue, have them run, and record how they ended."""
+"""Threads that take jobs from the queue, have them executed, and record their outcomes."""
 
 import logging
 import secrets
@@ -96,7 +96,7 @@ class Dispatcher:
         self._threads: list[threading.Thread] = []
 
     def start(self, beside: Mapping[str, int]) -> None:
-        """Begin to take jobs from the queue, with so many threads for the lanes `beside` the usual two."""
+        """Start taking jobs from the queue, with extra threads for the lanes `beside` the usual two."""
         self._progress.start()
         self._counts |= beside
         self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
@@ -115,12 +115,12 @@ class Dispatcher:
         return self._counts[self._lane_name(kind)]
 
     def wake(self, kind: str | None = None) -> None:
-        """Have a thread of each lane look at the queue, or one of the lane of a kind."""
+        """Wake a thread of each lane, or of the lane of one kind, to look at the queue."""
         for lane in self._awake if kind is None else (self._lane_name(kind),):
             self._awake[lane].release()
 
     def interrupt(self, id: str, attempt: int | None = None) -> None:
-        """Kill the process of a job, if it runs, and is at this attempt."""
+        """Kill the process of a job, if it runs and is at this attempt."""
         running = self._running.get(id)
         if running and attempt in (None, running.job.attempt):
             running.cancelled.set()
@@ -130,7 +130,7 @@ class Dispatcher:
         return [running.job for running in list(self._running.values())]
 
     def requeue_all(self, owner: str | None = None) -> None:
-        """Queue again all jobs that seem to run, or those of an owner, when none of them can be alive."""
+        """Queue again all jobs marked as running, or those of an owner, when none of them can be alive."""
 
         def unit(session: Session) -> None:
             for job in repository.requeue_all(session, owner):
@@ -139,7 +139,7 @@ class Dispatcher:
         self._database.write(unit)
 
     def drain(self) -> None:
-        """Begin no more jobs; those that run go on."""
+        """Start no more jobs; running ones continue."""
         self._stopping.set()
 
     def stop(self, patience: float = 10.0) -> None:
@@ -183,7 +183,7 @@ class Dispatcher:
                     del self._running[job.id]
 
     def _has_place(self, lane: str) -> bool:
-        """Wait until the worker has a place for a job of a lane; False if no more are begun."""
+        """Wait until the worker has room for a job of a lane; False if no more jobs are started."""
         while not self._stopping.is_set():
             if lane not in WORKER_LANES or self._worker.capacity(WORKER_LANES[lane]) > 0:
                 return True
@@ -191,7 +191,7 @@ class Dispatcher:
         return False
 
     def _claim(self, session: Session, *, lane: str) -> Job | None:
-        """Claim a job and register it still in the writer: who sees it running can interrupt it."""
+        """Claim a job and register it within the same write, so that it can be interrupted at once."""
         kinds = self.kinds if self._database.is_shared else None
         job = repository.claim(session, self._lane(lane), self.owner, self._lease, kinds)
         if job is not None:
@@ -257,7 +257,7 @@ class Dispatcher:
         self._database.write(unit)
 
     def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
-        """Try again: another process may have been to blame, such as one that took the machine's memory."""
+        """Try again: another process may be the cause, such as one that used the machine's memory."""
         if self._stopping.is_set():  # its process was ended with the others
             self._requeue(job, job.crashes)
             return
@@ -269,7 +269,7 @@ class Dispatcher:
             self._fail(job, context, self._describe(error), crashes=crashes)
 
     def _lost(self, job: Job, context: JobContext, error: WorkerLost) -> None:
-        """Retry on another machine: only repeated losses of machines say something about the job."""
+        """Retry on another machine: only repeated losses of machines indicate a fault of the job."""
         losses = job.losses + 1
         logger.warning("Job %s (%s) was lost, time %d: %s", job.id, job.kind, losses, error)
         if losses < MAX_LOSSES:

@@ -6,7 +6,7 @@ JobError
  ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
  ├── JobLost        the servers or workers that ran the job were lost repeatedly
- ├── JobRests       raised by a handler: the job goes on later, others come first
+ ├── JobRests       raised by a handler: the job continues later, after other jobs
  └── JobFailed      raised by a handler: the job ends with this error
 """
 

@@ -1,4 +1,4 @@
-"""Events of designs and jobs: rows that are written with the change itself, and sent to subscribers.
+"""Events of designs and jobs: rows, written in the transaction of the change and sent to subscribers.
 
 The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
 its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a
@@ -58,27 +58,18 @@ class Event:
 
     @property
     def message(self) -> dict[str, object]:
-        """Return the event as its readers get it: a JSON object with its name."""
+        """Return the event in the form that readers get: a JSON object with its name."""
         return {"event": self.name, **self.data}
 
 
 TOPIC: Callable[[Event], str] = attrgetter("topic")
 
 
-def note_event(session: Session, topic: str, name: str, data: Data) -> int:
-    """Write an event in the unit of work that makes it true; its number.
-
-    Nobody hears of it before they read the rows: services note events by `app.jobs.events.Events.note`.
-    """
-    (event,) = note_events(session, Event(topic, name, data))
-    assert event.number is not None
-    return event.number
-
-
 def note_events(session: Session, *events: Event) -> list[Event]:
-    """Write events in the unit of work that makes them true; the same events with their numbers.
+    """Write events in the unit of work that makes them true; return them with their numbers.
 
-    The rows of jobs are locked before those of designs, as everywhere.
+    No listener is informed: services use `app.jobs.events.Events.note` instead. The rows of jobs are locked
+    before those of designs, as everywhere.
     """
     counts = Counter(map(TOPIC, events))
     numbers = dict[str, int]()
@@ -103,7 +94,7 @@ def note_events(session: Session, *events: Event) -> list[Event]:
 
 
 def newest_numbers(session: Session, topics: Iterable[str]) -> dict[str, int]:
-    """Return the number of the newest event of each topic whose design or job there is; 0 if it has none."""
+    """Return the number of the newest event of each topic whose design or job exists; 0 if it has none."""
     ids: dict[str, list[str]] = {kind: [] for kind in _OWNERS}
     for topic in topics:
         kind, _, id = topic.partition(":")
@@ -125,7 +116,10 @@ def events_above(session: Session, topic: str, number: int, most: int = PAGE) ->
 
 
 def are_events_kept(session: Session, topic: str, number: int, newest: int) -> bool:
-    """Return whether all events of a topic above a number are kept; not if it has not come to that number."""
+    """Return whether all events of a topic after a number are stored.
+
+    False if the number is not reached yet.
+    """
     if number >= newest:
         return number == newest
     return session.get(EventRow, (topic, number + 1)) is not None
@@ -154,12 +148,12 @@ class Events:
         self._closed = False
 
     def note(self, session: Session, *events: Event) -> None:
-        """Write events in the unit of work that makes them true; once it is durable, they are sent."""
+        """Write events in the unit of work that makes them true; send them once they are durable."""
         noted = note_events(session, *events)
         after_commit(session, partial(self._share, noted))
 
     def publish(self, *events: Event) -> None:
-        """Send events to all who listen in this process; never blocks."""
+        """Send events to all listeners in this process; never blocks."""
         for event in events:
             with self._lock:
                 if (topic := self._topics.get(event.topic)) is None:
@@ -171,9 +165,9 @@ class Events:
                 subscriber.send(event)
 
     def look(self, topics: Iterable[str] | None = None) -> None:
-        """Send events that other servers wrote for topics with listeners, or for all topics.
+        """Send events of other servers for topics with listeners, or for all topics.
 
-        The newest page of rows is enough: subscribers read by themselves what they lack before it.
+        The newest page of rows is enough: subscribers read earlier missing events themselves.
         """
         with self._lock:
             heard = {topic: its.newest for topic, its in self._topics.items()}
@@ -188,13 +182,13 @@ class Events:
                     self.publish(*events_above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
-        """Return those of these topics, or of all, that have listeners on this server."""
+        """Return those of the given topics, or of all, that have listeners on this server."""
         with self._lock:
             return set(self._topics) if topics is None else self._topics.keys() & set(topics)
 
     @asynccontextmanager
     async def subscribe(self, topic: str) -> AsyncIterator[Subscription]:
-        """Listen from now on; the subscription ends when the server closes."""
+        """Subscribe from now on; the subscription ends when the server closes."""
         subscriber = Subscription(topic, self._above)
         self._add(topic, subscriber)
         try:
@@ -211,7 +205,7 @@ class Events:
             subscriber.send(None)
 
     def _share(self, noted: list[Event]) -> None:
-        """Send events that were written here, and have other servers read them."""
+        """Send events that this server has written, and notify other servers."""
         self.publish(*noted)
         self.tell(map(TOPIC, noted))
 
@@ -256,11 +250,11 @@ class Subscription:
         self._queue: asyncio.Queue[Event | None] = asyncio.Queue(_ROOM)
 
     def resume(self, number: int) -> None:
-        """Go on after an event that the reader got earlier, with what happened since."""
+        """Continue after the reader's last event with all later ones."""
         self.number, self._is_behind = number, True
 
     def send(self, event: Event | None) -> None:
-        """Hand an event over; from any thread, never blocks."""
+        """Deliver an event; may be called from any thread and never blocks."""
         with suppress(RuntimeError):  # the loop has ended, and the reader with it
             self._loop.call_soon_threadsafe(self._put, event)
 

@@ -1,4 +1,4 @@
-"""Leases of jobs on a shared database: other servers take over the jobs of a server that died."""
+"""Leases of jobs on a shared database: when a server dies, other servers take over its jobs."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class Leases:
         return self._thread.ident is not None
 
     def start(self) -> None:
-        """Begin: what dead servers have left behind, and whose lease is over, is queued again at once."""
+        """Start: queue again at once the jobs of dead servers whose leases have expired."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End, and give back what this server still has."""
+        """Stop, and give back the jobs that this server still has."""
         self._stopping.set()
         self._thread.join()
         try:
@@ -66,7 +66,7 @@ class Leases:
             logger.exception("Jobs could not be given back; other servers take them when their leases end")
 
     def beat(self) -> None:
-        """Prolong the leases once, and interrupt what is lost."""
+        """Renew the leases once, and interrupt lost jobs."""
         jobs = self._dispatcher.running()
         if not jobs:
             return

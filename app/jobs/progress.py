@@ -1,4 +1,4 @@
-"""Progress of running jobs for other servers: stored in their rows, and read from there.
+"""Progress of running jobs for other servers: stored in the rows of the jobs.
 
 Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
 """
@@ -46,7 +46,7 @@ class ProgressKeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop; progress that is not stored is lost, and a server that resumes the job begins from zero."""
+        """Stop; unstored progress is lost, and a server that resumes the job starts from zero."""
         self._stopping.set()
         self._some.set()
         if self._thread.ident is not None:
@@ -59,7 +59,7 @@ class ProgressKeeper:
         self._some.set()
 
     def forget(self, job: Job) -> None:
-        """Leave the progress of a job that has ended unstored."""
+        """Drop the unstored progress of an ended job."""
         with self._lock:
             self._latest.pop(job.id, None)
 
@@ -74,7 +74,10 @@ class ProgressKeeper:
                 self._stopping.wait(self._interval)
 
     def _store(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Write the row of a job that is still held here; nothing depends on it, so an error ends nothing."""
+        """Store the progress of a job that is still held here.
+
+        An error is ignored, since nothing depends on it.
+        """
         try:
             unit = partial(repository.note_progress, job=job, progress=fraction, log=log)
             if self._database.write(unit):
@@ -118,7 +121,7 @@ class ProgressFollower:
 
 
 def _topics(hint: str) -> Collection[str]:
-    """Return the topics to which a hint of progress belongs; none, if it is another hint."""
+    """Return the topics to which a hint of progress belongs; none for other hints."""
     subject, _, names = hint.partition(":")
     job, _, design = names.partition(":")
     if subject != SUBJECT:

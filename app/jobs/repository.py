@@ -1,11 +1,11 @@
 """All SQL about jobs. Every function runs in the transaction of its caller.
 
-What a claimed job writes is fenced: it takes effect only while the row is running at the attempt and by the
-owner that claimed it, so a job which was cancelled or claimed again cannot write any more. So these units may
-run again (`repeatable`).
+The writes of a claimed job are fenced: they take effect only while its row is still running under the same
+owner and attempt, so a job that was cancelled or claimed again can no longer write. That is why these units
+may run again (`repeatable`).
 
-On a database that several servers share a claim is a lease: its owner prolongs it by `beat`, and any server
-queues again by `reap` what nobody has prolonged. Its times are those of the database's clock.
+On a database that several servers share, a claim is a lease: its owner renews it by `beat`, and any server
+requeues expired claims by `reap`. Lease times follow the database's clock.
 """
 
 from collections.abc import Collection, Mapping
@@ -59,13 +59,13 @@ class Job:
 
     @cached_property
     def topics(self) -> tuple[str, ...]:
-        """Return the topics of its events: its own, and its design's."""
+        """Return the topics of its events: its own and its design's."""
         own = f"job:{self.id}"
         return (own,) if self.design is None else (own, f"design:{self.design}")
 
     @property
     def finished(self) -> bool:
-        """Return whether nothing will change any more."""
+        """Return whether the job can no longer change."""
         return self.state in FINAL
 
 
@@ -110,7 +110,7 @@ def add(
 
 
 def census(session: Session) -> list[tuple[str, str, int]]:
-    """Return kind, state and number of the jobs that have not ended, of which there are few."""
+    """Return kind, state and number of unfinished jobs."""
     living = select(JobRow.kind, JobRow.state, func.count()).group_by(JobRow.kind, JobRow.state)
     living = living.where(JobRow.state.in_(["queued", "running"]))
     return [(kind, state, count) for kind, state, count in session.execute(living)]
@@ -124,7 +124,7 @@ def get(session: Session, id: str) -> Job | None:
 
 
 def locked(session: Session, id: str) -> Job | None:
-    """Return a job as it is now, or None; no other unit changes it before the end of this one."""
+    """Return the present state of a job, or None; lock it until the end of this unit."""
     row = session.get(JobRow, id, with_for_update=True, populate_existing=True)
     return _job(row) if row else None
 
@@ -137,9 +137,9 @@ def page(session: Session, limit: int, before: str | None) -> list[Job]:
 
 
 def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None:
-    """Return the id of the job of this kind and payload that has not ended.
+    """Return the id of an unfinished job of this kind and payload.
 
-    Until the end of the unit no other one looks for such a job.
+    A lock keeps other units from looking for such a job until the end of this one.
     """
     lock(session, f"job {kind} {canonical_json(payload)}")
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
@@ -147,7 +147,7 @@ def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None
 
 
 def asked(session: Session, question: str, states: Collection[State]) -> Job | None:
-    """Return the newest job of an equal question, by its key, that is in one of these states."""
+    """Return the newest job of an equal question, by its key, in one of these states."""
     equal = select(JobRow).where(JobRow.question == question, JobRow.state.in_(states))
     row = session.scalar(equal.order_by(JobRow.id.desc()).limit(1))
     return _job(row) if row else None
@@ -160,10 +160,10 @@ def claim(
     lease: float = 0.0,
     kinds: Collection[str] | None = None,
 ) -> Job | None:
-    """Make the queued job of a lane whose turn it is a running one for some time [s], and return it.
+    """Claim the next queued job of a lane for some time [s], and return it.
 
-    A job that another server is just claiming is passed over, not waited for. So is one whose kind is not
-    `known`, if that is given: it waits for a newer server.
+    A job that another server is claiming is skipped, without waiting. A job whose kind is not `known` is
+    skipped too: it waits for a newer server.
     """
     repeatable(session)  # a claim that nobody knows of is reaped
     claimed = _claimed(lane, None if kinds is None else tuple(kinds))
@@ -189,7 +189,7 @@ def _claimed(lane: Lane, kinds: tuple[str, ...] | None) -> Statement:
 
 
 def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> set[tuple[str, int]]:
-    """Prolong the leases of what an owner runs [s]; return id and attempt of what is still its own."""
+    """Renew the leases of an owner's jobs [s]; return id and attempt of those that it still owns."""
     held = update(JobRow).where(JobRow.id.in_(ids), JobRow.owner == owner, JobRow.state == "running")
     values = {"lease_until": present() + lease}
     rows = session.execute(held.values(values).returning(JobRow.id, JobRow.attempt))
@@ -197,7 +197,7 @@ def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> se
 
 
 def reap(session: Session) -> list[Job]:
-    """Queue jobs with expired leases again, count the loss, and return these jobs."""
+    """Queue jobs with expired leases again, count the losses, and return these jobs."""
     repeatable(session)
     is_late = or_(JobRow.lease_until < present(), JobRow.lease_until.is_(None))
     late = select(JobRow.id).where(JobRow.state == "running", is_late).with_for_update(skip_locked=True)
@@ -207,14 +207,14 @@ def reap(session: Session) -> list[Job]:
 
 
 def note_progress(session: Session, job: Job, progress: float, log: list[str]) -> bool:
-    """Store how far a claimed job is; return whether it was still held."""
+    """Store the progress of a claimed job; return whether it was still held."""
     return _fenced(session, job, progress=progress, log=log)
 
 
 def running_elsewhere(
     session: Session, ids: Collection[str], designs: Collection[str], owner: str
 ) -> list[Job]:
-    """Return those of these jobs, and of these designs' jobs, that run in other servers than this owner."""
+    """Return those of these jobs, and of these designs' jobs, that run on other servers."""
     which = or_(JobRow.id.in_(ids), JobRow.design_id.in_(designs))
     running = select(JobRow).where(JobRow.state == "running", JobRow.owner != owner, which)
     return [_job(row) for row in session.scalars(running.order_by(JobRow.id))]
@@ -252,7 +252,7 @@ def requeue_all(session: Session, owner: str | None = None) -> list[Job]:
 
 
 def give_up(session: Session, job: Job, problem: JsonObject) -> None:
-    """Mark a job as failed that has just been reaped once too often."""
+    """Mark a reaped job as failed after too many losses."""
     ended = {"state": "failed", "problem": problem, "operated": operated(session)}
     _write(session, job.id, **ended)
 
@@ -268,7 +268,7 @@ _FREE: Mapping[str, object] = {"owner": None, "lease_until": None}
 
 
 def _fenced(session: Session, job: Job, **values: object) -> bool:
-    """Update a claimed job; return whether it was still held. To do it again does no harm."""
+    """Update a claimed job; return whether it was still held. Repeating it does no harm."""
     repeatable(session)
     claim = {"at_attempt": job.attempt, "of_owner": job.owner}
     given = {"of_id": job.id, **claim, **values, "updated": now()}
@@ -282,7 +282,7 @@ def _write(session: Session, id: str, **values: object) -> None:
 
 @lru_cache(LANES)
 def _written(names: tuple[str, ...], is_fenced: bool) -> Statement:
-    """Gives a job the values of the columns among these names; a fenced one only while its claim holds."""
+    """Set columns of a job by name; a fenced job only while its claim holds."""
     job = _JOBS.c
     changed = update(_JOBS).where(job.id == bindparam("of_id"))
     if is_fenced:

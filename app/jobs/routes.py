@@ -1,4 +1,4 @@
-"""Jobs over HTTP: look, list, cancel, watch."""
+"""Jobs over HTTP: show, list, cancel and watch them."""
 
 from collections.abc import AsyncIterator
 from functools import partial

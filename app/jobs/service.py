@@ -6,7 +6,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from sqlalchemy.orm import Session
 
@@ -30,6 +30,7 @@ from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database
 from app.storage.locks import lock
+from app.storage.units import Unit
 from app.workers.base import BatchWorker, Limits
 from app.workers.errors import JobCancelled
 
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "JobRests", "Jobs"]
 
 logger = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 
 def _ignore(session: Session, job: Job, problem: Problem) -> None:
@@ -80,25 +83,24 @@ class Jobs:
         is_slow: bool = False,
         lane: str | None = None,
     ) -> None:
-        """Say what runs jobs of a kind; slow ones run beside the others, one at a time.
+        """Register the handler of a kind of job; slow jobs run beside the others, one at a time.
 
-        A kind may have a lane of its own, whose threads `start` is asked for.
-
-        The handler runs in a thread of the queue and returns a completion. That stores the result of the job
-        and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
-        that marks it as failed or cancelled.
+        A kind may have its own lane, whose threads are given to `start`. The handler runs in a thread of the
+        queue and returns a completion. The completion stores the result of the job and returns a link to it,
+        in the transaction that marks the job as done. `on_failure` runs in the transaction that marks it as
+        failed or cancelled.
         """
         self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
     def run_within(self, around: Callable[[Job], AbstractContextManager[object]]) -> None:
-        """Run each job within a context of its own."""
+        """Run each job within a separate context."""
         self._dispatcher.around = around
 
     def start(self, lanes: Mapping[str, int] | None = None) -> None:
-        """Queue again what a killed server left running, and begin to work. Register the kinds first.
+        """Queue again the jobs that a killed server left running, and start. Register the kinds first.
 
-        `lanes` gives the number of threads of lanes beside the usual two. Where several servers share the
-        database, what runs may be another server's: it is queued again once its lease ends.
+        `lanes` gives the number of threads of lanes besides the usual two. If several servers share the
+        database, a running job may belong to another server: it is queued again once its lease ends.
         """
         if self._database.is_shared:
             self._leases.start()
@@ -109,7 +111,7 @@ class Jobs:
             self._join_others()
 
     def drain(self) -> None:
-        """End all subscriptions and begin no more jobs; those that run go on."""
+        """End all subscriptions and start no more jobs; running ones continue."""
         self.events.close()
         self._dispatcher.drain()
 
@@ -137,14 +139,14 @@ class Jobs:
         client: str = "",
         question: str | None = None,
     ) -> str:
-        """Queue a job of a client in a unit of work and return its id; call `wake` when that is committed.
+        """Queue a job of a client in a unit of work and return its id; `commit` the unit.
 
         Raises
         ------
         QueueFull
-            Too many jobs are waiting, of this client or of all.
+            If too many jobs are waiting, of this client or of all.
         LimitReached
-            The acting principal has used its calculation of the day, or its storage.
+            If the acting principal has used up today's calculation time or its storage.
         """
         lane = self._dispatcher.lane(kind)
         threads = self._dispatcher.threads(kind)
@@ -159,12 +161,12 @@ class Jobs:
         return id
 
     def request(self, session: Session, kind: str, payload: JsonObject, client: str = "") -> str:
-        """Return the id of the job that is to do just this, in the earlier turn of its clients; or queue it.
+        """Return the id of an equal waiting job, in the earlier turn of its clients; otherwise queue it.
 
         Raises
         ------
         QueueFull
-            There is no such job, and too many others are waiting.
+            If there is no such job, and too many others are waiting.
         """
         id = self.waiting(session, kind, payload)
         if id is None:
@@ -181,14 +183,14 @@ class Jobs:
         states: Collection[State],
         client: str = "",
     ) -> tuple[str, bool]:
-        """Return the job of an equal question in one of these states, else a new one; and whether it is new.
+        """Return the job of an equal question in one of these states, else a new one, and whether it is new.
 
-        `question` is its key. The client waits for the job with those who do already.
+        `question` is its key. The client joins those who already wait for the job.
 
         Raises
         ------
         QueueFull, LimitReached
-            As `enqueue`, for a new one.
+            As raised by `enqueue`, for a new one.
         """
         lock(session, f"question {question}")
         earlier = repository.asked(session, question, states)
@@ -199,16 +201,16 @@ class Jobs:
         return earlier.id, False
 
     def _join(self, session: Session, kind: str, id: str, client: str) -> None:
-        """Let a client wait for a job that another has asked for."""
+        """Let a client wait for a job that another client requested."""
         share = self._share(usage.own_limits(session, self.settings))
         turns.join(session, id, client, self._dispatcher.lane(kind), share)
 
     def _share(self, limits: PrincipalLimits | None) -> int:
-        """Return most jobs of one client that may wait."""
+        """Return how many jobs of one client may wait."""
         return self.settings.client_queue_limit if limits is None else limits.queued_jobs
 
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
-        """Return the id of a job that is to do just this and has not ended."""
+        """Return the id of an equal unfinished job."""
         return repository.find_waiting(session, kind, payload)
 
     def others_wait(self, kind: str) -> bool:
@@ -229,6 +231,18 @@ class Jobs:
         """Return the waiting time of the oldest job [s of operation]; 0 if none waits."""
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
+
+    def commit(self, unit: Unit[T], kind: str | None = None) -> T:
+        """Commit a unit of work that may queue a job, and wake all threads of the queue, or those of a kind.
+
+        Raises
+        ------
+        Exception
+            As raised by `Database.write`; nothing is queued then.
+        """
+        result = self._database.write(unit)
+        self.wake(kind)
+        return result
 
     def wake(self, kind: str | None = None) -> None:
         """Wake all threads of the queue, or those of a kind's lane."""
@@ -252,16 +266,16 @@ class Jobs:
     def cancel(self, id: str, client: str | None = None) -> Job:
         """Cancel a job, kill its process if it has one, and return the job.
 
-        For a client, a job that other clients wait for too goes on: it ends when the last of them cancels it.
+        A job that other clients wait for continues: it ends when the last of them cancels it.
 
         Raises
         ------
         JobShared, NotOwn
-            Several clients wait for the job, and this one does not; it is another principal's.
+            If several other clients wait for the job, or it belongs to another principal.
         JobNotFound
-            There is no such job.
+            If there is no such job.
         JobFinished
-            The job has ended already.
+            If the job has already ended.
         """
         problem = self._describe(JobCancelled())
 
@@ -304,7 +318,7 @@ class Jobs:
         return (await asyncio.to_thread(self.get, id)).state
 
     def _join_others(self) -> None:
-        """Send hints to the other servers of the database, and hear theirs."""
+        """Send hints to the other servers of the database, and receive theirs."""
         from app.storage.notices import Notices  # its driver belongs to the extra `team`
 
         self._notices = Notices(self._database.url, self.settings.poll_seconds, self._hear)
@@ -312,7 +326,7 @@ class Jobs:
         self._notices.start()
 
     def _hear(self, hints: list[str] | None) -> None:
-        """Do what other servers hint at; without hints, look at everything."""
+        """Act on hints of other servers; without hints, check everything."""
         if hints is None:
             self._dispatcher.wake()
         for hint in hints or ():
@@ -333,13 +347,13 @@ def _existing(session: Session, id: str) -> Job:
 
 
 def _administers() -> bool:
-    """Return whether an administrator acts, who may end any job."""
+    """Return whether the acting principal is an administrator, who may end any job."""
     who = acting()
     return who.id not in BUILT_IN and who.may("admin")
 
 
 def _require_own(session: Session, id: str, client: str) -> None:
-    """Leave the job of a principal to that and to administrators.
+    """Restrict a job to its principal and to administrators.
 
     Raises
     ------

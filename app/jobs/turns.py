@@ -1,8 +1,9 @@
-"""The queue of jobs: its limits, and the turns by which clients alternate. All SQL about turns.
+"""The queue of jobs: its limits, and the turns in which clients alternate. All SQL about turns.
 
-A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
-run by turn, those of one turn by age. So a new client's job is second in line, however many jobs of another
-client wait. Every lane has turns of its own. Every function runs in the transaction of its caller.
+A client's new job takes the turn after that client's previous job, but never an earlier turn than the queue's
+current one. Jobs run in the order of their turns, and by age within a turn. So a new client's job is second
+in line, however many jobs of another client wait. Each lane counts its own turns. Every function runs in the
+transaction of its caller.
 """
 
 from __future__ import annotations
@@ -53,9 +54,9 @@ def next_turn(session: Session, client: str, lane: Lane) -> int:
 
 @lru_cache(LANES)
 def _turns(lane: Lane) -> Statement:
-    """Return the turn after a client's last one in a lane, and the turn that the lane is at.
+    """Return the turn after a client's last one in a lane, and the current turn of the lane.
 
-    That is the lowest that waits, else the highest that runs.
+    The current turn is the lowest waiting one, else the highest running one.
     """
     turn, state, unfinished = _JOBS.c.turn, _JOBS.c.state, [literal(one) for one in UNFINISHED]
     own = select(func.max(turn)).where(_JOBS.c.client == bindparam("by"), state.in_(unfinished), lane.holds())
@@ -83,7 +84,7 @@ def _counted(lane: Lane | None, of_client: bool) -> Statement:
 
 
 def count_until_next(session: Session, client: str, lane: Lane) -> int:
-    """Return how many jobs of a lane start until one of the client's does; 1 if it has none there."""
+    """Return how many jobs of a lane start before the client's next one; 1 if it has none there."""
     waiting = and_(JobRow.state == "queued", lane.holds())
     next_one = select(func.min(JobRow.turn)).where(waiting, JobRow.client == client)
     until = select(func.count()).select_from(JobRow).where(waiting, JobRow.turn <= next_one.scalar_subquery())
@@ -91,10 +92,10 @@ def count_until_next(session: Session, client: str, lane: Lane) -> int:
 
 
 def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None:
-    """Let a client wait for a job that another asked for.
+    """Let a client wait for a job that another client requested.
 
     If the client's own turn comes first and its share of the queue allows it, the job takes that turn and
-    counts as this client's: else two clients together could have more turns than each has alone.
+    counts as this client's; otherwise two clients together could get more turns than each alone.
     """
     row = _locked(session, id)
     if client != row.client and client not in row.others and len(row.others) < MOST_OTHERS:
@@ -107,12 +108,12 @@ def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None
 
 
 def leave(session: Session, id: str, client: str) -> bool:
-    """Let a client no longer wait for a job; whether another still does.
+    """Let a client no longer wait for a job; return whether another still does.
 
     Raises
     ------
     JobShared
-        Several clients wait for it, and this is none of them.
+        If several clients wait for it, and this one does not.
     """
     row = _locked(session, id)
     if not row.others:
@@ -131,12 +132,12 @@ def client_of(session: Session, id: str) -> str:
 
 
 def _locked(session: Session, id: str) -> JobRow:
-    """Return a job as it is now; no other unit changes it before the end of this one."""
+    """Return the present state of a job; lock it until the end of this unit."""
     return session.get_one(JobRow, id, with_for_update=True, populate_existing=True)
 
 
 def oldest_queued(session: Session) -> int | None:
-    """Return when the job that waits longest was queued [s of operation], or None if none waits."""
+    """Return when the longest-waiting job was queued [s of operation], or None if none waits."""
     # The sum keeps SQLite from walking the index of ages through all jobs that ended earlier.
     since: Function[int | None] = func.min(JobRow.operated + 0)
     age: int | None = session.scalar(select(since).where(JobRow.state == "queued"))
@@ -155,7 +156,7 @@ class Durations:
         self._seconds = defaultdict[Lane, deque[float]](lambda: deque(maxlen=_MEASURED))
 
     def note(self, lane: Lane, seconds: float) -> None:
-        """Note how long a job took [s]."""
+        """Record how long a job took [s]."""
         self._seconds[lane].append(seconds)
 
     def mean(self, lane: Lane) -> float:
@@ -167,15 +168,15 @@ class Durations:
 def admit(
     session: Session, client: str, lane: Lane, threads: int, share: int, most: int, durations: Durations
 ) -> None:
-    """Let a client queue one more job, or refuse it: its share is so many, and at most so many wait in all.
+    """Let a client queue one more job, or refuse it, by its share and the total limit.
 
-    A tenth of the queue is kept for clients of whom nothing waits yet, so whoever fills the rest refuses no
-    single job of another.
+    A tenth of the queue is reserved for clients without waiting jobs, so that a client that fills the rest
+    cannot block another's first job.
 
     Raises
     ------
     QueueFull
-        The client's share or the queue is full.
+        If the client's share or the queue is full.
     """
     own = count_queued(session, client)
     total = most - (_reserve(most) if own else 0)

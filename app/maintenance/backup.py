@@ -1,7 +1,7 @@
 """Back up a data folder while the service runs: a snapshot of the database first, then the files it names.
 
 The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot
-is there, unless it is damaged, or the service has deleted it with its row meanwhile.
+exists, unless it is damaged or the service has deleted it together with its row in the meantime.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ class Contents:
 
 
 def back_up(data: Path, url: str | None, target: Path, say: Say) -> Contents:
-    """Write a backup; it appears under its name once it is whole and synced.
+    """Write a backup; it gets its name once it is complete and synced.
 
     Raises
     ------
     CannotRun
-        There is no SQLite database, it is damaged, or the target exists.
+        If there is no SQLite database, it is damaged, or the target exists.
     OSError
-        The archive cannot be written.
+        If the archive cannot be written.
     """
     source = database_file(data, url)
     refuse_target(target)
@@ -71,7 +71,7 @@ def refuse_target(target: Path) -> None:
 
 
 def _snapshot(source: Path, snapshot: Path) -> str:
-    """Copy the database as it is at one moment into a single file, and return its schema."""
+    """Copy a consistent snapshot of the database into a single file, and return its schema."""
     try:
         with reading(source) as connection, closing(sqlite3.connect(snapshot)) as copy:
             schema = refuse_other_schema(connection, older_too=False)
@@ -125,7 +125,7 @@ def write_archive(
     add: Callable[[tarfile.TarFile, NamedFile, Contents], None],
     say: Say,
 ) -> Contents:
-    """Write manifest, database and the files of the rows, each by `add`, into an archive, and sync it."""
+    """Write manifest, database and referenced files, each by `add`, into an archive, and sync it."""
     contents = Contents()
     with archive.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w:gz" if compressed else "w") as tar:
@@ -142,7 +142,7 @@ def write_archive(
 
 
 def _add_artifact(tar: tarfile.TarFile, row: NamedFile, source: Path, data: Path, contents: Contents) -> None:
-    """Add one artifact if its bytes, as they go into the archive, have its hash."""
+    """Add one artifact if its bytes have its hash as they are archived."""
     path = data / artifact_entry(row.sha)
     try:
         read = path.read_bytes()
@@ -157,7 +157,7 @@ def _add_artifact(tar: tarfile.TarFile, row: NamedFile, source: Path, data: Path
 
 
 def manifest(form: int, snapshot: Path, schema: str, artifacts: int) -> Manifest:
-    """Return the manifest of a backup: its format, when and by what it was made, the hash of the database."""
+    """Return the manifest of a backup: its format, time and program, and the hash of the database."""
     with snapshot.open("rb") as file:
         sha = hashlib.file_digest(file, "sha256").hexdigest()
     size = snapshot.stat().st_size
@@ -202,7 +202,7 @@ def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
 
 @contextmanager
 def temporary(target: Path, what: str) -> Iterator[Path]:
-    """Create a file beside the target, and delete it in the end unless it took the target's name."""
+    """Create a file beside the target, and finally delete it unless it was renamed to the target."""
     folder = target.absolute().parent
     descriptor, name = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.", suffix=f".{what}")
     os.close(descriptor)
@@ -214,9 +214,9 @@ def temporary(target: Path, what: str) -> Iterator[Path]:
 
 
 def publish(archive: Path, target: Path) -> None:
-    """Give a whole archive its name; raises CannotRun."""
+    """Rename a complete archive to its final name; raises CannotRun."""
     if target.exists():
-        raise CannotRun(f"{target} has appeared meanwhile: a backup never replaces another.")
+        raise CannotRun(f"{target} was created in the meantime: a backup never replaces another.")
     os.rename(archive, target)
     descriptor = os.open(target.absolute().parent, os.O_RDONLY)
     try:

@@ -1,6 +1,6 @@
 """Check a data folder: the database, the files that its rows name, and the files that no row names.
 
-It only reads, so it may run beside the service.
+The check only reads, so it may run beside the service.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ class Faults:
 
     @property
     def count(self) -> int:
-        """Number of faults."""
+        """Return the number of faults."""
         return sum(map(len, (self.database, self.references, self.worksheets, self.damaged, self.unnamed)))
 
     def add_unnamed(
         self, files: Files, ages: Mapping[str, float], rows: Iterable[NamedFile], *, in_use: bool
     ) -> None:
-        """Add the files that no row names, without those that a running service may just have put."""
+        """Add the unreferenced files, without those that a running service may just have stored."""
         named, latest = {row.sha for row in rows}, time.time() - YOUNG if in_use else math.inf
         lying = sorted(sha for sha, age in ages.items() if sha not in named and age <= latest)
         self.unnamed |= {sha: files.place(sha) for sha in lying}
 
     def lines(self) -> Iterable[str]:
-        """Yield the faults, one a line, then what was counted."""
+        """Yield the faults, one per line, then the counts."""
         yield from (f"database: {text}" for text in self.database)
         yield from (f"reference: {text}" for text in self.references)
         yield from (f"worksheet: {text}" for text in self.worksheets)
@@ -69,14 +69,14 @@ class Faults:
 
 
 def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Faults:
-    """Find the faults of a data folder; `in_use` if a service runs on it, whose newest files may lack rows.
+    """Find the faults of a data folder; if it is `in_use` by a service, the newest files may lack rows.
 
-    The files are those in the folder, if no others are given.
+    By default the files in the folder are checked.
 
     Raises
     ------
     CannotRun
-        There is no database, or one of another schema.
+        If there is no database, or it has another schema.
     """
     path, findings = database_file(data, url), Faults()
     files = files or FolderFiles(data / "artifacts")
@@ -120,13 +120,13 @@ def _size(files: Files, row: NamedFile) -> int:
 
 
 def is_still_named(database: Path, row: NamedFile) -> bool:
-    """Return whether the row of a file is still there: a running service may delete both."""
+    """Return whether the row of a file still exists: a running service may delete both."""
     with reading(database) as connection:
         return any(other == row for other in named_files_of(connection, row))
 
 
 def named_files_of(connection: sqlite3.Connection, row: NamedFile) -> Iterable[NamedFile]:
-    """Return the row as it stands now, if it does."""
+    """Return the present row, if it still exists."""
     if row.kind in OWNERS:
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"

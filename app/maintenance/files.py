@@ -1,4 +1,4 @@
-"""The files of a service, as `check` reads them: it changes nothing, not even what is damaged."""
+"""Read the files of a service for `check`, which changes nothing, not even damaged files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Files(Protocol):
     """The files of a service."""
 
     def ages(self) -> dict[str, float]:
-        """Return when each file was put [s since 1970], by hash."""
+        """Return when each file was stored [s since 1970], by hash."""
         ...
 
     def fault(self, row: NamedFile) -> str | None:
@@ -49,7 +49,7 @@ class Files(Protocol):
         ...
 
     def quarantined(self) -> int:
-        """Number of files that were set aside."""
+        """Return the number of files that were set aside."""
         ...
 
 
@@ -59,7 +59,7 @@ def files_of(settings: Settings) -> Files:
     Raises
     ------
     CannotRun
-        They name a store that cannot be used.
+        If they name an unusable store.
     """
     try:
         if is_bucket(settings):
@@ -76,11 +76,11 @@ class FolderFiles:
     folder: Path
 
     def path(self, sha: str) -> Path:
-        """Return the place of a file, whether it exists or not."""
+        """Return the path of a file, whether or not it exists."""
         return self.folder / sha[:2] / sha
 
     def ages(self) -> dict[str, float]:
-        """Return when each file was put [s since 1970], by hash."""
+        """Return when each file was stored [s since 1970], by hash."""
         seconds = {}
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
@@ -103,7 +103,7 @@ class FolderFiles:
         return str(self.path(sha))
 
     def quarantined(self) -> int:
-        """Number of files that were set aside."""
+        """Return the number of files that were set aside."""
         return sum(1 for _ in self.folder.glob(f"{QUARANTINE}/*"))
 
 
@@ -115,7 +115,7 @@ class BucketFiles:
         self._sizes: dict[str, int] = {}
 
     def ages(self) -> dict[str, float]:
-        """Return when each file was put [s since 1970], by hash."""
+        """Return when each file was stored [s since 1970], by hash."""
         return {key: modified for key, modified in self._listed.items() if SHA256.fullmatch(key)}
 
     def fault(self, row: NamedFile) -> str | None:

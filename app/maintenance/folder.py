@@ -43,7 +43,7 @@ def database_file(data: Path, url: str | None) -> Path:
 
 
 def is_in_use(data: Path) -> bool:
-    """Return whether a service holds the folder; unlike `DataFolder` it creates nothing and takes nothing."""
+    """Return whether a service holds the folder; unlike `DataFolder` it creates and locks nothing."""
     try:
         with (data / LOCK).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -56,7 +56,7 @@ def is_in_use(data: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a connection that reads one snapshot and cannot write; a service may use the file meanwhile."""
+    """Open a read-only connection to one snapshot; a service may use the file meanwhile."""
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
     try:
         for pragma in ("busy_timeout = 10000", "query_only = on"):
@@ -73,7 +73,7 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
     Raises
     ------
     CannotRun
-        It is one that this program does not know, or an older one if that is refused as well.
+        If this program does not know it, or it is older and older ones are refused.
     """
     try:
         rows = connection.execute("SELECT version_num FROM alembic_version").fetchall()
@@ -89,6 +89,6 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
     if older_too and schema != (newest := known_schemas()[0]):
         raise CannotRun(
             f"The database has schema {schema}, older than this program's {newest}: start the service "
-            "once, which brings it up to date."
+            "once to upgrade it."
         )
     return schema

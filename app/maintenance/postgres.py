@@ -29,12 +29,12 @@ class Snapshot(Rows):
 
 @contextmanager
 def snapshot(url: str) -> Iterator[Snapshot]:
-    """Open a snapshot of the database; no server deletes unused files meanwhile.
+    """Open a snapshot of the database, during which no server deletes unused files.
 
     Raises
     ------
     CannotRun
-        The database does not answer, or has another schema than this program's.
+        If the database does not answer, or has another schema than this program's.
     """
     engine = create_engine(url)
     try:
@@ -55,7 +55,7 @@ def schema_of(url: str) -> str:
     Raises
     ------
     CannotRun
-        It does not answer, or holds something else.
+        If it does not answer, or belongs to another program.
     """
     engine = create_engine(url)
     try:
@@ -78,7 +78,7 @@ def dump(url: str, moment: Snapshot, target: Path) -> None:
 
 
 def load(url: str, source: Path) -> None:
-    """Restore a dump into an empty database, all of it or nothing, by `pg_restore`; raises CannotRun."""
+    """Restore a dump completely or not at all into an empty database by `pg_restore`; raises CannotRun."""
     options = ["--no-owner", "--exit-on-error", "--single-transaction", str(source), "-d"]
     _run("pg_restore", url, options)
 
@@ -102,4 +102,4 @@ def _require_schema(connection: Connection) -> None:
         raise CannotRun("The database is empty, or it does not belong to Crankwright.")
     schema = connection.scalar(text("SELECT version_num FROM alembic_version"))
     if schema != newest:
-        raise CannotRun(f"The database has schema {schema}, this program {newest}: use that of the servers.")
+        raise CannotRun(f"The database has schema {schema}, this program {newest}: use the servers' program.")

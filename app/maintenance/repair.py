@@ -1,4 +1,4 @@
-"""Repair a data folder that no service uses: make lost files again from rows, set unnamed ones aside."""
+"""Repair a data folder that no service uses: rebuild lost files, set unreferenced files aside."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Repair:
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
     def row(self, row: NamedFile) -> str | None:
-        """Have the file of a row good; return why it is not, if it is not."""
+        """Repair the file of a row; return the reason if it cannot be repaired."""
         if row.kind == "body":
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         if row.kind == "rows":
@@ -114,7 +114,7 @@ class Repair:
         return None
 
     def _answer(self, row: NamedFile) -> None:
-        """Calculate the answer of a job again: the same, but for the time that it took."""
+        """Recalculate the answer of a job; only its elapsed time may differ."""
         if self.store.exists(row.sha):  # else it has been set aside now
             return
         with self.database.read() as session:
@@ -139,7 +139,7 @@ class Repair:
 
 
 def repair(folder: DataFolder, url: str, findings: Faults, settings: Settings, say: Say) -> None:
-    """Repair what can be repaired, and say what was done; the caller holds the data folder."""
+    """Repair as much as possible, and return the actions; the caller holds the data folder."""
     if findings.damaged:
         _rebuild(opened_store(settings, folder), url, findings, settings, say)
     if findings.unnamed and settings.artifacts_url is None:
@@ -164,7 +164,7 @@ def _rebuild(store: Artifacts, url: str, findings: Faults, settings: Settings, s
 
 
 def _moved_aside(data: Path, files: list[Path]) -> str:
-    """Move files that no row names into a folder of their own; nothing is deleted."""
+    """Move unreferenced files into a separate folder; nothing is deleted."""
     aside = data / f"unreferenced-{datetime.now(UTC):%Y%m%dT%H%M%S}"
     aside.mkdir()
     for file in files:

@@ -1,6 +1,6 @@
 """Restore a backup into a new data folder, which appears only when everything in it is verified.
 
-Nothing in the archive decides where a byte goes: only entries of known names and plain files are taken.
+The archive cannot decide where its bytes go: only plain files with known names are accepted.
 """
 
 from __future__ import annotations
@@ -53,10 +53,8 @@ class RestoreResult:
 def restore(archive: Path, data: Path, say: Say) -> RestoreResult:
     """Restore a backup into an empty or absent folder.
 
-    Raises
-    ------
-    CannotRun
-        The folder is in use, or the archive is damaged, incomplete, newer than this program, or none of ours.
+    Raises ------ CannotRun If the folder is in use, or the archive is damaged, incomplete, newer than this
+    program, or not a backup of it.
     """
     if not archive.is_file():
         raise CannotRun(f"There is no backup {archive}.")
@@ -84,7 +82,7 @@ def _refuse_content(data: Path) -> None:
 
 @contextmanager
 def _sibling(data: Path) -> Iterator[Path]:
-    """Create a folder beside the wanted one, and delete it in the end unless it took that one's name."""
+    """Create a folder beside the wanted one, and finally delete it unless it was renamed."""
     parent = data.absolute().parent
     parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=parent, prefix=f".{data.name}.restoring-"))
@@ -96,7 +94,7 @@ def _sibling(data: Path) -> Iterator[Path]:
 
 
 def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
-    """Take an archive of this format apart into a folder; raises CannotRun, or one of `BROKEN`."""
+    """Unpack an archive of this format into a folder; raises CannotRun, or one of `BROKEN`."""
     restored = RestoreResult(form)
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
@@ -112,7 +110,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
 
 
 def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: RestoreResult) -> None:
-    """Put one entry where it belongs; the order of the entries is part of the format."""
+    """Unpack one entry to its place; the order of the entries is part of the format."""
     if not restored.manifest:
         restored.manifest = _manifest(entry, file, restored.form)
     elif entry.name == DATABASES[restored.form] and not restored.database:
@@ -122,12 +120,12 @@ def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Resto
     elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
         _take_artifact(artifact[2], file, folder / entry.name, restored)
     else:
-        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of Crankwright puts there.")
+        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which a Crankwright backup never contains.")
 
 
 def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: RestoreResult) -> None:
     if sha in restored.artifacts:
-        raise CannotRun(f"The archive holds artifact {sha} twice.")
+        raise CannotRun(f"The archive contains artifact {sha} twice.")
     place.parent.mkdir(parents=True, exist_ok=True)
     if _written(file, place) != sha:
         raise CannotRun(f"Artifact {sha} in the archive is damaged: its bytes have another hash.")
@@ -150,12 +148,12 @@ def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
         raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup writes.")
     note = json.loads(file.read())
     if not isinstance(note, dict):
-        raise CannotRun(f"{entry.name} in the archive is not what this program writes.")
+        raise CannotRun(f"{entry.name} in the archive was not written by this program.")
     return note
 
 
 def _written(file: IO[bytes], place: Path) -> str:
-    """Write an entry to its place, synced, and return the hash of its bytes."""
+    """Write and sync an entry, and return the hash of its bytes."""
     digest = hashlib.sha256()
     with place.open("xb") as out:
         while chunk := file.read(_CHUNK):
@@ -167,7 +165,7 @@ def _written(file: IO[bytes], place: Path) -> str:
 
 
 def require_whole(restored: RestoreResult) -> None:
-    """Hold the database against its hash, and count the artifacts; raises CannotRun."""
+    """Compare the database with its hash, and count the artifacts; raises CannotRun."""
     assert restored.end is not None
     if restored.database != restored.manifest["database"]["sha256"]:
         raise CannotRun("The database in the archive is damaged: its bytes have another hash.")
@@ -176,7 +174,7 @@ def require_whole(restored: RestoreResult) -> None:
 
 
 def _verify(folder: Path, restored: RestoreResult) -> None:
-    """Hold the database against its hash and this program, and the artifacts against the rows."""
+    """Verify the database against its hash and this program, and the artifacts against the rows."""
     require_whole(restored)
     path = folder / DATABASE
     if damage := faults(path):

@@ -28,7 +28,7 @@ class Rows(Protocol):
 
 
 def named_files(connection: Rows) -> Iterator[NamedFile]:
-    """Yield every file that a row names; the same file as often as it is named."""
+    """Yield every file that a row names; a file that is named repeatedly is yielded repeatedly."""
     for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
         yield NamedFile(sha, int(size), key, kind)
     if _has_table(connection, "analysis"):
@@ -103,7 +103,7 @@ RELEASES = """
 
 
 def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield released worksheets whose text or results are not those of the release, a sentence each."""
+    """Yield a sentence for each released worksheet whose text or results differ from its release."""
     from app.pool.sources import SheetSource  # templates, which the other checks do without
     from app.worksheets.examination import as_released
 
@@ -117,7 +117,7 @@ def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
 
 
 def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield rows that refer to rows that do not exist, a sentence each."""
+    """Yield a sentence for each row that refers to a missing row."""
     for table, row, parent, _ in connection.execute("PRAGMA foreign_key_check"):
         yield f"row {row} of table {table} refers to a row of {parent} that does not exist"
     for sentence, query in LEADING_NOWHERE.items():

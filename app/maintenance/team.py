@@ -1,7 +1,7 @@
-"""Backup and restore of a team's PostgreSQL and files, wherever the settings say that these are.
+"""Back up and restore a team's PostgreSQL database and files, wherever the settings place them.
 
-As with SQLite the rows come first and then the files that they name, whose bytes precede their rows. A
-bucket that keeps versions needs no copy of its files: the backup may hold the database alone.
+As with SQLite, the backup reads the rows first and then the files that they name; each file was stored before
+its row. A bucket with versioning needs no copy of its files: the backup may hold the database alone.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ NO_STORE = (
 
 
 def back_up(settings: Settings, url: str, target: Path, say: Say, *, with_files: bool) -> Contents:
-    """Write a backup, which appears under its name once it is whole and synced.
+    """Write a backup, which gets its name once it is complete and synced.
 
-    No server collects files meanwhile.
+    Meanwhile no server deletes unreferenced files.
 
     Raises
     ------
     CannotRun
-        The database or the store does not answer, `pg_dump` is missing, or the target exists.
+        If the database or the store does not answer, `pg_dump` is missing, or the target exists.
     """
     refuse_target(target)
     with (
@@ -82,7 +82,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> RestoreRes
     Raises
     ------
     CannotRun
-        The database is not empty, or the archive is damaged, incomplete, or none of ours.
+        If the database is not empty, or the archive is damaged, incomplete, or not a backup of Crankwright.
     """
     if not archive.is_file():
         raise CannotRun(f"There is no backup {archive}.")

@@ -1,6 +1,7 @@
-"""Check what servers share: rows of PostgreSQL, and the files that they name. It only reads.
+"""Check the data that servers share: rows of PostgreSQL, and the files that they name. It only reads.
 
-PostgreSQL verifies its own pages (`initdb --data-checksums`, `pg_amcheck`); here is what its rows mean.
+PostgreSQL verifies its own pages (`initdb --data-checksums`, `pg_amcheck`); this module checks the contents
+of the rows.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def check_shared(url: str, files: Files) -> Faults:
     Raises
     ------
     CannotRun
-        The database does not answer, or has another schema.
+        If the database does not answer, or has another schema.
     """
     findings = Faults(quarantined=files.quarantined())
     ages = files.ages()  # before the rows: a row that comes meanwhile has its file already
@@ -66,7 +67,7 @@ def _require_schema(connection: Connection) -> None:
 
 
 def _broken_references(connection: Connection) -> Iterable[str]:
-    """Yield rows that lead nowhere, a sentence each; foreign keys are PostgreSQL's own."""
+    """Yield a sentence for each row with a broken reference; PostgreSQL checks foreign keys itself."""
     for sentence, query in LEADING_NOWHERE.items():
         for (name,) in connection.exec_driver_sql(query):
             yield sentence.format(name)

@@ -1,7 +1,7 @@
-"""Structured logs on standard error, as text or JSON lines, each with the id of the request behind it.
+"""Structured logs on standard error, as text or JSON lines, each with the id of its request.
 
 Bodies, queries, cookies and keys are never logged. A separate thread writes the lines, so a blocked terminal
-delays nobody. Lines that exceed the queue are dropped and counted.
+delays nobody. Lines beyond the capacity of the queue are dropped and counted.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _process, _numbers = secrets.token_hex(5), itertools.count(1)
 
 
 def request_id(headers: Iterable[tuple[bytes, bytes]]) -> str:
-    """Return the id that a client has given its request, if it is harmless; else a new one."""
+    """Return the id that a client has given its request, if it is safe to log; else a new one."""
     for name, value in headers:
         if name == b"x-request-id" and _HARMLESS.fullmatch(value) and not holds_key(text := value.decode()):
             return text
@@ -48,19 +48,19 @@ def request_id(headers: Iterable[tuple[bytes, bytes]]) -> str:
 
 
 def new_id() -> str:
-    """Return an id that no other request of any server has."""
+    """Return a globally unique id."""
     return f"{_process}-{next(_numbers):06x}"
 
 
 def without_secret(client: str) -> str:
-    """Return a client as the log may have it: of a session the hash, because who knows it is the client."""
+    """Return a client for the log; a session is hashed, because its id would authenticate the client."""
     kind, _, name = client.partition(":")
     return f"session:{hashlib.sha256(name.encode()).hexdigest()[:12]}" if kind == "session" else client
 
 
 @contextmanager
 def caused(cause: str) -> Iterator[None]:
-    """Add to lines the id of the request that queued a job; the job's row holds its cause."""
+    """Add to log lines the id of the request that queued a job; the job's row stores it as the cause."""
     request, _, trace = cause.partition(" ")
     tokens = REQUEST_ID.set(request), TRACE.set(trace)
     try:
@@ -71,7 +71,7 @@ def caused(cause: str) -> Iterator[None]:
 
 
 def escaped(text: str) -> str:
-    """Return a text in which nothing moves the cursor, begins a line, or turns the direction of writing."""
+    """Return a text without characters that move the cursor, begin a line, or change the direction."""
     return _CONTROLS.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
@@ -122,7 +122,7 @@ class QueueHandler(logging.Handler):
 
 
 def configure(level: Level, form: Format, stream: TextIO | None = None) -> Callable[[], None]:
-    """Write the program's logs to standard error, or a stream; returns what ends that, the last line written.
+    """Write the program's logs to standard error, or a stream; return a function that ends this.
 
     `level` is for this program and its web server; other libraries' lines are written from warnings on.
     """

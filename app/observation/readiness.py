@@ -1,6 +1,6 @@
-"""`/readyz`: whether database writes, free space, job processes and the file store allow work now.
+"""`/readyz`: whether the database, free space, job processes and the file store are ready for work.
 
-The answer takes the same time however many designs there are, and comes even if the writer hangs.
+The answer takes the same time however many designs there are, and arrives even if the writer hangs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""State of the service: whether it lives, and whether it can work."""
+"""The state of the service: whether it is alive, and whether it is ready."""
 
 from __future__ import annotations
 

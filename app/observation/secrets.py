@@ -1,4 +1,4 @@
-"""Secrets: keys of the interface are removed from lines of the log and from answers."""
+"""Remove secrets, such as keys of the interface, from lines of the log and from answers."""
 
 from __future__ import annotations
 

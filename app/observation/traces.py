@@ -1,11 +1,11 @@
 """Traces by OpenTelemetry: spans of requests, units of work, jobs and runs in workers.
 
-Only the setting `traces_url` has this imported; the packages belong to the extra `traces`. The present span
-is carried as W3C's `traceparent` in `logs.TRACE`, which threads inherit with their context, units of work
-with their caller's, and jobs by the `cause` of their row, so whichever server runs one continues the trace.
+This module is imported only if `traces_url` is set; its packages belong to the extra `traces`. The current
+span is carried as W3C's `traceparent` in `logs.TRACE`. Threads inherit it with their context, units of work
+from their caller, and jobs from the `cause` of their row, so whichever server runs a job continues its trace.
 
 A span names functions, routes, kinds and ids. It never has paths, queries, bodies, values, keys or the text
-of an error. What runs in a child process, or on another machine, is one span, seen from the server.
+of an error. Work in a child process or on another machine is one span, seen from the server.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The pool of calculation processes: what a calculation costs, who waits, and what a job takes over."""
+"""The pool of calculation processes: costs of calculations, turns of clients, and hand-over to jobs."""

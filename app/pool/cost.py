@@ -1,6 +1,6 @@
-"""Estimate how long a calculation will take, from measured costs of the levels and the number of points.
+"""Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate is an order of magnitude, known before the calculation, and rather too high than too low. An
+The estimate is an order of magnitude, and errs on the high side. An
 expensive calculation leaves the server's process (see `app.pool.pool`).
 """
 
@@ -37,6 +37,7 @@ PER_FORMULA = 3e-4  # written out in a worksheet [s]
 SCANS, CLOSINGS = 8, 120
 """Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
 SOLUTIONS = 2  # that are likely to be calculated again at the level requested
+BESIDE = 2  # samples that are drawn beside each of these
 MOST_POINTS = 10**12  # a request may claim more than a float can hold
 PROBED = 1000  # numbers in a request beyond which only the first of each array is looked at
 
@@ -86,7 +87,7 @@ def solving_seconds(
     cheap = levels if not any(name in cls.most_points for name in levels) else (cls.default_level,)
     scan = _evaluating(cls, cheap, SCANS * SAMPLES, aimed)
     closing = CLOSINGS * _evaluating(cls, cheap, 1, aimed)
-    again = SOLUTIONS * POLISHES
+    again = SOLUTIONS * (POLISHES + BESIDE)
     polishing = 0.0 if cheap == levels else again * _evaluating(cls, levels, 1, aimed)
     return scan + closing + polishing + _evaluating(cls, levels, 1, outputs)
 

@@ -2,7 +2,7 @@
 
 QueueFull
  └── TooManyCalculations   the queue of calculations is full
-StepDeferred               an expensive step was not calculated in the time that its caller waits
+StepDeferred               an expensive step did not finish while its caller waited
 """
 
 from __future__ import annotations

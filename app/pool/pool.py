@@ -1,4 +1,4 @@
-"""The bounded pool in which expensive calculations run: a queue with admission, turns by client, lanes.
+"""The bounded pool in which expensive calculations run: a queue with admission, turns by client, and lanes.
 
 Threads of its own wait for the processes. So neither the event loop nor a thread of a route does: a route
 awaits `Calculation.future`, and a thread that needs the result blocks on it.

@@ -1,10 +1,10 @@
 """Calculation processes of two kinds: light ones for templates, others with the design network loaded.
 
 The network imports the geometry kernel, which takes seconds and as much memory as all the rest. So functions
-of designs run in processes that are forked from one with these modules loaded. Each kind is started when the
-first function for it comes: a service whose clients evaluate quick templates only never has them.
+of designs run in processes forked from one that has these modules loaded. The processes of each kind start at
+the first function for them: a service that evaluates only quick templates never starts them.
 
-`crankwright serve` has the network without the kernel, and forks one kind ahead that has all of it.
+`crankwright serve` loads the network without the kernel, and forks the complete kind in advance.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""A question is answered at once if that is cheap, else by a job.
+"""Answer a question at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
 solutions, explanations with sensitivities, analyses of tolerances, single variants and the impact of
 versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
-artifact, which the client fetches later. A job is known by the key of its question, so an equal question
-finds its job, or the answer itself.
+artifact, which the client fetches later. A job is stored under the key of its question, so an equal question
+finds the job or its answer.
 """
 
 from __future__ import annotations
@@ -224,9 +224,7 @@ class Questions(Generic[Q, A]):
                 begun.leave_to(id)
             return id
 
-        job = self.database.write(unit_of_work)
-        self.jobs.wake()
-        return job
+        return self.jobs.commit(unit_of_work)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Calculate the whole answer, and keep it.
@@ -265,9 +263,7 @@ class Questions(Generic[Q, A]):
         if not self.store.exists(job.payload["body"]):
             raise _lost(job)
         payload = {**job.payload, AGAIN: job.id}
-        again = self.database.write(lambda session: self.jobs.request(session, job.kind, payload, client))
-        self.jobs.wake()
-        return again
+        return self.jobs.commit(lambda session: self.jobs.request(session, job.kind, payload, client))
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """End what was left to a job that was cancelled before it began."""

@@ -1,4 +1,4 @@
-"""The sources from which a process loads a template: the file or worksheet, as the server read it."""
+"""The source from which a process loads a template: the file or worksheet, as the server read it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Steps of designs: evaluated in the thread that asks, or in the pool where that takes long.
+"""Evaluate steps of designs: in the calling thread, or in the pool if that takes long.
 
-Who calculates, and for which client, is set by the route or the job that calculates a design.
+The route or job that calculates a design sets the evaluator and the client.
 """
 
 from __future__ import annotations

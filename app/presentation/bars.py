@@ -1,6 +1,6 @@
 """Bars as SVG: shares of a variance, largest on top, and a histogram with limits.
 
-Equal data give equal bytes. No style attributes, which the pages' policy forbids, and no scripts.
+Equal data give equal bytes. The SVG has no style attributes, which the pages' policy forbids, and no scripts.
 """
 
 from __future__ import annotations

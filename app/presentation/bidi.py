@@ -1,7 +1,7 @@
 """Isolate user-given names on pages, so that right-to-left marks do not affect the text around them.
 
 U+202E and similar characters are legal in names. Unisolated, they reverse the text that follows. `balanced`
-is for text in an element that isolates (`<bdi>`), `bare` for where no element can stand: titles, and paper.
+is for text in an isolating element (`<bdi>`), `bare` for places without elements: titles, and paper.
 """
 
 from __future__ import annotations

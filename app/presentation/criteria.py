@@ -1,7 +1,6 @@
 """Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
-Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
-`app/web/verdict/criteria.js` writes the same while a user types; `tests/app/web` compares the two.
+The sentence on a criterion is that of the interface; what stands beside it is written here.
 """
 
 from __future__ import annotations
@@ -13,8 +12,6 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
-from templates.core.criteria.judgement import is_model
-from templates.core.criteria.sentences import told_apart
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
@@ -35,7 +32,7 @@ class Amount(Protocol):
         """Return its unit."""
 
 
-class Between(Protocol):
+class ValueRange(Protocol):
     """Two ends with one unit; null where an end is infinite."""
 
     @property
@@ -63,7 +60,7 @@ class JudgedCriterion(Protocol):
     @property
     def limit(self) -> Amount | None: ...  # noqa: D102
     @property
-    def band(self) -> Between | None: ...  # noqa: D102
+    def band(self) -> ValueRange | None: ...  # noqa: D102
     @property
     def relative_error(self) -> float | None: ...  # noqa: D102
     @property
@@ -90,8 +87,7 @@ class JudgedCriterion(Protocol):
     def unverified(self) -> str | None: ...  # noqa: D102
     @property
     def waived(self) -> str | None: ...  # noqa: D102
-    @property
-    def truth(self) -> str | None: ...  # noqa: D102
+    def stated(self) -> str: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -104,7 +100,7 @@ class Line:
     verdict: str
     tag: str
     verdict_words: str
-    compared: str
+    sentence: str
     used: str
     share: float | None
     margin: str
@@ -114,6 +110,16 @@ class Line:
     remarks: tuple[str, ...]
     unverified: bool = False
     is_open: bool = False
+
+    @property
+    def place(self) -> str:
+        """Return what stands before the sentence: the step, and the title where the sentence lacks it."""
+        return self.step if self.sentence.startswith(self.title) else self.subject
+
+    @property
+    def subject(self) -> str:
+        """Return step and title."""
+        return f"{self.step}: {self.title}" if self.step else self.title
 
 
 def line(criterion: JudgedCriterion) -> Line:
@@ -125,7 +131,7 @@ def line(criterion: JudgedCriterion) -> Line:
         verdict=criterion.verdict,
         tag=tag(criterion),
         verdict_words=verdict_words(criterion),
-        compared=compared(criterion),
+        sentence=criterion.stated(),
         used="" if criterion.utilisation is None else numbers.share(criterion.utilisation),
         share=criterion.utilisation,
         margin=margin(criterion),
@@ -188,31 +194,6 @@ def _is_error_unknown(criterion: JudgedCriterion) -> bool:
     return criterion.verdict in ("met", "not_met") and not criterion.error_known
 
 
-def compared(criterion: JudgedCriterion) -> str:
-    """Return the value, the sign that is true of it, and the limit: `1.53 µm < 2 µm`.
-
-    Empty if one is missing.
-    """
-    value, limit = criterion.value, criterion.limit
-    if value is None or limit is None:
-        return ""
-    right = sides(criterion.require)[2]
-    called = f"{plain_name(right)} " if _ONE_NAME.fullmatch(right) else ""
-    one, other = numbers.in_line(value), numbers.in_line(limit)
-    if one == other and value.value != limit.value:
-        one, other = (
-            f"{text} {numbers.unit(value.unit)}".strip() for text in told_apart(value.value, limit.value)
-        )
-    return f"{one} {_sign(criterion, value, limit)} {called}{other}"
-
-
-def _sign(criterion: JudgedCriterion, value: Amount, limit: Amount) -> str:
-    """Return the sign between value and limit that is true of them, near the one that is required."""
-    if sides(criterion.require)[1] == ">=":
-        return "≥" if value.value >= limit.value else "<"
-    return "≤" if value.value <= limit.value else ">"
-
-
 def margin(criterion: JudgedCriterion) -> str:
     """Return the margin to the limit, with the range that the error allows; negative beyond the limit."""
     if criterion.margin is None:
@@ -260,12 +241,11 @@ def missing(criterion: JudgedCriterion) -> str:
 def remarks(criterion: JudgedCriterion) -> tuple[str, ...]:
     """Return restrictions of the verdict.
 
-    An error not stated, a limit not verified, a waiver, the model, the worst place.
+    A limit not verified, a waiver, the worst place, why there is no verdict or no error.
     """
     said = (
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
         f"waived: {criterion.waived}" if criterion.waived else "",
-        criterion.truth if criterion.truth and is_model(criterion.truth) else "",
         _where(criterion),
         criterion.reason if criterion.reason and missing(criterion) != criterion.reason else "",
     )

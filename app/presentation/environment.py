@@ -1,4 +1,4 @@
-"""Jinja for pages and reports: it escapes everything, writes formulas as MathML and aligns numbers."""
+"""Jinja for pages and reports: it escapes all values, writes formulas as MathML, and aligns numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text as a user types it in a field, and the value that it means; `static/typed.js` does the same."""
+"""Text as a user types it in a field, and the value that it stands for; `static/typed.js` does the same."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Escape texts for spreadsheets, so that none is taken for a formula.
+"""Escape texts for spreadsheets, so that none is read as a formula.
 
-openpyxl has 180 modules. It is imported where an XLSX file is read or written, here and elsewhere.
+openpyxl has 180 modules, so it is imported only where an XLSX file is read or written.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Charts of a report as SVG: lines over linear or logarithmic axes, the same on screen and on paper.
 
-Equal charts give equal bytes. No style attributes, which the pages' policy forbids, and no scripts.
+Equal charts give equal bytes. The SVG has no style attributes, which the pages' policy forbids, and no
+scripts.
 """
 
 from __future__ import annotations

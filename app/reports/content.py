@@ -41,7 +41,7 @@ class Criterion:
     words: str
     verdict: str  # met, not_met, undecided, not_checked
     verdict_words: str
-    compared: str
+    sentence: str
     used: str
     margin: str
     error: str
@@ -116,6 +116,7 @@ class Step:
     ranges: list[Rule]  # the range of validity: domains and published ranges
     rules: list[Rule]
     warnings: list[StepWarning]
+    assumed: list[str]  # defaults that make a part look safer, and stand
     references: list[str]
 
 
@@ -232,6 +233,7 @@ class Signature:
     at: str = ""
     digest: str = ""
     reason: str = ""  # of a withdrawal
+    acknowledged: str = ""  # why criteria that are not confirmed may stand, and how many they are
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""The throw star: the crankpins of an engine seen from its flywheel, each with the cylinders on it.
+"""The crank star: the crankpins of an engine seen from its flywheel, each with its cylinders.
 
 `static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 1 counts its angles, so the
-shaft turns against the hands of a clock. Pins at one angle are one ray, whichever throws they are on.
+shaft turns anticlockwise. Pins at the same angle share one ray, whichever throws they are on.
 """
 
 from __future__ import annotations

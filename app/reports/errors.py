@@ -1,4 +1,4 @@
-"""Errors of reports; nothing here knows HTTP."""
+"""Errors of reports; this module knows nothing of HTTP."""
 
 
 class Unprintable(Exception):

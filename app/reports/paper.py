@@ -1,4 +1,4 @@
-"""Typeset reports and drawings, each in a process that can be stopped, a few at a time."""
+"""Typeset reports and drawings, a few at a time, each in a process that can be stopped."""
 
 from __future__ import annotations
 

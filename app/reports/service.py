@@ -1,7 +1,7 @@
-"""Reports: a revision gathered into one report, and the jobs that draw its pictures.
+"""Reports: collect the data of a revision in one report, and draw its pictures by jobs.
 
-The report of a revision never changes. Only pictures and the drawing, which jobs make on first request, may
-come later; the report then says so.
+The report of a revision never changes. Only pictures and the drawing, which jobs create at the first request,
+may be missing at first; the report then says so.
 """
 
 from __future__ import annotations

@@ -57,7 +57,20 @@ def of_variants(signatures: Signatures) -> Signatures:
 def _signature(role: str, step: Approval | None) -> Signature:
     if step is None:
         return Signature(role)
-    return Signature(role, clean(step.name), moment(step.at), step.digest, clean(step.content.reason or ""))
+    content = step.content
+    said = f"{_counted(content.unconfirmed)} not confirmed: {content.acknowledged}"
+    return Signature(
+        role,
+        clean(step.name),
+        moment(step.at),
+        step.digest,
+        clean(content.reason or ""),
+        clean(said) if content.acknowledged else "",
+    )
+
+
+def _counted(criteria: Sequence[str]) -> str:
+    return "1 criterion" if len(criteria) == 1 else f"{len(criteria)} criteria"
 
 
 def moment(at: str) -> str:

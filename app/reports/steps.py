@@ -14,7 +14,7 @@ from app.designs.schemas.designs import PreviewedStep
 from app.designs.worksheet import checked
 from app.plain import Raw
 from app.presentation import numbers
-from app.reports.cells import Cell, cell, flat, in_si, typed
+from app.reports.cells import Cell, cell, clean, flat, in_si, typed
 from app.reports.content import Formula, Identity, Line, Rule, Step, StepWarning
 from app.reports.plots import plots_of
 from templates.core.catalogue.discovery import Catalogue
@@ -66,6 +66,7 @@ def step_of(name: str, step: PreviewedStep, document: StepDocument, catalogues: 
         warnings=[
             StepWarning(w.name.replace("_", " "), _about_the_case(w.detail, checks)) for w in step.warnings
         ],
+        assumed=[clean(one.detail) for one in step.assumed],
         references=list(documentation(cls).get("References", ())) if cls else [],
     )
 

@@ -72,14 +72,10 @@ def _line(row: VariantResult, out: VariantsOut) -> VariantLine:
         governs=out.governing is not None and out.governing.variant == row.name,
         verdict=row.verdict.verdict if row.verdict else "",
         headline=row.verdict.headline if row.verdict else "",
-        governing=clean(f"{_title(shown)} {shown.compared}") if shown else "",
+        governing=clean(shown.sentence) if shown else "",
         used=shown.used if shown else "",
         problem=clean(row.problem.detail) if row.problem else "",
     )
-
-
-def _title(shown: Line) -> str:
-    return f"{shown.step}: {shown.title}" if shown.step else shown.title
 
 
 Column = tuple[str, list[str]]  # heading, and a text for each variant
@@ -104,7 +100,7 @@ def _used(rows: Sequence[VariantResult]) -> list[Column]:
     for name in names:
         judged = [next((one for one in row.criteria if one.name == name), None) for row in rows]
         shown = [line(one) if one else None for one in judged]
-        title = next(_title(one) for one in shown if one)
+        title = next(one.subject for one in shown if one)
         columns.append((clean(title), [_share(one) for one in shown]))
     return columns
 

@@ -1,4 +1,4 @@
-"""The verdict with which a report begins: every criterion as judged, worst first."""
+"""The verdict at the head of a report: every criterion as judged, worst first."""
 
 from __future__ import annotations
 
@@ -34,12 +34,8 @@ def governing_sentence(first: Line) -> str:
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""
     said = ", ".join(filter(None, (used, margin, error)))
-    verdict = f"{first.verdict_words} ({said})" if said else first.verdict_words
-    return clean(f"governing: {_where(first)} {first.compared}: {verdict}")
-
-
-def _where(one: Line) -> str:
-    return f"{one.step}: {one.title}" if one.step else one.title
+    place = f"{first.place}: " if first.place else ""
+    return clean(f"governing: {place}{first.sentence}{f' ({said})' if said else ''}")
 
 
 def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
@@ -48,10 +44,10 @@ def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
     basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(
-        words=clean(_where(one)),
+        words=clean(one.subject),
         verdict=one.verdict,
         verdict_words=one.verdict_words,
-        compared=clean(one.compared),
+        sentence=clean(one.sentence),
         used=one.used,
         margin=one.margin,
         error=one.error,

@@ -1,4 +1,4 @@
-"""The verification of a printed report, line by line, against the service's approval."""
+"""Verify a printed report line by line against the approval stored in the service."""
 
 from __future__ import annotations
 

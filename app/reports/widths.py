@@ -1,8 +1,8 @@
-"""Upper bounds of the widths of formulas on paper, so that the typesetter measures only what may be too wide.
+"""Upper bounds of the widths of formulas on paper, so that the typesetter measures only wide candidates.
 
 To see whether a formula fits its line, the typesetter sets it once to measure it and once to print it. A
-bound needs no typesetting: every character counts with at least the widest advance of its class in New
-Computer Modern Math, every operator with the widest space on both sides. Lengths are in em. An unknown
+bound needs no typesetting: it counts every character with at least the widest advance of its class in New
+Computer Modern Math, and every operator with the widest space on both sides. Lengths are in em. An unknown
 character may come from any system font; then there is no bound, and the typesetter measures the formula.
 """
 

@@ -1,4 +1,4 @@
-"""Files of the store that no row refers to: left by deleted builds, or by a server that was killed."""
+"""Files of the store that no row refers to: left over from deleted builds or from a killed server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All SQL of retention. Ages are in seconds of operation; every function runs in its caller's transaction."""
+"""All SQL of retention. Ages are in seconds of operation. Every function runs in its caller's transaction."""
 
 from __future__ import annotations
 

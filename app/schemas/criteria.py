@@ -1,12 +1,14 @@
-"""Criteria as judged, and the verdict over all of them."""
+"""Criteria as judged, and the overall verdict."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
 from pydantic import Field
 
+from app.presentation.units import System
 from app.schemas.answers import Answer, Measured, Quantity, Shown
+from templates.core.criteria.judgement import verdict_sentence
 
 Word = Literal["met", "not_met", "undecided", "not_checked"]
 """The verdict on the value itself, unless the limit lies within its error as far as that is known.
@@ -32,6 +34,7 @@ class Criterion(Answer):
     words: str
     require: str = Field(description="the comparison, such as `film >= 3 um`")
     verdict: Word
+    sentence: str = Field("", description="what is the case: value, relation, limit and verdict")
     value: Quantity | None = None
     limit: Quantity | None = None
     band: Band | None = Field(None, description="of the value; absent where its error is not known")
@@ -56,6 +59,27 @@ class Criterion(Answer):
     source: str | None = Field(None, description="of the limit, or of the rule")
     unverified: str | None = Field(None, description="why the limit is not sure; the verdict is never green")
     waived: str | None = Field(None, description="why it does not count")
+
+    def in_units(self, system: System) -> Self:
+        """Return the criterion in a system of units, its sentence too."""
+        shown = super().in_units(system)
+        return shown if shown is self else shown.model_copy(update={"sentence": shown.stated()})
+
+    def stated(self) -> str:
+        """Return the sentence, made from the numbers as they are shown."""
+        numbers = (
+            None
+            if self.value is None or self.limit is None
+            else (self.value.value, self.limit.value, self.limit.unit)
+        )
+        return verdict_sentence(
+            self.require,
+            self.verdict,
+            numbers,
+            misses=self.margin is not None and self.margin.value < 0,
+            error_known=self.error_known,
+            truth=self.truth,
+        )
 
 
 class Verdict(Answer):

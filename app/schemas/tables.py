@@ -1,4 +1,4 @@
-"""A pasted table, and how its columns fill the fields of a form."""
+"""A pasted table, and the assignment of its columns to the fields of a form."""
 
 from __future__ import annotations
 

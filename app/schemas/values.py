@@ -1,4 +1,4 @@
-"""Input values in the description of the interface.
+"""Input values in the OpenAPI description.
 
 It describes only the form. The schema of each template and model says which units and options are valid.
 """

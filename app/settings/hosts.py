@@ -1,7 +1,7 @@
 """Allowed host names of the service: loopback, the bound address, and those that the operator adds.
 
-A page of another site can have its own name resolved to 127.0.0.1 (DNS rebinding). The browser then takes the
-service for that site, and only the header `Host` reveals the difference.
+A page of another site can have its own name resolved to 127.0.0.1 (DNS rebinding). The browser then mistakes
+the service for that site, and only the header `Host` reveals the difference.
 """
 
 from __future__ import annotations

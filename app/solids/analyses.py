@@ -1,4 +1,4 @@
-"""Analyses of CAD models on their own, outside of any design."""
+"""Analyses of CAD models outside of any design."""
 
 from __future__ import annotations
 
@@ -100,9 +100,7 @@ class Analyses:
                 return None
             return self.jobs.request(session, ANALYSIS, payload, client)
 
-        job = self.database.write(unit)
-        self.jobs.wake()
-        return job
+        return self.jobs.commit(unit)
 
     def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
         """Return the outputs that were asked for, as far as they are stored."""

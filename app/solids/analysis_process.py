@@ -1,4 +1,4 @@
-"""Analyses in a worker process, and their records: one output is computed once for one solid and question."""
+"""Run analyses in a worker process and store them: each output of a solid and a question is computed once."""
 
 from __future__ import annotations
 

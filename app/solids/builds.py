@@ -1,4 +1,4 @@
-"""Builds, made in a worker process and recorded with their STEP files; other files only when asked for.
+"""Builds, created in a worker process and stored with their STEP files; other files only on request.
 
 If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
 the row verifies the result.
@@ -80,7 +80,7 @@ class Builds:
             return context.run(build_in_worker, source, texts)
         if self.programs is None:
             raise ProgramMissing(
-                "program_missing", f"{shape.id} is drawn by the service, not by this command"
+                "program_missing", f"{shape.id} can be drawn only by the service, not by this command"
             )
         return context.run(build_drawn_in_worker, source, texts, self.programs.draw(shape, context))
 

@@ -8,10 +8,10 @@ from typing import Any
 from app.schemas.answers import Quantity, Triple, Values
 from app.solids.schemas.models import BoundingBox, Clearance, Inertia, Measurements
 from cad.inspect import MEASURES
-from cad.overlaps import Clearance as Between
+from cad.overlaps import Clearance as ValueRange
 
 
-def clearance(one: Between) -> Clearance:
+def clearance(one: ValueRange) -> Clearance:
     """Return the distance and overlap of two parts of an assembly."""
     overlap = {"overlap": Quantity(value=one.overlap, unit="mm**3")} if one.overlap else {}
     distance = Quantity(value=one.distance, unit="mm")

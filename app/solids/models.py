@@ -1,4 +1,4 @@
-"""CAD models on their own, and the files of builds."""
+"""CAD models outside of designs, and the files of builds."""
 
 from __future__ import annotations
 
@@ -75,9 +75,7 @@ class Models:
                 return None
             return self.jobs.request(session, BUILD, payload, client)
 
-        job = self.database.write(unit)
-        self.jobs.wake()
-        return job
+        return self.jobs.commit(unit)
 
     def request_file(self, key: str, kind: str, client: str = "") -> str:
         """Return the job that makes a file of a finished build, whichever recipe it was made by."""
@@ -96,9 +94,7 @@ class Models:
             renew(session, keys)
             return self.jobs.request(session, BUILD, payload, client)
 
-        job = self.database.write(unit)
-        self.jobs.wake()
-        return job
+        return self.jobs.commit(unit)
 
     def show(self, key: str) -> Build:
         """Return a build: its files and what was measured on it.

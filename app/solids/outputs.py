@@ -1,4 +1,4 @@
-"""An output of an analysis as its row holds it."""
+"""An output of an analysis as its database row holds it."""
 
 from __future__ import annotations
 

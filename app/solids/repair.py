@@ -1,4 +1,4 @@
-"""Rebuild missing or damaged files: the jobs that make them again."""
+"""Rebuild missing or damaged files: the jobs that create them again."""
 
 from __future__ import annotations
 

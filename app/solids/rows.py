@@ -1,7 +1,7 @@
 """All SQL of builds and their artifacts, and the ages of unused builds.
 
 A build that no revision uses is deleted after a time, see `app.retention`. A caller that needs a build renews
-its age in the unit of work that relies on it, or learns there that it was deleted.
+its age in the same unit of work, or is told there that the build was deleted.
 """
 
 from __future__ import annotations

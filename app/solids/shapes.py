@@ -1,4 +1,4 @@
-"""The model of a build, from its row."""
+"""The model of a build, created from its row."""
 
 from __future__ import annotations
 

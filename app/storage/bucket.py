@@ -1,8 +1,8 @@
 """Artifacts in a bucket of S3, served from verified copies on this machine.
 
 The bucket holds `<sha>`, the files; `database`, the identity of their database; `sweeps`, the last
-collections; `quarantine/<sha>.<tag>`, copies of files with other bytes than their name says;
-`discarded/<sha>`, files that no row named, until the next sweep.
+collections; `quarantine/<sha>.<tag>`, copies of files whose bytes do not match their name; `discarded/<sha>`,
+unreferenced files, kept until the next sweep.
 
 A copy is trusted once its bytes have been hashed, as long as its inode, size and times do not change
 (`ArtifactStore`). An object is trusted once this process has hashed or sent its bytes, as long as its ETag
@@ -96,7 +96,7 @@ class BucketStore:
             self._copies.put(self._download(sha))
             if opened := self._copies.open(sha):
                 return opened
-        raise ArtifactDamaged(sha, "its copy on this machine changed as soon as it was written")
+        raise ArtifactDamaged(sha, "its copy on this machine changed right after it was written")
 
     def exists(self, sha: str) -> bool:
         """Return whether the bucket has the bytes, and they are good.

@@ -1,17 +1,18 @@
-"""Times and identities of stored objects, and the clock of operation, from which their ages follow.
+"""Times and identities of stored objects, and the clock of operation, from which ages are computed.
 
-Identities and ages come from counters in the database, not from the wall clock, which may jump either way.
-On PostgreSQL identities come from a sequence: to raise a row in every unit would let one unit run at a time.
+Identities and ages come from counters in the database, not from the wall clock, which may jump either way. On
+PostgreSQL identities come from a sequence: if every unit updated a counter row, only one unit could run at a
+time.
 
 The clock of operation counts the seconds for which the service has run, over all its starts. The age of a
-stored thing is the difference of two readings. So nothing ages while no server runs, or when the clock of a
-machine jumps.
+stored thing is the difference of two readings. So nothing ages while no server runs or when a machine's clock
+jumps.
 
-SQLite has one server, whose writer raises the counter by the monotonic clock of its process. A killed server
-loses the time since its last write.
+SQLite has one server, whose writer advances the counter by the monotonic clock of its process. A killed
+server loses the time since its last write.
 
-PostgreSQL may have several servers. Each raises the counter every few seconds under the lock of a row,
-and notes in `TICKED` when it did so, by the clock of the database. A reader adds the time since then, at most
+PostgreSQL may have several servers. Each advances the counter every few seconds under the lock of a row, and
+stores the time in `TICKED`, by the clock of the database. A reader adds the time since then, at most
 `LONGEST`. So each second counts once, however many servers run. A jump of the database's clock counts as
 `LONGEST` at most.
 """

@@ -1,4 +1,4 @@
-"""The database of the settings: checked, brought to the schema of this program, and opened."""
+"""Open the database that the settings name: check it, and migrate it to the schema of this program."""
 
 from __future__ import annotations
 
@@ -93,4 +93,4 @@ def require_database(url: str) -> None:
     except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted
         backend = ""
     if backend not in BACKENDS:
-        raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names an unknown kind of database; write {FORMS}.")
+        raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names an unsupported kind of database; write {FORMS}.")

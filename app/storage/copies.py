@@ -1,4 +1,4 @@
-"""Local copies of a bucket's files, verified whenever they are read; those not used for longest make room."""
+"""Local copies of a bucket's files, verified at every read; the least recently used are removed first."""
 
 from __future__ import annotations
 

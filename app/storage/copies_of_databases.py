@@ -2,7 +2,7 @@
 
 A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so the
 identity does not distinguish copies. A random number does, which each collection writes to the database and
-to the store. A database that finds a number there which is not its own has a copy that collects.
+to the store. If a database finds a foreign number there, a copy of it collects files too.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Differences between kinds of database: engines that read and that write, for SQLite and PostgreSQL."""
+"""Differences between SQLite and PostgreSQL: their engines for reading and for writing."""
 
 import sqlite3
 from pathlib import Path

@@ -6,8 +6,8 @@ StorageError
  ├── DatabaseNewer         the database was written by a newer program
  ├── DatabaseClosed        a unit of work came after `close`
  ├── CommitFailed          a unit of work ran, but it could not be made durable
- │    └── CommitUnknown  … and nobody knows whether it is
- ├── DatabaseUnavailable   the database server cannot be reached, or does no work at present
+ │    └── CommitUnknown  … and whether it was is unknown
+ ├── DatabaseUnavailable   the database server cannot be reached, or refuses work at present
  ├── NotForTeams           the settings do not let several servers share the data
  ├── DatabaseDamaged       pages or rows of the database cannot be read as they were written
  ├── ArtifactMissing       no artifact has this hash

@@ -1,4 +1,4 @@
-"""Files written whole and durably: no reader sees half of one, and a crash of the machine loses none.
+"""Write files whole and durably: no reader sees half of one, and a crash of the machine loses none.
 
 Two locks separate the removal of a file from its creation, within one process and among several.
 """

@@ -1,4 +1,4 @@
-"""The data folder of a server: held by one process at a time."""
+"""The data folder of a server: only one process at a time may hold it."""
 
 import fcntl
 import os

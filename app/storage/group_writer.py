@@ -3,7 +3,7 @@
 SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
 in one transaction needs one sync for all of them, and no writer ever finds the database locked.
 
-The writer watches for damage of the file, and writes nothing more once it has found any.
+The writer watches for damage to the file, and stops writing once it has found any.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Locks on names, for units of work that read before they write, where there is no row to lock."""
+"""Locks on names, for units of work that read before they write and have no row to lock."""
 
 from __future__ import annotations
 

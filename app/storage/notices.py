@@ -1,8 +1,8 @@
 """Notifications between the servers of a team: PostgreSQL's NOTIFY, sent after the commit.
 
 A hint is a short text, such as the topic of an event or `queue:regenerate`. Rows are authoritative: a lost
-hint delays its news until the next poll of the database, but loses nothing. NOTIFY within a transaction would
-hold a lock of the whole database until its commit is done: see docs/decisions/050-events-are-rows.md.
+hint only delays an event until the next poll of the database. NOTIFY within a transaction would hold a lock
+of the whole database until its commit is done: see docs/decisions/050-events-are-rows.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Open the store of files by the settings: a folder of this server, one that servers share, or a bucket."""
+"""Open the file store that the settings name: a folder of this server, a shared folder, or a bucket."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _parsed(url: str) -> SplitResult:
         raise _refused(f"its scheme is {place.scheme[:20]!r}; write {FORMS}")
     if has_more:  # perhaps keys: the text does not quote it
         raise _refused(
-            f"it contains more than a location; write {FORMS}, and set keys by the AWS environment"
+            f"it contains more than a location; write {FORMS}, with keys in AWS environment variables"
         )
     return place
 
@@ -125,8 +125,10 @@ def _endpoint(endpoint: str | None) -> str | None:
     if endpoint is None:
         return None
     if not _ENDPOINT.fullmatch(endpoint):  # perhaps it holds keys: the text does not quote it
-        address = "write an address such as https://s3.example.com:9000, and set keys by the AWS environment"
-        raise StoreRefused(f"CRANKWRIGHT_S3_ENDPOINT: {address}.")
+        address = "write an address such as https://s3.example.com:9000"
+        raise StoreRefused(
+            f"CRANKWRIGHT_S3_ENDPOINT: {address}, and set keys in the environment variables of AWS."
+        )
     return endpoint.rstrip("/")
 
 

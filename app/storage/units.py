@@ -1,8 +1,8 @@
 """Units of work: functions that run in one transaction, and their statements, compiled once.
 
-At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row. That
-takes several times as long as SQLite itself. On SQLite a `Statement` hands its text and its values to the
-driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
+At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row, which
+takes several times as long as SQLite itself. On SQLite a `Statement` passes its text and values directly to
+the driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
 
 An upsert writes a row that several servers may insert at the same time, without reading it first.
 """
@@ -150,7 +150,7 @@ class Statement:
             raise translated(compiled.text, rows, error) from error
 
     @cached_property
-    def _compiled(self) -> _Compiled:
+    def _compiled(self) -> _DriverStatement:
         assert isinstance(self.clause, ClauseElement)
         compiled = self.clause.compile(dialect=_SQLITE, column_keys=list(self.names))
         assert isinstance(compiled, SQLCompiler)
@@ -164,7 +164,7 @@ class Statement:
         places = compiled.positiontup
         assert set(self.names) <= set(places), "each name is that of a value"
         types = [column.type for column in getattr(self.clause, "exported_columns", ())]
-        return _Compiled(
+        return _DriverStatement(
             str(compiled),
             places,
             {name: constants[name] for name in places if name not in self.names},
@@ -174,7 +174,7 @@ class Statement:
 
 
 @dataclass(frozen=True)
-class _Compiled:
+class _DriverStatement:
     """A statement as SQLite's driver takes it.
 
     `places` has for each parameter the name of its value; `constants` are those that no caller gives.

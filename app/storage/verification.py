@@ -1,4 +1,4 @@
-"""Remember which files have been hashed already, by their stamps in the file system."""
+"""Remember which files have been hashed, by their inode, size and times in the file system."""
 
 from __future__ import annotations
 

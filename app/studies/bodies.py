@@ -1,4 +1,4 @@
-"""Bodies of the calls of studies."""
+"""Request bodies of studies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The criteria of a design by their names: those of its templates, and its own."""
+"""The criteria of a design by name: those of its templates, and its own."""
 
 from __future__ import annotations
 

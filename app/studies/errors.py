@@ -1,4 +1,4 @@
-"""Errors of studies, beside wrong inputs."""
+"""Errors of studies, besides wrong inputs."""
 
 from __future__ import annotations
 

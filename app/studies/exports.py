@@ -1,4 +1,4 @@
-"""The rows of a study as files: CSV row by row, XLSX of some rows, an archive of all columns."""
+"""The rows of a study as files: CSV written row by row, XLSX of some rows, and an archive of all columns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The best row and the front, among rows that were calculated."""
+"""The best row and the Pareto front of the calculated rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An optimisation, slice by slice: each is stored as a chunk before the next begins."""
+"""An optimisation in slices: each slice is stored as a chunk before the next begins."""
 
 from __future__ import annotations
 

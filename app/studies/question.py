@@ -61,11 +61,11 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
     if not varied and body.method == "table":
         yield Fault("rows", "missing", "give `rows`: columns by name, or a list of rows")
     elif not varied:
-        yield Fault("vary", "missing", 'name what varies, as in {"clearance": {"between": [..]}}')
+        yield Fault("vary", "missing", 'name the varied parameters, as in {"clearance": {"between": [..]}}')
     if body.vary and body.method == "table":
-        yield Fault("vary", "contradiction", "the rows of a table say what varies; leave `vary` out")
+        yield Fault("vary", "contradiction", "the columns of the table define what varies; leave `vary` out")
     if body.method == "sample" and body.points is None:
-        yield Fault("points", "missing", "say how many rows to sample, such as 1024")
+        yield Fault("points", "missing", "give the number of rows to sample, such as 1024")
     has_goal = bool(body.minimise or body.maximise)
     if body.method == "optimise" and not has_goal:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")

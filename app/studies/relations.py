@@ -1,4 +1,4 @@
-"""Relations that a study sets aside, and that a chosen row replaces."""
+"""Relations that a study overrides, and that a chosen row replaces."""
 
 from __future__ import annotations
 

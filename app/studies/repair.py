@@ -1,9 +1,9 @@
-"""Chunks whose artifacts are lost or damaged: a job calculates them again, to the same bytes.
+"""Repair chunks whose artifacts are lost or damaged: a job calculates them again, to the same bytes.
 
 A separate job does this for rows that a client reads; a running study repairs its own rows within its job.
 
-The study is repeated with the chunks that are left, until all that were recorded are there again. The repair
-stops there: a cancelled study gets no new rows, and nothing is evaluated or built a second time.
+The repair repeats the study from the chunks that are left until all recorded chunks exist again, and then
+stops: a cancelled study gets no new rows, and nothing is evaluated or built twice.
 """
 
 from __future__ import annotations
@@ -105,9 +105,7 @@ class ChunkRepair:
                 return refused
         payload: JsonObject = {"study": id}
         jobs = self._services.jobs
-        job = self._services.database.write(lambda session: jobs.request(session, AGAIN, payload))
-        jobs.wake(AGAIN)
-        return RowsLost(id, job)
+        return RowsLost(id, jobs.commit(lambda session: jobs.request(session, AGAIN, payload), AGAIN))
 
     def _refuse(self, id: str, error: Exception) -> None:
         """Remember why rows cannot be calculated again: nothing but a new start of the service helps."""

@@ -1,7 +1,7 @@
 """Find the solid of each row of a study and put its measures into columns, in a calculation process.
 
-A row waits for its solids: until all are known, a chunk reports the missing ones. A model may take a
-measure of another, so its parameters are known only once that one is built.
+A row waits for its solids: until all are known, a chunk reports the missing ones. A model may use a
+measurement of another model, so its parameters are known only once that model is built.
 """
 
 from __future__ import annotations

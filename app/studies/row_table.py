@@ -1,4 +1,4 @@
-"""The rows of a table that a user gave: columns by name, or a list of rows, in any unit that fits."""
+"""The rows of a table that a user gave: columns by name or a list of rows, in any suitable unit."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The job of a study: its chunks are calculated in the pool, stored, recorded; then the method concludes.
+"""The job of a study: calculate its chunks in the pool, store and record them, then conclude the method.
 
-A chunk's bytes are in the store before its row is written, in one transaction. So after a crash the rows say
-which chunks are left, and they are calculated to the same bytes.
+A chunk's bytes are in the store before its row is written, in one transaction. So after a crash the rows show
+which chunks are missing, and these are calculated to the same bytes.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""A slice of a search, in a calculation process: it repeats from the seed, taking stored answers.
+"""A slice of a search in a calculation process: it repeats the search from the seed with the stored answers.
 
-An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
-was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
-for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
-A slice ends after a number of estimated seconds, not by the clock, so that equal studies have equal chunks.
+An optimiser asks for the same rows in the same order whenever it begins with the same seed. So an interrupted
+search begins again and receives the stored answers, keyed by the bytes of the rows, until it asks for a new
+one. Generations of NSGA-II are stored as well: finished ones are not repeated. A slice ends after a number of
+estimated seconds, not of measured ones, so that equal studies have equal chunks.
 """
 
 from __future__ import annotations

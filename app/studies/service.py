@@ -1,4 +1,4 @@
-"""Operations on studies: begin, look, choose a row, cancel, remove."""
+"""Operations on studies: begin, show, choose a row, cancel, delete."""
 
 from __future__ import annotations
 
@@ -146,9 +146,7 @@ class Studies:
             once.keep(session, 202, {"study": row.id})
             return row.id
 
-        id = self.database.write(unit_of_work)
-        self.jobs.wake(STUDY)
-        return id
+        return self.jobs.commit(unit_of_work, STUDY)
 
     def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision of the design with the values of a row.

@@ -1,7 +1,7 @@
-"""The solids for which rows of a study wait: built, analysed and measured one by one, by the study's job.
+"""Build, analyse and measure the solids for which rows of a study wait, one by one, in the study's job.
 
-All solids of a study share a process (`JobContext`). A build that is recorded is not made twice, so a study
-that was killed finds again what it has built. If a solid fails, only the rows that use it fail.
+All solids of a study share a process (`JobContext`). A recorded build is not built twice, so a killed study
+reuses its builds. If a solid fails, only the rows that use it fail.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The task of a calculation process for a study: the design, the sources of its steps, the body."""
+"""The input of a calculation process for a study: the design, the sources of its steps, the request body."""
 
 from __future__ import annotations
 

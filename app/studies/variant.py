@@ -1,4 +1,4 @@
-"""The variant of a design that a study concerns: its document, and the revision that a chosen row makes."""
+"""The variant of a design that a study uses: its document, and the revision that a chosen row creates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of a study as variants of a new design: its table, files and report are those of any design."""
+"""Make rows of a study the variants of a new design, with a table, files and a report like any design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Crankwright commands as parts of a team, which can be killed and restarted on their ports."""
+"""Crankwright commands as parts of a team: each can be killed, and restarted on its port."""
 
 from __future__ import annotations
 

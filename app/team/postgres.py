@@ -1,6 +1,6 @@
 """A temporary PostgreSQL on loopback, for trials and tests, never for data.
 
-PostgreSQL refuses to run as root: started by root it runs as `nobody`, to whom its folder then belongs.
+PostgreSQL refuses to run as root: if root starts it, it runs as `nobody`, who then owns its folder.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An analysis as the interface shows it: in declared units, with a reason for each missing value."""
+"""A tolerance analysis as the interface shows it: in declared units, with a reason for each missing value."""
 
 from __future__ import annotations
 

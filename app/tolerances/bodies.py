@@ -1,4 +1,4 @@
-"""Body of the call of a tolerance analysis."""
+"""The request body of a tolerance analysis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The criteria of a design of which an analysis states the yield."""
+"""The criteria of a design whose yields an analysis states."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The question of a tolerance analysis, as a calculation process takes it."""
+"""The question of a tolerance analysis, as a calculation process receives it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/designs/{id}/tolerance`: what the tolerances of a design do to its outputs and criteria."""
+"""`/designs/{id}/tolerance`: the effect of a design's tolerances on its outputs and criteria."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Scatter of outputs and yields of criteria, from eight or more independent scramblings of a Sobol' sequence.
 
-Standard errors come from their spread: within one scrambling the points are not independent draws.
+Standard errors come from the spread between scramblings: points within one scrambling are not independent.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
 Eight scrambled Sobol' sequences of twice as many dimensions give pairs of independent samples A and B, and
 for each factor a sample AB that has this factor from B. First-order shares are estimated after Saltelli 2010
 (table 2, b), which is exact for a factor without effect, and after Jansen 1999, which is exact for a factor
-that does everything; total shares after Jansen, and as the remainder that the other factors leave. The
-estimate with the smaller standard error is used. All are estimated over the eight together; the standard
-errors are those of a jackknife that leaves out one of the eight at a time.
+that causes the whole variance. Total shares are estimated after Jansen, and as the remainder that the other
+factors leave. The estimate with the smaller standard error is used. All estimates use the eight sequences
+together; their standard errors come from a jackknife that leaves out one sequence at a time.
 
 References
 ----------

@@ -1,7 +1,7 @@
-"""The least and the largest value of each output within the limits, interior extremes included.
+"""The least and the largest value of each output within the limits, including extremes between the limits.
 
-A lattice with all corners and 512 quasi-random rows find where to begin; L-BFGS-B starts from the three best
-of them. Slopes and corners alone miss extremes within the limits.
+A lattice with all corners and 512 quasi-random rows give the starting points; L-BFGS-B starts from the three
+best. Slopes and corners alone would miss interior extremes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The pages as a part of the app: routes, files, errors, compression."""
+"""Add the pages to the app: routes, files, errors, compression."""
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ from app.web.template import routes as template
 from app.web.tolerances import routes as tolerances
 from app.web.upgrade import routes as upgrade
 from app.web.variants import routes as variants
+from app.web.verdict import routes as verdict
 from app.web.worksheet import routes as worksheet
 from app.web.worksheet_import import routes as worksheet_import
 
@@ -64,6 +65,7 @@ ROUTERS = (
     approval.router,
     variants.router,
     columns.router,
+    verdict.router,
     study.router,
     study.forms,
     worksheet_import.router,  # before the worksheets: `import` is not the id of one
@@ -88,9 +90,9 @@ class Files(StaticFiles):
     """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
 
     def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
-        """Return the file of a path: of a page's folder only its style sheets, scripts and pictures.
+        """Return the file for a path; from a page's folder only style sheets, scripts and pictures.
 
-        The system's calls raise on a null byte instead of finding nothing.
+        System calls raise an error for a null byte.
         """
         is_sent = "\0" not in path and Path(path).suffix in SENT
         return super().lookup_path(path) if is_sent else ("", None)
@@ -102,7 +104,7 @@ class Files(StaticFiles):
         scope: Scope,
         status_code: int = 200,
     ) -> Response:
-        """Return the file, or that it is still the same."""
+        """Return the file, or 304 if the browser already has it."""
         response = super().file_response(full_path, stat_result, scope, status_code)
         response.headers["Cache-Control"] = "no-cache"
         response.headers["X-Content-Type-Options"] = "nosniff"

@@ -1,4 +1,4 @@
-"""Start the workers that the settings name: processes of this machine, or those of other machines."""
+"""Start the workers that the settings choose: processes on this machine, or on other machines."""
 
 from __future__ import annotations
 

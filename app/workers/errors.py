@@ -1,11 +1,11 @@
-"""Errors of a function in a worker, beside those that the function itself raises.
+"""Errors of a function in a worker, besides those that the function itself raises.
 
 WorkerError
  ├── JobCrashed         its process died
  ├── DeadlineExceeded   it took too long
- ├── MemoryExceeded     it wanted too much memory
- ├── JobCancelled       it was asked to stop
- ├── WorkerLost         the machine that ran it, or the way to it, has gone
+ ├── MemoryExceeded     it used too much memory
+ ├── JobCancelled       a client cancelled it
+ ├── WorkerLost         the machine that ran it, or the connection to it, is lost
  └── RemoteError        it raised or returned an object that cannot be sent between processes
 
 All of them can be pickled.

@@ -1,4 +1,4 @@
-"""A worker without processes or limits, for tests and debuggers; it cannot stop a running function."""
+"""A worker without processes or limits, for tests and debugging; it cannot stop a running function."""
 
 import threading
 from collections.abc import Callable
@@ -42,4 +42,4 @@ class Inline:
         return True
 
     def close(self) -> None:
-        """Do nothing: there is nothing to end."""
+        """Do nothing, since nothing needs to be closed."""

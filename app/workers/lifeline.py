@@ -1,8 +1,8 @@
 """A pipe that ties child processes to the server: when its end closes, the kernel kills them.
 
-However the server dies, the kernel closes its end and sends SIGKILL in the same moment. So it matters neither
-what the process is doing (importing for seconds, forking, stopped by a debugger, in a call that keeps the
-interpreter lock), nor which thread of the server started it, as it does for a parent-death signal.
+However the server dies, the kernel closes its end of the pipe and immediately sends SIGKILL. This works
+whatever the process is doing (importing, forking, stopped by a debugger, holding the interpreter lock).
+Unlike a parent-death signal, it does not depend on the server's thread that started the process.
 
 Linux only. Elsewhere a process notices the end of the server when it next reads from it.
 """
@@ -21,7 +21,7 @@ class Lifeline:
         self.reader, self._writer = os.pipe()
 
     def close_reader(self) -> None:
-        """Close the server's copy of the other end, once it has been handed on."""
+        """Close the server's copy of the other end after it was passed on."""
         os.close(self.reader)
 
     def cut(self) -> None:

@@ -1,8 +1,8 @@
-"""Process priorities: the server, whose work takes milliseconds, before processes that take seconds.
+"""Process priorities: the server, whose work takes milliseconds, goes before processes that work for seconds.
 
-Linux weighs niceness only among the processes of one session where `sched_autogroup_enabled` is set, which is
-usual. And since 6.6 it lets a process that wakes up wait for the end of the other's slice (milliseconds),
-unless it asks for a shorter slice itself (since 6.12).
+If `sched_autogroup_enabled` is set, as it usually is, Linux compares niceness only among the processes of one
+session. Since version 6.6, a process that wakes up waits for the end of the other's time slice
+(milliseconds), unless it requests a shorter slice itself (since 6.12).
 """
 
 import ctypes
@@ -28,12 +28,12 @@ def share_fairly() -> None:
 
 
 def give_way() -> None:
-    """Let the other processes of the session, above all the server, come before this one."""
+    """Lower the priority of this process below the others of the session, above all the server."""
     os.nice(_NICENESS)
 
 
 def _set_slice(nanoseconds: int) -> bool:
-    """Ask for a slice; whether the system takes the request, which older ones then ignore."""
+    """Request a time slice; return whether the system accepts the request, which older systems ignore."""
     number = _SCHED_SETATTR.get(platform.machine())
     if sys.platform != "linux" or number is None:
         return False

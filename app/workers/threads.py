@@ -1,7 +1,7 @@
 """Threads of the numerical libraries: one for each process, unless the operator sets another number.
 
-The service fills the cores with processes. OpenBLAS threads then wait for each other: beside two busy
-processes they multiplied the processor time of small linear algebra by six.
+The service fills the cores with processes. OpenBLAS threads then wait for each other: with two busy processes
+on the machine they multiplied the processor time of small linear algebra by six.
 """
 
 import os

@@ -1,1 +1,1 @@
-"""Worksheets: templates that an engineer writes as text, from the draft over the review to the release."""
+"""Worksheets: templates that an engineer writes as text, from draft and review to release."""

@@ -1,6 +1,6 @@
-"""Check a text: its faults; without any, every line on paper with the example's numbers.
+"""Check a text and report its faults; if it has none, print every line with the example's numbers.
 
-It runs in a calculation process, as everything that reads a user's text does.
+It runs in a calculation process, like all code that reads a user's text.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ROUNDS = 4
 def checked(text: str, id: str | None) -> bytes:
     """Return the answer to `check` as JSON.
 
-    Where statements are faulty, the lines show what the others give without them.
+    The lines show the results of valid statements without the faulty ones.
     """
     try:
         answer = _sound(read(text), id or UNNAMED)
@@ -59,9 +59,9 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """Return the sheet that the sound statements make, each in its line; None where even these make none.
+    """Return the sheet of the valid statements, each in its line; None if there is none.
 
-    Statements that use a faulty one are faulty without it, so the text is read at most `ROUNDS` times more.
+    Statements that use a faulty one become faulty too, so the text is read up to `ROUNDS` more times.
     """
     for _ in range(ROUNDS):
         try:
@@ -134,7 +134,7 @@ def _example(cls: type[Template]) -> _Example:
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
-    """Return inputs and outputs of an evaluation by name, as answers hold them."""
+    """Return inputs and outputs of an evaluation by name, as in answers."""
     answer = json_values.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 

@@ -1,9 +1,9 @@
-"""Errors of a request about worksheets, beyond wrong inputs.
+"""Errors of requests about worksheets, besides wrong inputs.
 
 WorksheetError
     IdTaken             a file, or another worksheet, has the id
-    OutOfOrder          the state of the worksheet does not allow it
-        OtherText       a review names another text than the one that is stored
+    OutOfOrder          the state of the worksheet does not allow the step
+        OtherText       a review names a text that differs from the stored one
         Unresolved      regions of its import are not verified, and nobody has resolved them
         TestsFailed     the worksheet has faults, or its tests fail
     OwnReview           an author reviews their own worksheet

@@ -1,4 +1,4 @@
-"""Ids of worksheets, in one name space with files, and names of people."""
+"""Ids of worksheets, which share one namespace with files, and names of people."""
 
 from __future__ import annotations
 

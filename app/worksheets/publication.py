@@ -1,4 +1,4 @@
-"""Publish worksheets as templates: read them from the database and compare them with their releases."""
+"""Publish worksheets as templates: read them from the database and verify them against their releases."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Operations on worksheets: draft → tested → reviewed → released → withdrawn.
 
-An edit returns a worksheet to draft; an edit of a released version begins the next version. Texts are read in
-a calculation process only. A change is stored only if the version has not changed since it was read.
+An edit returns a worksheet to draft; an edit of a released version starts the next version. Texts are read in
+a calculation process only. A change is stored only if nobody changed the version in the meantime.
 """
 
 from __future__ import annotations

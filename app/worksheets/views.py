@@ -1,4 +1,4 @@
-"""Worksheets as the interface answers them."""
+"""Worksheets as the REST interface shows them."""
 
 from __future__ import annotations
 

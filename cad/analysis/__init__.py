@@ -1,8 +1,8 @@
-"""Finite elements on the solid itself: stiffness, first torsional frequency and stress of a shaft.
+"""Finite-element analysis of a solid: stiffness, first torsional frequency and stress of a shaft.
 
-For designs and for the REST interface, by `cad.analysis.analyse`. The mesh is made from the bytes of the STEP
-file that is served; linear elasticity, small displacements, one isotropic material. Valid for one solid that
-is held by the face at one of its ends and loaded at the other.
+Designs and the REST interface call `cad.analysis.analyse`. The mesh is generated from the bytes of the served
+STEP file. The analysis assumes linear elasticity, small displacements and one isotropic material. It is valid
+for one solid that is held by the face at one of its ends and loaded at the other.
 
 References
 ----------

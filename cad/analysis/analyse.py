@@ -1,4 +1,4 @@
-"""STEP bytes → the requested outputs of an analysis, each with its error; a pure function of its inputs."""
+"""Compute the requested outputs of an analysis of a STEP file, each with its error; a pure function."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class AnalysisResult:
 def analyse(
     step: bytes, shaft: Shaft, request: AnalysisRequest, outputs: Collection[str], report: Report
 ) -> AnalysisResult:
-    """Compute the requested outputs, and nothing else.
+    """Compute only the requested outputs of an analysis.
 
     Raises
     ------

@@ -1,17 +1,17 @@
 """Compliance of a split bore under the pressure of an oil film, as a matrix between pressure modes.
 
-A mode is a pressure, and a radial displacement, over the whole bore: 1, cos nθ or sin nθ up to n = 9, even
-along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square of 1. A unit
-pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's pressure on it over
-the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
+A mode is a distribution of pressure, or of radial displacement, over the whole bore: 1, cos nθ or sin nθ up
+to n = 9, uniform along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square
+of 1. A unit pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's
+pressure on it over the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
 
-θ counts from +y, the block of a housing or the shank of a rod, towards -x.
+θ is measured from +y, the block of a housing or the shank of a rod, towards -x.
 
 The halves of the solid are joined, because bolts keep the joint closed. Rows c1 and s1 hold the motion of the
 whole bore with its support; an oil film sees it as eccentricity. A pressure in c1 or s1 still bends the bore,
 by the other rows.
 
-The solid has to mirror itself in z = 0; half of it is meshed. Lengths in mm, forces in N, stresses in MPa.
+The solid must be symmetric about z = 0; one half is meshed. Lengths in mm, forces in N, stresses in MPa.
 
 References
 ----------
@@ -68,12 +68,12 @@ class BoredSolid:
 
 
 def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
-    """Read the solids of a STEP file, join them, and halve them.
+    """Read the solids of a STEP file, join them, and keep one half.
 
     Raises
     ------
     AnalysisError
-        `no_bore` if they do not mirror themselves in z = 0, or a face is not where it should be.
+        `no_bore` if they are not symmetric about z = 0, or a face is missing at its position.
     """
     with TemporaryDirectory() as folder:
         path = Path(folder, "model.step")
@@ -84,7 +84,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
         whole = whole + other
     half = _upper_half(list(whole.solids))
     if half is None:
-        raise AnalysisError("no_bore", "the bore's solids are not one body that mirrors itself in z = 0")
+        raise AnalysisError("no_bore", "the bore's solids are not one body that is symmetric about z = 0")
     for face in half.faces:
         face.name = _name(face, place)
     for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):
@@ -117,7 +117,7 @@ def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return the name of a face (mirror, bore, held or free), by the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free) from the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR
@@ -136,12 +136,12 @@ def _points(edge: Any) -> Iterator[tuple[float, float, float]]:
 
 
 def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
-    """Return the tetrahedra, still straight.
+    """Return the tetrahedra with straight edges.
 
     Raises
     ------
     AnalysisError
-        `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
+        `mesh` if Netgen fails, or the mesh is too large for a job.
     """
     radius = solid.place.radius
     for face in solid.shape.faces:
@@ -178,10 +178,10 @@ def compliance_on(
     report: Callable[[float], None] = lambda done: None,
     functions: Sequence[Any] = (),
 ) -> tuple[Array, int]:
-    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
+    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and the number of unknowns.
 
-    A solid that nothing holds rests on a soft spring [N/mm⁴] at each of its points, which bears the load as
-    the inertia of a free body does. Other functions in space than the modes may be given, scaled alike.
+    A solid without supports rests on a soft spring [N/mm⁴] at each of its points, which carries the load like
+    the inertia of a free body. Other spatial functions than the modes may be given, with the same scaling.
     """
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")

@@ -2,8 +2,8 @@
 
 Each solid is meshed once and solved in elements of two orders. The error of an output has two parts: the mesh
 error, from the two orders as for every other analysis (`cad.analysis.levels`), and the difference between the
-chain and finite elements of the whole shaft. The second part is `OF_THE_CHAIN`: above the largest differences
-of three shafts, free and guided (`python -m benchmarks.crank_chain`).
+chain and finite elements of the whole shaft. The second part is `OF_THE_CHAIN`, which exceeds the largest
+differences found for three shafts, free and guided (`python -m benchmarks.crank_chain`).
 """
 
 from __future__ import annotations

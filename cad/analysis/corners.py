@@ -1,8 +1,8 @@
-"""Sharp inner edges of a solid, at which stress has no limit and elements have to be small.
+"""Sharp inner edges of a solid, where stress is unbounded and elements must be small.
 
-For `cad.analysis.mesh`. The surface is divided into triangles so small that neighbours turn by less than
-`SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger angle that opens
-outward.
+For `cad.analysis.mesh`. The surface is divided into triangles so small that the normals of neighbours differ
+by less than `SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger,
+outward-opening angle.
 """
 
 from __future__ import annotations

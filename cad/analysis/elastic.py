@@ -1,15 +1,16 @@
 """Linear elasticity of a shaft that is held at one end and loaded at the other.
 
-Lengths in mm, forces in N, stresses in MPa, masses in t: so no factor stands in any equation.
+Lengths are in mm, forces in N, stresses in MPa, masses in t, so that the equations need no conversion
+factors.
 
 The rotation is the one that conserves energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded
-end turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element
-space lies in that of all displacements, so θ is too small and K too large; K decreases towards the true
-value.
+end turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite-element
+space is a subspace of all displacements, so θ is too small and K too large; K decreases towards the true
+value with refinement.
 
-Symmetry. Torsion of a solid that mirrors itself in y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
+Symmetry. Torsion of a solid that is symmetric about y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
 and u_z, the same u_y. On the plane the tangential displacements are zero and the normal one is free; half the
-solid bears half the torque. Bending in the plane y = 0 is symmetric: there u_y is zero.
+solid carries half the torque. Bending in the plane y = 0 is symmetric: there u_y is zero.
 
 Boundaries. `free_end`: nothing but the load acts at the loaded end. `guided_end`: its mean displacement
 across z is zero, as in a bearing at its middle; the forces of that bearing follow from the compliances
@@ -116,9 +117,9 @@ class System:
 
 
 def _by_order(form: Any, space: Any) -> Any:
-    """Return an approximate inverse of an assembled form: exact in second order.
+    """Return an approximate inverse of an assembled form, which is exact in second order.
 
-    The rest is inverted by edges and faces.
+    Higher orders are inverted by edges and faces.
 
     The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """

@@ -1,6 +1,7 @@
-"""What finite elements compute: the kinds of analyses, their outputs, boundaries and levels.
+"""The kinds of finite-element analyses: their outputs, boundaries and levels.
 
-The one place that names them. It imports no NGSolve, so the server and the relations of designs can read it.
+This module alone defines them. It does not import NGSolve, so the server and the relations of designs can use
+it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Levels of fidelity: mesh and order for an accuracy, from a table beside this file.
+"""Levels of fidelity: the mesh and the order for a required accuracy, from a table beside this file.
 
-The error of an answer is estimated on its own mesh, from the same answer at one order less. The change times
-a factor covers what a higher order would correct; a floor covers what only a finer mesh would correct. A
-coarse mesh about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of
+The error of an answer is estimated on its own mesh, from the same answer at the next lower order. The change
+times a factor covers what a higher order would correct; a floor covers what only a finer mesh would correct.
+A coarse mesh about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of
 random shafts in benchmarks/results/torsion_levels.json (`python -m benchmarks.torsion_levels`).
 
 Solids with sharp inner edges have factors of their own. Where displacements grow as r^λ from an edge,
@@ -36,7 +36,7 @@ class Level:
     typical: float  # the error that is usually reported, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
-        """Return the relative error to tell of a value, from that of one order less."""
+        """Return the estimated relative error of a value, from the value of the next lower order."""
         change = abs(low - high) / high
         if is_sharp:
             return self.sharp_factor * change + self.sharp_floor

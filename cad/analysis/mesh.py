@@ -2,12 +2,12 @@
 
 Elements are isoparametric. With a lower order of curvature, a cylinder is 0.2 % too stiff; with a higher
 order, the elements cannot represent a rotation. So a mesh can be much coarser than a mesh for display. Three
-measures make that safe. Each curved edge has a least number of segments, else a bore's rim would be spanned
-by one chord through its middle. Along sharp inner edges, where stress has no limit and a higher order gains
-little, elements are small (`cad.analysis.corners`). And the curving of the surface is led into the inside by
-harmonic functions: Netgen curves surface elements only, which folds thin elements under a fillet (of 2 000
-elements in a throw 46 so, 6 with it). The remaining folded elements only add stiffness, which the estimated
-error includes.
+measures make that safe. Each curved edge has a minimum number of segments; otherwise one chord through the
+middle could span a bore's rim. Along sharp inner edges, where stress is unbounded and a higher order gains
+little, elements are small (`cad.analysis.corners`). Harmonic functions extend the curvature of the surface
+into the interior: Netgen curves only surface elements, which folds thin elements under a fillet (46 of 2 000
+elements in a throw; 6 with this measure). The remaining folded elements only add stiffness, which the
+estimated error includes.
 """
 
 from __future__ import annotations
@@ -67,12 +67,12 @@ class Grid:
 def make_grid(
     solid: Solid, fineness: Fineness, near: Iterable[Near] = (), edges: Edges | None = None
 ) -> Grid:
-    """Mesh a solid; where several meshes of one fineness are made, `edges` are its `sharp_edges`.
+    """Mesh a solid; for several meshes of one fineness, `edges` are its `sharp_edges`.
 
     Raises
     ------
     AnalysisError
-        `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
+        `mesh` if Netgen fails, or the mesh is too large for a job.
     """
     edges = sharp_edges(solid, fineness) if edges is None else edges
     parameters = MeshingParameters(
@@ -139,7 +139,7 @@ def curve(mesh: Any, order: int) -> Any:
 
 
 def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
-    """Return the coordinates of the points of straight elements, which are those of their corners."""
+    """Return the coordinates of the points of straight elements, interpolated from their corners."""
     corners = np.array([vertex.point for vertex in mesh.vertices])
     vectors = []
     for values in corners.T:
@@ -198,7 +198,7 @@ def _turning(edge: Any) -> float:
 
 
 def _ball(near: Near) -> Iterable[tuple[float, float, float]]:
-    """Yield the points that fill a ball, so close that the size holds between them."""
+    """Yield points that fill a ball so densely that the size applies between them."""
     count = max(1, ceil(near.reach / near.size))
     line = np.linspace(-near.reach, near.reach, 2 * count + 1)
     grid = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

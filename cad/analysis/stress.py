@@ -1,11 +1,12 @@
-"""The greatest stress of a loaded shaft with its convergence; there is no answer if it does not converge.
+"""The greatest stress of a loaded shaft and its convergence; without convergence there is no answer.
 
-The mesh is refined where the stress is high until three meshes in succession agree: a small change and then a
-smaller one, since one may be small by chance. The recovered stress is compared: polynomials of neighbouring
-elements, averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner stress has no limit,
-each refinement raises it by a quarter, and nothing converges: the answer is a refusal with that reason. The
-search leaves out the regions near the ends, where an idealised clamp or load disturbs the field (de
-Saint-Venant's principle). If a fillet or a web begins nearer to an end, the search begins there.
+The mesh is refined where the stress is high until three successive meshes agree: a small change and then a
+smaller one, since a single small change may be chance. The compared stress is recovered: polynomials of
+neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
+stress is unbounded, each refinement raises it by a quarter, and nothing converges: the answer is a refusal
+with that reason. The search leaves out the regions near the ends, where an idealised clamp or load disturbs
+the field (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins
+there.
 """
 
 from __future__ import annotations
@@ -82,18 +83,6 @@ def von_mises(components: Components) -> Any:
     return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
-def first_principal(components: Components) -> Any:
-    """Return the largest principal stress, by Cardano's formula; factors of bending are of it."""
-    xx, yy, zz, xy, yz, xz = components
-    mean = (xx + yy + zz) / 3
-    a, b, c = xx - mean, yy - mean, zz - mean
-    radius = von_mises(components) * 2 / 3 + 1e-300  # an unloaded point has no direction
-    determinant = a * b * c + 2 * xy * yz * xz - a * yz**2 - b * xz**2 - c * xy**2
-    cosine = 4 * determinant / radius**3
-    inside = ng.IfPos(cosine - 1, 1, ng.IfPos(-1 - cosine, -1, cosine))  # rounding may leave it outside
-    return mean + radius * ng.cos(ng.acos(inside) / 3)
-
-
 def greatest_stress(
     solid: Solid,
     material: Material,
@@ -108,7 +97,7 @@ def greatest_stress(
     edges = sharp_edges(solid, START)
 
     def places_on_mesh() -> Places:
-        """Return those of the next mesh, which is given up on return, so that two are never held at once."""
+        """Return the places on the next mesh, which is released on return, so that only one is in memory."""
         grid = make_grid(solid, START, near, edges)
         system = System(grid, ORDER, material, load, few_forces=True)
         return _places_on(respond(system, boundary), measure)

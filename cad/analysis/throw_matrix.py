@@ -1,15 +1,15 @@
 """Stiffness and mass of one crank throw as a member of a chain, by finite elements.
 
-The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0) and z = `middle`, which is 0 but
-for split pins, of which it is the front one. Its freedoms are the means of displacement [mm] and rotation
-[rad] of either end's section, six each, and the displacement of the pin across the shaft, two. Each mean is
-conjugate to a load: displacements to an evenly distributed force, rotations to a linearly distributed moment.
+The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0) and z = `middle`, which is 0
+except for split pins, where the pin is the front one. Its degrees of freedom are the mean displacement [mm]
+and rotation [rad] of each end section, six each, and the two displacements of the pin across the shaft. Each
+mean is conjugate to a load: displacements to an evenly distributed force, rotations to a linearly distributed
+moment.
 
 One end is held and eight unit loads act, six on the other end and two on the pin. Their displacements are the
 flexibility F [8, 8]. T [8, 14] maps the degrees of freedom to displacements relative to the rigid motion of
-the first end. The stiffness is K = Tᵀ F⁻¹ T, so it resists no rigid motion. The mass matrix is that of the
-same fields, rigid motions and responses to loads, so that its rigid part is the mass and inertia of the
-solid.
+the first end. The stiffness is K = Tᵀ F⁻¹ T, so it resists no rigid motion. The mass matrix uses the same
+fields (rigid motions and responses to loads), so its rigid part is the mass and inertia of the solid.
 
 Lengths in mm, forces in N, masses in t.
 """
@@ -23,9 +23,8 @@ import ngsolve as ng
 import numpy as np
 
 from cad.analysis.elastic import System
-from cad.analysis.levels import LEVELS, Level
-from cad.analysis.mesh import Grid, make_grid
-from cad.analysis.solid import FREE, LOADED, read_solid
+from cad.analysis.mesh import Grid
+from cad.analysis.solid import FREE, LOADED
 from cad.shaft import PinPlace, Shaft
 from templates.core.arrays import Array
 
@@ -45,12 +44,6 @@ class ThrowMatrix:
     pitch: float  # [mm]
     throw: float  # [mm]
     degrees_of_freedom: int = 0  # of the elements behind it
-
-
-def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
-    """Return the stiffness and mass of the throw in a STEP file, from `shaft.held` to `shaft.loaded`."""
-    solid = read_solid(step, shaft, mirrors=())
-    return matrix_on(make_grid(solid, level.fineness), level.order, shaft, pin)
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:
@@ -117,7 +110,7 @@ def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
 
 
 def _mass(system: System, held: float, moved: list[Any]) -> Array:
-    """Return mass products [14, 14] of the rigid motions of the held end and of the responses to loads."""
+    """Return mass products [14, 14] of the rigid motions of the held end and the responses to loads."""
     u, v = system.space.TnT()
     form = ng.BilinearForm(system.space, symmetric=False)
     form += system.material.density * 1e-12 * ng.InnerProduct(u, v) * ng.dx

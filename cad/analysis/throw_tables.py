@@ -1,4 +1,4 @@
-"""Stress tensors under unit loads as the tables of an analysis: relations pass them to `fatigue_life` 1."""
+"""Tables of stress tensors under unit loads: outputs of an analysis, which relations use."""
 
 from __future__ import annotations
 

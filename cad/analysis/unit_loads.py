@@ -1,19 +1,15 @@
-"""Stress tensors at points of a throw under unit loads, from which a load history is superposed.
+"""Stress tensors at points of a throw under unit loads, to be superposed for any load history.
 
 Five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. It is held at one end face.
 
-`force_1`, `force_2`
-    on the pin, along the throw (x) and across it (y), with the throw on its two mains as on supports: the
-    loaded end bears its share by the lever, so no moment is left at the held end but the torque of force 2,
-    which leaves there.
-`moment_1`
-    a torque about z that comes in at the loaded end and leaves at the held one.
-`moment_2`, `moment_3`
-    bending moments about x and y, from end to end.
+`force_1`, `force_2` on the pin, along the throw (x) and across it (y), with the throw on its two mains as on
+    supports: the loaded end carries its share by the lever rule, so only the torque of force 2 reaches the
+    held end. `moment_1` a torque about z from the loaded end to the held one.
+    `moment_2`, `moment_3` bending moments about x and y, from end to end.
 
-A force on the pin is spread over the whole of its plain cylinder, along z as cos². Where the rod presses it
-differs, and the contact itself is not shown: at the fillets what counts is its resultant (de Saint-Venant).
-Linear elasticity: the stress under any loads is the sum of these tensors, each times its load.
+A force on the pin is spread over its whole plain cylinder, along z as cos². The real contact pressure of the
+rod differs and is not modelled: only its resultant matters at the fillets (de Saint-Venant). By linear
+elasticity, the stress under any loads is the sum of these tensors, each times its load.
 """
 
 from __future__ import annotations
@@ -65,7 +61,7 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """Return the share of a force at mid-pin that the support of the loaded end bears."""
+        """Return the share of a force at mid-pin that the support of the loaded end carries."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:
@@ -83,7 +79,7 @@ class LoadedThrow:
         Raises
         ------
         AnalysisError
-            `no_pin` if the pin has no plain cylinder where it is said to be.
+            `no_pin` if the pin has no plain cylinder at its stated position.
         """
         unit = ng.CF(tuple(float(axis == direction) for axis in range(3)))
         v = self.system.space.TestFunction()
@@ -131,9 +127,9 @@ class LoadedThrow:
 
 
 def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
-    """Return tensors of all unit loads at the fillets: in each sector of each, at the point stressed most.
+    """Return tensors of all unit loads at the most stressed point of each sector of the fillets.
 
-    "Most" is the largest von Mises stress under any of the loads, each as a share of its own largest one.
+    The measure is the largest von Mises stress under any of the loads, each relative to its own maximum.
     `before` is called with the name of each load before it is solved.
 
     Raises

@@ -1,1 +1,1 @@
-"""Parts that the crank models share: their parameters and rules, the solid, its volume, its reading back."""
+"""Parts that the crank models share: parameters, rules, the solid, its volume, and its readback."""

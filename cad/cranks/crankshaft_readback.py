@@ -1,37 +1,23 @@
-"""The parameters of a shaft of many throws, read back from the surfaces of the finished solid.
+"""Read the parameters of a shaft of many throws back from the surfaces of the finished solid.
 
-Each feature is recognised by its place, never by its expected size: the planes across the shaft are, in their
-order, the faces of the ends and of the webs. Where all throws share a dimension, each of them must show it.
+Each feature is recognised by its position, never by its expected size: the planes across the shaft are, in
+order, the faces of the ends and of the webs. Where all throws share a dimension, each throw must have it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import atan2, degrees, hypot, pi, radians, remainder
 
 from cadquery import Vector
 
 from cad.cranks.throw_readback import Webs, stubs
-from cad.surfaces import PartSurfaces, Surface, Z
+from cad.surfaces import PartSurfaces, Place, Size, Surface, Z, alike, faces_of
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ANGLE = 1e-8  # [rad]
-
-
-def alike(values: Iterable[float], what: str) -> float:
-    """Return the one value of a dimension that several features share.
-
-    Raises
-    ------
-    LookupError
-        If there is none, or they differ.
-    """
-    found = list(values)
-    if not found or max(found) - min(found) > 2 * _CLEAR:
-        raise LookupError(f"all {what} must have one size; the file has {found}")
-    return sum(found) / len(found)
 
 
 @dataclass(frozen=True)
@@ -46,18 +32,18 @@ class ThrowReadback:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Return the angles of the pins beside its front and its rear web, from x towards y [rad]."""
+        """Return the angles of the pins next to its front and its rear web, from x towards y [rad]."""
         first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
         return first, last
 
     @property
     def pin_spans(self) -> list[tuple[float, float]]:
-        """Return from where to where its pins reach, with their fillets."""
+        """Return the start and end of its pins, with their fillets."""
         return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
 
     @property
     def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return from where to where its webs reach, the middle one left out."""
+        """Return the start and end of its webs, without the middle one."""
         return self.faces[:2], self.faces[-2:]
 
 
@@ -70,21 +56,21 @@ class ShaftReadback:
 
     @cached_property
     def beside(self) -> list[Surface]:
-        """Return the cylinders along the shaft that do not turn about its axis."""
+        """Return the cylinders parallel to the shaft but not about its axis."""
         return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
 
     @cached_property
     def throws(self) -> list[ThrowReadback]:
         """Return the throws, from front to rear.
 
-        Each has four planes across the shaft, six with split pins. Before them lie the end of the nose and
-        its shoulder, if it has one; behind them at most three: shoulder of the flange, bottom of its holes,
-        its end.
+        Each has four planes across the shaft, six with split pins. In front of them are the end of the nose
+        and its shoulder, if any; behind them at most three planes: the shoulder of the flange, the bottom of
+        its holes, and its end.
 
         Raises
         ------
         LookupError
-            If there is none, or one without a pin.
+            If there is no throw, or a throw without a pin.
         """
         levels = self.seen.levels(Z)
         first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
@@ -116,32 +102,51 @@ class ShaftReadback:
 
     def common(self) -> dict[str, float]:
         """Return the dimensions that all throws share."""
-        throws = self.throws
+        throws, apart = self.throws, partial(self.seen.apart, Z)
+        pins = [pin for throw in throws for pin in throw.pins]
+        reach = alike((hypot(pin.point.x, pin.point.y) for pin in pins), "throws")
         return {
             **self._journals(),
-            "pin_diameter": alike((pin.diameter for t in throws for pin in t.pins), "pins"),
-            "pin_length": alike((high - low for t in throws for low, high in t.pin_spans), "pins"),
-            "throw": alike((hypot(p.point.x, p.point.y) for t in throws for p in t.pins), "throws"),
-            "pin_bore": self._each(self._pin_bore, "pin bores"),
-            "web_thickness": alike((high - low for t in throws for low, high in t.webs), "webs"),
+            "pin_diameter": Size.diameter(pins),
+            "pin_length": Size.repeated((apart(*span) for t in throws for span in t.pin_spans), "pins"),
+            "throw": Size.distance(reach, self._journal_surfaces(), pins),
+            "pin_bore": self._diameter(self._pin_bores, "pin bores"),
+            "web_thickness": Size.repeated((apart(*web) for t in throws for web in t.webs), "webs"),
             "web_width": self.web_width,
             "fillet": self._fillet(),
             "oil_drilling_diameter": self._drilling(),
             "face_inclination": self._inclination(),
         }
 
+    def _journal_surfaces(self) -> list[Surface]:
+        """Return the cylinders of the main journals, from front to rear.
+
+        Raises
+        ------
+        LookupError
+            If one is missing.
+        """
+        front, rear = (end[0] for end in self.ends)
+        inner = []
+        for low, high in self._gaps():
+            if not (between := self._about(low, high)):
+                raise LookupError(f"there is no main journal between the webs at {low:.9g} and {high:.9g} mm")
+            inner += between
+        return [front, *inner, rear]
+
+    def _gaps(self) -> list[tuple[float, float]]:
+        """Return the start and end of the main journals between two throws, with their fillets."""
+        pairs = zip(self.throws[:-1], self.throws[1:], strict=True)
+        return [(before.faces[-1], behind.faces[0]) for before, behind in pairs]
+
     def _journals(self) -> dict[str, float]:
         front, rear = (end[0] for end in self.ends)
         first, last = self.throws[0].faces[0], self.throws[-1].faces[-1]
-        lengths, diameters = [front.reach[1] + first, rear.reach[1] - last], [front.diameter, rear.diameter]
-        for before, behind in zip(self.throws[:-1], self.throws[1:], strict=True):
-            low, high = before.faces[-1], behind.faces[0]
-            lengths.append(high - low)
-            diameters.append(max((c.diameter for c in self._about(low, high)), default=0.0))
+        spans = [(-front.reach[1], first), *self._gaps(), (last, rear.reach[1])]
         return {
-            "journal_diameter": alike(diameters, "journals"),
-            "journal_length": alike(lengths, "journals"),
-            "journal_bore": self._each(self._journal_bore, "journal bores"),
+            "journal_diameter": Size.diameter(self._journal_surfaces()),
+            "journal_length": Size.repeated((self.seen.apart(Z, *span) for span in spans), "journals"),
+            "journal_bore": self._diameter(self._journal_bores, "journal bores"),
         }
 
     def _about(self, low: float, high: float) -> list[Surface]:
@@ -149,30 +154,35 @@ class ShaftReadback:
         cylinders = self.seen.about(Z)
         return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
-    def _each(self, read: Callable[[ThrowReadback], float], what: str) -> float:
-        return alike(map(read, self.throws), what)
+    def _diameter(self, bores: Callable[[ThrowReadback], list[list[Surface]]], what: str) -> float:
+        """Return the diameter of the bores of all throws; 0 if no throw has any.
 
-    def _pin_bore(self, throw: ThrowReadback) -> float:
-        """Return the diameter of the cylinder that continues from each pin through its webs."""
+        Raises
+        ------
+        LookupError
+            If some are missing, or they differ.
+        """
+        each = [some for throw in self.throws for some in bores(throw)]
+        alike((max((c.diameter for c in some), default=0.0) for some in each), what)
+        return Size.diameter([c for some in each for c in some]) if each[0] else 0.0
+
+    def _pin_bores(self, throw: ThrowReadback) -> list[list[Surface]]:
+        """Return the cylinders that continue from each pin through its webs, for each pin."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
-            crossing = (
+            return [
                 [c for c in self.beside if c.reach[0] < z - _CLEAR < z + _CLEAR < c.reach[1]] for z in inner
-            )
-            return alike((max((c.diameter for c in each), default=0.0) for each in crossing), "pin bores")
+            ]
         _, front, rear, _ = throw.faces
-        through = (c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1])
-        return max((c.diameter for c in through), default=0.0)
+        return [[c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]]
 
-    def _journal_bore(self, throw: ThrowReadback) -> float:
-        """Return the diameter of the cylinder about the shaft that passes through both outer faces."""
-        sizes = []
-        for face in (throw.faces[0], throw.faces[-1]):
-            through = (
-                c for c in self.seen.about(Z) if c.reach[0] < face - _CLEAR < face + _CLEAR < c.reach[1]
-            )
-            sizes.append(max((c.diameter for c in through), default=0.0))
-        return alike(sizes, "journal bores")
+    def _journal_bores(self, throw: ThrowReadback) -> list[list[Surface]]:
+        """Return the cylinders about the shaft that pass through each outer face of a throw."""
+        about = self.seen.about(Z)
+        return [
+            [c for c in about if c.reach[0] < face - _CLEAR < face + _CLEAR < c.reach[1]]
+            for face in (throw.faces[0], throw.faces[-1])
+        ]
 
     @property
     def web_width(self) -> float:
@@ -183,10 +193,13 @@ class ShaftReadback:
             if not sides:
                 raise LookupError("the sides of the middle webs are missing")
             along.remove(sides[0])
-        distances = [d for d in (abs(p.point.dot(p.direction)) for p in along) if d > _CLEAR]
+        away = [(abs(p.point.dot(p.direction)), p) for p in along]
+        distances = [distance for distance, _ in away if distance > _CLEAR]
         if not distances:
             raise LookupError("the sides of the webs are missing")
-        return 2 * min(distances)
+        nearest = min(distances)
+        sides = [plane for distance, plane in away if abs(distance - nearest) < _CLEAR]
+        return _across(2 * nearest, sides)
 
     def _sides_of_middle_webs(self) -> Iterator[tuple[Vector, float]]:
         """Yield the normal of each side of each middle web, and its distance from the axis along it."""
@@ -198,12 +211,13 @@ class ShaftReadback:
                 yield normal, first.dot(normal) + side
 
     def middle_web(self) -> dict[str, float]:
-        """Return the thickness of the middle webs, and their width, which is that of their round ends."""
+        """Return the thickness of the middle webs, and their width, which equals that of their round ends."""
         spans = [throw.faces[2:4] for throw in self.throws]
-        ends = (c.diameter for low, high in spans for c in self._beside_within(low, high))
+        ends = [c for low, high in spans for c in self._beside_within(low, high)]
+        thick = (self.seen.apart(Z, low, high) for low, high in spans)
         return {
-            "middle_web_thickness": alike((high - low for low, high in spans), "middle webs"),
-            "middle_web_width": alike(ends, "middle webs"),
+            "middle_web_thickness": Size.repeated(thick, "middle webs"),
+            "middle_web_width": Size.diameter(ends),
         }
 
     def pin_split(self, near: float) -> float:
@@ -216,21 +230,22 @@ class ShaftReadback:
         each = 6 if self.split else 4
         if tori and len(tori) != each * len(self.throws):
             raise LookupError(f"each throw must have {each} fillets; all throws have {len(tori)}")
-        return alike(tori, "fillets") if tori else 0.0
+        return Size.radius(tori) if tori else 0.0
 
     def _drilling(self) -> float:
-        askew = [c.diameter for c in self.seen.cylinders if not c.along(Z)]
+        askew = [c for c in self.seen.cylinders if not c.along(Z)]
         if askew and len(askew) < sum(len(throw.pins) for throw in self.throws):
             raise LookupError(f"each pin must have a drilling; all pins have {len(askew)}")
-        return alike(askew, "oil drillings") if askew else 0.0
+        return Size.diameter(askew) if askew else 0.0
 
     def _inclination(self) -> float:
         """Return the angle [deg] of the planes that are inclined to the shaft."""
-        normals = [p.direction for p in self.seen.planes]
-        leaning = [n for n in normals if min(hypot(n.x, n.y), abs(n.z)) > _CLEAR]
-        return (
-            alike((degrees(atan2(hypot(n.x, n.y), abs(n.z))) for n in leaning), "faces") if leaning else 0.0
-        )
+        leaning = [p for p in self.seen.planes if _leans(p.direction)]
+        if not leaning:
+            return 0.0
+        normals = (p.direction for p in leaning)
+        angle = alike((degrees(atan2(hypot(n.x, n.y), abs(n.z))) for n in normals), "faces")
+        return Size(angle, "angle", Place(faces_of(leaning)))
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
         """Return the pin angles [deg], in the turn that is nearest to the requested angles [deg]."""
@@ -238,6 +253,16 @@ class ShaftReadback:
         if len(seen) != len(near):
             raise LookupError(f"there must be {len(near)} throws; there are {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
+
+    def flange(self) -> dict[str, float]:
+        """Return the diameters and lengths of the nose and the flange."""
+        (stub, nose), (root, flange) = (end[:2] for end in self.ends)
+        return {
+            "nose_length": self.seen.apart(Z, -nose.reach[1], -stub.reach[1]),
+            "nose_diameter": Size.diameter([nose]),
+            "flange_thickness": self.seen.apart(Z, root.reach[1], flange.reach[1]),
+            "flange_diameter": Size.diameter([flange]),
+        }
 
     def counterweights(self) -> list[float]:
         """Return the radius of each web's counterweight [mm]; 0 for none."""
@@ -249,15 +274,15 @@ class ShaftReadback:
         """Return the angle of all counterweights [deg]; flanks of several throws may lie on one plane.
 
         A flank is a plane through the axis. The half angle is one at which each throw with a counterweight
-        has both flanks; of several such, which is rare, the one nearest to that wanted [deg].
+        has both flanks; of several such angles, which is rare, the one nearest to the expected angle [deg].
 
         Raises
         ------
         LookupError
             If there is none.
         """
-        normals = [p.direction for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
-        lines = [atan2(n.y, n.x) + pi / 2 for n in normals]
+        flanks = [p for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
+        lines = [_line(plane) for plane in flanks]
         angles = [angle for throw in self.throws for angle in throw.angles]
         heavy = [angle for angle, radius in zip(angles, radii, strict=True) if radius > 0]
         candidates = {self._fold(line - heavy[0]) for line in lines}
@@ -268,7 +293,11 @@ class ShaftReadback:
         ]
         if not shared:
             raise LookupError("the flanks of the counterweights are missing")
-        return min((2 * degrees(half) for half in shared), key=lambda angle: abs(angle - near))
+        half = min(shared, key=lambda half: abs(2 * degrees(half) - near))
+        sides = (
+            faces_of(p for p in flanks if _shown(heavy[0] + side * half, [_line(p)])) for side in (-1, 1)
+        )
+        return Size(2 * degrees(half), "angle", Place(*sides))
 
     @staticmethod
     def _fold(angle: float) -> float:
@@ -276,19 +305,19 @@ class ShaftReadback:
         return abs(remainder(angle, pi))
 
     def bolts(self) -> dict[str, float]:
-        """Return holes in the flange: how many, their diameter, circle and depth; none if there are none."""
+        """Return the holes in the flange: number, diameter, circle and depth; none if there are none."""
         end = self.seen.levels(Z)[-1]
         behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
         if not holes:
             return {"bolt_hole_diameter": 0.0}
         self._check_spacing([atan2(h.point.y, h.point.x) for h in holes])
-        circle = alike((hypot(h.point.x, h.point.y) for h in holes), "bolt holes")
+        bottom = alike((h.reach[0] for h in holes), "bottoms of bolt holes")
         return {
             "bolt_holes": float(len(holes)),
-            "bolt_hole_diameter": alike((h.diameter for h in holes), "bolt holes"),
-            "bolt_circle_diameter": 2 * circle,
-            "bolt_hole_depth": alike((h.reach[1] - h.reach[0] for h in holes), "bolt holes"),
+            "bolt_hole_diameter": Size.diameter(holes),
+            "bolt_circle_diameter": Size.circle(holes),
+            "bolt_hole_depth": self.seen.apart(Z, bottom, end),
         }
 
     @staticmethod
@@ -298,14 +327,32 @@ class ShaftReadback:
             raise LookupError("the bolt holes are not evenly spaced on their circle")
 
 
+def _leans(normal: Vector) -> bool:
+    """Return whether a normal is neither along the shaft nor across it."""
+    return min(hypot(normal.x, normal.y), abs(normal.z)) > _CLEAR
+
+
+def _across(width: float, sides: Sequence[Surface]) -> Size:
+    """Return a width between planes on both sides of the axis."""
+    normal = sides[0].direction
+    ahead = [p for p in sides if p.along(normal) and p.point.dot(normal) > 0]
+    behind = [p for p in sides if p.along(normal) and p.point.dot(normal) < 0]
+    return Size.distance(width, ahead, behind)
+
+
 def _spans(cylinder: Surface, low: float, high: float) -> bool:
     """Return whether a cylinder reaches from one plane to another."""
     return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
 
 
 def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
-    """Return whether a plane has this normal, either way round, at this distance from the origin."""
+    """Return whether a plane has this normal, in either direction, and this distance from the origin."""
     return plane.along(normal) and abs(plane.point.dot(normal) - distance) < _CLEAR
+
+
+def _line(flank: Surface) -> float:
+    """Return the angle of the line in which a plane through the axis cuts a plane across it [rad]."""
+    return atan2(flank.direction.y, flank.direction.x) + pi / 2
 
 
 def _shown(line: float, lines: Iterable[float]) -> bool:

@@ -1,20 +1,22 @@
-"""Parameters of a crank throw, which the models of a throw and of a shaft share, and what follows from them.
+"""Parameters of a crank throw, shared by the models of a throw and of a shaft, and derived quantities.
 
-A model adds how much of a main journal it draws on each side of the throw (`L_s`). A parameter of 0 omits the
-feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`, the
-counterweight angle has no effect.
+A model adds the length of main journal that it draws on each side of the throw (`L_s`). A parameter of 0
+omits the feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`,
+the counterweight angle has no effect.
 
 The *face inclination* is the angle by which the outer face of each web leans towards the middle of the throw,
 from beside the journal's fillet to the end beyond the pin. 0 is a flat face and the heaviest web; the larger
-the angle, the more material is taken off. Material that is added on an inclined face, as Punewale et al.
-(2015) do to stiffen a shaft, is thus a smaller `face_inclination`.
+the angle, the more material is removed. To add material on an inclined face, as Punewale et al. (2015) do to
+stiffen a shaft, reduce `face_inclination`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from cad.model import CadModel
+from cad.cranks.outline import Outline
+from cad.cranks.throw import Throw
+from cad.model import CadModel, mm
 from templates.core.language.template import Array, choice, derived, formula, given
 
 
@@ -170,3 +172,29 @@ class CrankParameters(CadModel):
     def c_2(self) -> Array:
         """Distance from the drilling's axis to the inclined face, along its normal."""
         return np.cos(self.beta) * self.L_w - np.sin(self.beta) * (self.x_1 - self.x_b)
+
+    def throw_drawn(self, counterweight: float) -> Throw:
+        """Return the throw as radii, lengths and angles.
+
+        `counterweight` is its own counterweight radius [mm].
+        """
+        return Throw(
+            outline=Outline(
+                throw=mm(self.R),
+                half_width=mm(self.W) / 2,
+                rectangular=self.web_shape == "rectangular",
+                counterweight=counterweight,
+                half_angle=float(self.phi_w) / 2,
+            ),
+            web_thickness=mm(self.L_w),
+            journal=mm(self.D_j) / 2,
+            journal_bore=mm(self.d_j) / 2,
+            journal_length=mm(self.L_s),
+            pin=mm(self.D_c) / 2,
+            pin_bore=mm(self.d_c) / 2,
+            pin_length=mm(self.L_c),
+            fillet=mm(self.r_f),
+            drilling=mm(self.d_o) / 2,
+            inclination=float(self.beta),
+            incline_start=mm(self.x_b),
+        )

@@ -1,7 +1,7 @@
 """Fields on a crankshaft's surface: a value round its fillets, and the angle of a torsional mode along it.
 
-Fillets are faces of their own. A face counts as one if all its corners lie in one ring, so the plain
-cylinders between two fillets stay bare.
+A fillet is a separate face. A face counts as a fillet if all its corners lie in one ring, so the plain
+cylinders between two fillets stay unpainted.
 """
 
 from __future__ import annotations

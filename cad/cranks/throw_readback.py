@@ -1,17 +1,18 @@
-"""The parameters of a crank, read back from the surfaces of the finished solid.
+"""Read the parameters of a crank back from the surfaces of the finished solid.
 
-Each feature is recognised by its place, not by its expected size: planes across the shaft are the faces of
+Each feature is recognised by its position, not by its expected size: planes across the shaft are the faces of
 webs, cylinders about the shaft beyond the webs are journals and ends, another cylinder along it is the pin.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, degrees
 
 from cadquery import Vector
 
-from cad.surfaces import PartSurfaces, Surface, X, Y, Z
+from cad.surfaces import PartSurfaces, Place, Size, Surface, X, Y, Z, faces_of
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 
@@ -29,26 +30,31 @@ class Webs:
         front, rear = [z for z in levels if z < 0], [z for z in levels if z > 0]
         return Webs((front[-2], front[-1], rear[0], rear[1]))
 
-    @property
-    def thickness(self) -> float:
-        """Return the thickness of a web [mm]."""
+    def thickness(self, seen: PartSurfaces) -> float:
+        """Return the thickness of the webs [mm]."""
         outer, inner, other_inner, other_outer = self.faces
-        return (inner - outer + other_outer - other_inner) / 2
+        webs = seen.apart(Z, outer, inner), seen.apart(Z, other_inner, other_outer)
+        return Size.repeated(webs, "webs")
 
-    @property
-    def apart(self) -> float:
+    def apart(self, seen: PartSurfaces) -> float:
         """Return the distance between the webs [mm]."""
-        return self.faces[2] - self.faces[1]
+        return seen.apart(Z, self.faces[1], self.faces[2])
 
 
 def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return the pin diameter, bore and throw; the pin stands between the webs."""
+    """Return the pin diameter, bore and throw; the pin is between the webs."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
-    pin_surface = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)
-    bores = [c.diameter for c in beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]
-    throw = pin_surface.point.cross(Z).Length
-    return {"pin_diameter": pin_surface.diameter, "pin_bore": max(bores, default=0.0), "throw": throw}
+    within = [c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR]
+    bores = [c for c in beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]
+    if not within:
+        raise LookupError("there is no pin between the webs")
+    journals = [cylinder for stub in stubs(seen, webs) for cylinder in stub[:1]]
+    return {
+        "pin_diameter": Size.diameter(within),
+        "pin_bore": Size.diameter(bores) if bores else 0.0,
+        "throw": Size.distance(within[0].point.cross(Z).Length, journals, within),
+    }
 
 
 def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]:
@@ -64,49 +70,57 @@ def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
     Return 0 if there is none.
     """
     low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
-    through = (c.diameter for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1])
-    return max(through, default=0.0)
+    through = [c for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1]]
+    return Size.diameter(through) if through else 0.0
 
 
 def counterweight(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
-    _, _, inner, outer = webs.faces
-    within = (c for c in seen.about(Z) if inner - _CLEAR < c.reach[0] and c.reach[1] < outer + _CLEAR)
-    standing_out = [c.diameter for c in within if c.diameter > 1.01 * seen.length(Y)]
-    if not standing_out:
+    """Return the radius of the counterweight, and its angle [deg] if there is one."""
+    width = seen.length(Y)
+    spans = webs.faces[:2], webs.faces[2:]
+    within = [c for c in seen.about(Z) if any(_lies_within(c, span) for span in spans)]
+    rims = [c for c in within if c.diameter > 1.01 * width]
+    if not rims:
         return {"counterweight_radius": 0.0}
-    flank = next(p.direction for p in seen.planes if p.holds(Z))
+    flanks = [p for p in seen.planes if p.holds(Z)]
+    flank = flanks[0].direction
     angle = 2 * degrees(atan2(abs(flank.x), abs(flank.y)))
-    return {"counterweight_radius": max(standing_out) / 2, "counterweight_angle": angle}
+    sides = [p for p in flanks if p.along(flank)], [p for p in flanks if not p.along(flank)]
+    between = Size(angle, "angle", Place(faces_of(sides[0]), faces_of(sides[1])))
+    return {"counterweight_radius": Size.radius(rims), "counterweight_angle": between}
 
 
 def fillet(seen: PartSurfaces) -> float:
-    """Return the radius of the fillets, all of which are alike; 0 if there are none.
+    """Return the common radius of the fillets; 0 if there are none.
 
     Raises
     ------
     LookupError
-        If there are any, but not four that are alike.
+        If there are fillets, but not four equal ones.
     """
-    radii = seen.tori
-    if not radii:
-        return 0.0
-    if len(radii) != 4 or max(radii) - min(radii) > _CLEAR:
-        raise LookupError(f"the four fillets must have one radius; the file has {radii}")
-    return radii[0]
+    if seen.tori and len(seen.tori) != 4:
+        raise LookupError(f"a throw must have four fillets; the file has {len(seen.tori)}")
+    return Size.radius(seen.tori) if seen.tori else 0.0
 
 
 def drilling(seen: PartSurfaces) -> float:
-    """Return the diameter of the cylinder that runs askew; 0 if there is none."""
-    return max((c.diameter for c in seen.cylinders if not c.along(Z)), default=0.0)
+    """Return the diameter of the oblique cylinder; 0 if there is none."""
+    askew = [c for c in seen.cylinders if not c.along(Z)]
+    return Size.diameter(askew) if askew else 0.0
 
 
 def inclination(seen: PartSurfaces) -> float:
-    """Return the angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
-    slopes = (
-        degrees(atan2(abs(p.direction.x), abs(p.direction.z))) for p in seen.planes if _askew(p.direction)
-    )
-    return max(slopes, default=0.0)
+    """Return the angle [deg] of the planes inclined to the shaft; 0 if there are none."""
+    leaning = [p for p in seen.planes if _askew(p.direction)]
+    if not leaning:
+        return 0.0
+    slopes = (degrees(atan2(abs(p.direction.x), abs(p.direction.z))) for p in leaning)
+    return Size(max(slopes), "angle", Place(faces_of(leaning)))
+
+
+def _lies_within(cylinder: Surface, span: Sequence[float]) -> bool:
+    low, high = span
+    return low - _CLEAR < cylinder.reach[0] and cylinder.reach[1] < high + _CLEAR
 
 
 def _askew(normal: Vector) -> bool:

@@ -1,23 +1,19 @@
-"""The part of a model's declaration that a drawing shows: kind, limits, datums, form tolerances."""
+"""The part of a model's declaration that a drawing shows: kind, limits, datums, geometric tolerances."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from cad.assemblies import AssemblyModel
-from cad.carriers import Carriers
 from cad.catalogue import models
-from cad.drafting.curves import Point
-from cad.drafting.parameter_match import length_of
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
-from cad.step import Body
-from cad.tolerances import REPEATED, Limits, ToleranceFaces, carried, limits_in
-
-_FACES = ("cylinders", "beside", "spheres", "planes")  # that a tool machines, so they have a texture
+from cad.surfaces import PartSurfaces, Size
+from cad.tolerances import Limits, carried, limits_in
+from templates.core.errors import InvalidInputs
 
 
 @dataclass(frozen=True)
@@ -44,10 +40,10 @@ class DrawingDeclaration:
         Letters of datums by parameter; in an assembly only of those to which a tolerance refers.
     textures
         Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
-    carriers
-        The faces that carry dimensions, by parameter.
     sections
         Removed sections by letter, in the words of `cad.drafting.removed_section`.
+    sizes
+        Dimensions of the solid with the faces that carry them, by parameter.
     """
 
     is_shaft: bool = False
@@ -56,22 +52,13 @@ class DrawingDeclaration:
     datums: Mapping[str, str] = field(default_factory=dict)
     textures: Mapping[str, float] = field(default_factory=dict)
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    carriers: Mapping[str, ToleranceFaces] = field(default_factory=dict)
-
-    def repeated(self, parameters: Mapping[str, str], bodies: Sequence[Body]) -> dict[str, list[Point]]:
-        """Return the ends of lengths that repeat along the shaft, by parameter [mm]."""
-        sizes = {name: length_of(parameters[name]) for name in self.carriers}
-        carriers = Carriers({body.name: body.shape for body in bodies}, self.carriers, sizes)
-        along = (
-            name
-            for name, one in self.carriers.items()
-            if one.faces in REPEATED and all(self.carriers[other].where == "z" for other in one.others_named)
-        )
-        return {name: spans for name in along if (spans := carriers.spans(name))}
+    sizes: Mapping[str, Size] = field(default_factory=dict)
 
     @staticmethod
-    def of(header: Header | None, *, is_assembly: bool = False) -> DrawingDeclaration:
-        """Return the declarations of the model of a STEP file."""
+    def of(
+        header: Header | None, seen: Mapping[str, PartSurfaces], *, is_assembly: bool = False
+    ) -> DrawingDeclaration:
+        """Return the declarations of the model of a STEP file, whose parts are seen by their names."""
         if header is None:
             return DrawingDeclaration()
         limits = limits_in(header)
@@ -79,6 +66,7 @@ class DrawingDeclaration:
         if model is None:
             return DrawingDeclaration(limits=limits)
         carriers = carried(model)
+        sizes = _sizes(model, header, seen)
         controls = tuple(_controls(model, limits))
         every = {one.datum for one in carriers.values()}
         shown = ({control.to for control in controls} if is_assembly else every) - {""}
@@ -89,14 +77,31 @@ class DrawingDeclaration:
             {name: one.datum for name, one in carriers.items() if one.datum in shown},
             {
                 name: height
-                for name, one in carriers.items()
+                for name, size in sizes.items()
                 if name in limits
-                and one.faces in _FACES
+                and _is_machined(size, seen)
                 and (height := roughness(limits[name].width)) < TEXTURE
             },
             model.sections,
-            carriers,
+            sizes,
         )
+
+
+def _sizes(model: type[CadModel], header: Header, seen: Mapping[str, PartSurfaces]) -> dict[str, Size]:
+    """Return the dimensions that the faces of a solid carry; none for a file from another source."""
+    try:
+        read = model.from_quantities(header.parameters).dimensions(seen)
+    except (InvalidInputs, LookupError):
+        return {}
+    return {name: size for name, size in read.items() if isinstance(size, Size)}
+
+
+def _is_machined(size: Size, seen: Mapping[str, PartSurfaces]) -> bool:
+    """Return whether one tool machines the faces of a size: a diameter, or two planes."""
+    if size.kind != "distance":
+        return size.kind in ("diameter", "sphere")
+    planes = {plane.face for one in seen.values() for plane in one.planes}
+    return all(planes.issuperset((*place.first, *place.second)) for place in size.places)
 
 
 def _controls(model: type[CadModel], limits: Mapping[str, Limits]) -> Iterator[Control]:

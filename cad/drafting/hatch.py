@@ -1,4 +1,4 @@
-"""Lines at 45° within closed outlines, as a program that knows no HATCH draws them."""
+"""Hatch closed outlines by lines at 45°, for programs that do not know HATCH."""
 
 from __future__ import annotations
 

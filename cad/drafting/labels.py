@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from cad.drafting.letter_width import width_of
 from cad.drafting.parameter_match import Dimension
+from cad.tolerances import Limits
 
 SMALL = 0.7  # deviations are of so many times the height of the number
 _LED = ("circle", "arc", "aligned")
@@ -24,7 +25,7 @@ class Label:
 
     @property
     def mtext(self) -> str:
-        """Return the words as DXF has them: deviations one above the other."""
+        """Return the text as DXF needs it: deviations one above the other."""
         stack = f" {{\\H{SMALL}x;\\S{self.upper}^ {self.lower};}}" if self.upper else ""
         return f"{self.text}{stack}"
 
@@ -40,13 +41,13 @@ class Label:
 
 
 def label_of(dimension: Dimension) -> Label:
-    """Ø before a diameter, the count before what several have, in brackets what is for reference only."""
+    """Return the label: Ø before a diameter, the count of a repeated size, brackets for reference sizes."""
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
     sign = "Ø" if measure.sort == "diameter" and not is_round else ""
     own = {"circle": "Ø", "arc": "R"}.get(measure.form, "")
-    number = own + _number(measure.value, 2 if measure.sort == "angle" else 3)
+    number = own + number_of(measure.value, 2 if measure.sort == "angle" else 3)
     text = f"{several}{sign}<>"
     if dimension.name is None:
         return Label(f"({text})", number)
@@ -56,9 +57,9 @@ def label_of(dimension: Dimension) -> Label:
     if limits is None:
         return Label(text, number)
     zone = f" {limits.zone}" if limits.zone else ""
-    if limits.upper == -limits.lower:
-        return Label(f"{text}{zone} ±{_deviation(limits.upper)}", number)
-    upper, lower = (_signed(end) for end in (limits.upper, limits.lower))
+    upper, lower = deviations(limits)
+    if not lower:
+        return Label(f"{text}{zone} {upper}", number)
     if measure.form in _LED:  # words at a leader stand on one line
         return Label(f"{text}{zone} {upper}/{lower}", number)
     return Label(f"{text}{zone}", number, upper, lower)
@@ -70,15 +71,16 @@ def read_stack(mtext: str) -> tuple[str, str, str]:
     return (match[1].rstrip() + match[4], match[2], match[3]) if match else (mtext, "", "")
 
 
-def _number(value: float, digits: int) -> str:
+def deviations(limits: Limits) -> tuple[str, str]:
+    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
+    texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
+    digits = max(1, *(len(text.partition(".")[2]) for text in texts))
+    if limits.upper == -limits.lower:
+        return f"±{limits.upper:.{digits}f}", ""
+    upper, lower = (f"{end:+.{digits}f}" if end else "0" for end in (limits.upper, limits.lower))
+    return upper, lower
+
+
+def number_of(value: float, digits: int) -> str:
+    """Return a number with at most this many decimals."""
     return f"{value:.{digits}f}".rstrip("0").rstrip(".")
-
-
-def _deviation(value: float) -> str:
-    return f"{value:.6f}".rstrip("0").rstrip(".")
-
-
-def _signed(value: float) -> str:
-    if value == 0:
-        return "0"
-    return f"{'+' if value > 0 else '-'}{_deviation(abs(value))}"

@@ -1,7 +1,7 @@
-"""Width of letters: an upper bound over the fonts in which a browser or a typesetter shows a drawing.
+"""Width of letters: an upper bound over the fonts in which browsers and typesetters show a drawing.
 
-The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; a CAD program's
-ISO lettering is narrower than all of them.
+The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; the ISO lettering
+of CAD programs is narrower than all of them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def width_of(text: str, height: float) -> float:
 
 
 def clipped(text: str, width: float, height: float) -> str:
-    """Return a text as one line that is not wider than that; what is left out shows as `…`."""
+    """Return a text as one line of at most this width; omitted text shows as `…`."""
     line = "".join(sign if sign.isprintable() else " " for sign in text)
     if width_of(line, height) <= width:
         return line

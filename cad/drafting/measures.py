@@ -1,9 +1,10 @@
-"""Find the sizes that can be dimensioned in the two views of a drawing, from surfaces of any model."""
+"""Find the sizes that can be dimensioned in the two views of a drawing, from the surfaces of a model."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import atan2, degrees, hypot, isclose
 from typing import Literal
@@ -11,16 +12,17 @@ from typing import Literal
 from cadquery import Vector
 
 from cad.drafting.curves import Point
+from cad.drafting.section import Arc, Frame
 from cad.drafting.views import View
-from cad.inspect import look_at
-from cad.step import Body
-from cad.surfaces import PartSurfaces, Surface, X, Y, Z
+from cad.step import Body, rigid
+from cad.surfaces import Face, PartSurfaces, Size, Surface, X, Y, Z
 
 Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle"]
 Form = Literal["across", "up", "aligned", "circle", "arc", "angle"]
 Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
+_ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -29,7 +31,8 @@ class Measure:
     """A size that a view shows.
 
     `across` lies level between two points, `up` upright, `aligned` along them; `circle` and `arc` are given
-    by centre and a point on them, `angle` by its corner and a point on each leg.
+    by centre and a point on them, `angle` by its corner and a point on each leg. `first` and `second` are the
+    faces between which it is taken; from an axis, and of a diameter, there are only the first.
     """
 
     sort: Sort
@@ -38,20 +41,55 @@ class Measure:
     form: Form
     points: tuple[Point, ...]
     count: int = 1  # of equal parts that have it
+    first: frozenset[Face] = frozenset()
+    second: frozenset[Face] = frozenset()
 
 
-def measures(bodies: Sequence[Body], section: View, end: View, most: int = _MOST_LEVELS) -> list[Measure]:
+def measures(
+    bodies: Sequence[Body],
+    seen: Mapping[str, PartSurfaces],
+    section: View,
+    end: View,
+    most: int = _MOST_LEVELS,
+) -> list[Measure]:
     """Return every size that the views show; of more planes along the shaft than `most` those at its ends."""
     results: list[Measure] = []
-    seen = look_at(bodies)
     for one in seen.values():
         results += _of_cylinders(one, section, end)
         results += _of_planes(one, section, end, most)
         results += _of_flanks(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
-    results += _of_arcs(section, {d: one.count for one in seen.values() for d in one.spheres})
-    results += _of_slopes(section)
+    standing = list(_standing(bodies, seen))
+    results += _of_arcs(section, standing, {name: one.count for name, one in seen.items()})
+    results += _of_slopes(section, standing)
     return results
+
+
+def lengths(sizes: Iterable[Size], seen: Mapping[str, PartSurfaces], section: View) -> Iterator[Measure]:
+    """Yield the lengths along the shaft that faces carry, at each of their places."""
+    levels = {plane.face: plane.point.z for one in seen.values() for plane in one.planes if plane.along(Z)}
+    for size in sizes:
+        for place in size.places if size.kind == "distance" else ():
+            if {*place.first[:1], *place.second[:1]} <= levels.keys() and place.second:
+                low, high = sorted((levels[place.first[0]], levels[place.second[0]]))
+                yield length_between(seen[place.first[0][0]], low, high, section)
+
+
+def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Iterator[Surface]:
+    """Yield every surface at the positions of its part."""
+    for body in bodies:
+        for place in body.places:
+            if place.wrapped.IsIdentity():
+                yield from seen[body.name].surfaces
+                continue
+            turn, shift = rigid(place)
+            for one in seen[body.name].surfaces:
+                point = Vector(*(turn @ one.point.toTuple() + shift))
+                direction = Vector(*(turn @ one.direction.toTuple()))
+                along = point.dot(direction) - one.point.dot(one.direction)
+                low, high = one.reach
+                reach = (low + along, high + along) if one.reach != (0.0, 0.0) else one.reach
+                yield replace(one, point=point, direction=direction, reach=reach)
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
@@ -68,11 +106,12 @@ def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Meas
         low, high = inner.diameter / 2, outer.diameter / 2
         ends = [_edge_at(section, c.diameter / 2, c.reach) for c in (inner, outer)]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
-            yield Measure("gap", high - low, "section", "up", ((ends[0], low), (ends[1], high)))
+            points = ((ends[0], low), (ends[1], high))
+            yield Measure("gap", high - low, "section", "up", points, 1, on(inner), on(outer))
 
 
 def alike(cylinder: Surface, seen: PartSurfaces) -> int:
-    """Return the number of equal cylinders in a pattern with one: at its place along parallel axes."""
+    """Return the number of equal cylinders in a pattern: at the same position along parallel axes."""
     axis = cylinder.direction
     feet = {
         (
@@ -97,15 +136,20 @@ def _lengthwise(cylinder: Surface, section: View, end: View, count: int) -> Iter
         z = [_edge_at(section, v, cylinder.reach) for v in (low, high)]
         if z[0] is not None and z[1] is not None:
             points = (z[0], low), (z[1], high)
-            yield Measure("diameter", cylinder.diameter, "section", "up", points, count)
+            yield Measure("diameter", cylinder.diameter, "section", "up", points, count, on(cylinder))
         else:
             points = (-radius, middle), (radius, middle)
-            yield Measure("diameter", cylinder.diameter, "end", "across", points, count)
+            yield Measure("diameter", cylinder.diameter, "end", "across", points, count, on(cylinder))
     else:
         points = (side, middle), (side + radius, middle)
-        yield Measure("diameter", cylinder.diameter, "end", "circle", points, count)
-    if on := _on_circle(end, (side, middle), radius):
-        yield Measure("radius", radius, "end", "arc", ((side, middle), on), count)
+        yield Measure("diameter", cylinder.diameter, "end", "circle", points, count, on(cylinder))
+    if arc := _on_circle(end, (side, middle), radius):
+        yield Measure("radius", radius, "end", "arc", ((side, middle), arc), count, on(cylinder))
+
+
+def on(*surfaces: Surface) -> frozenset[Face]:
+    """Return the faces of surfaces."""
+    return frozenset(one.face for one in surfaces)
 
 
 def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | None:
@@ -131,7 +175,7 @@ def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
 
 
 def _within(cylinder: Surface, normal: Vector) -> bool:
-    """Return whether the axis lies in the plane of the section."""
+    """Return whether the axis is in the plane of the section."""
     return abs(cylinder.point.dot(normal)) < _CLEAR and abs(cylinder.direction.dot(normal)) < _CLEAR
 
 
@@ -144,19 +188,20 @@ def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
     r = cylinder.diameter / 2
     points = (x - away[1] * r, y + away[0] * r), (x + away[1] * r, y - away[0] * r)
     form: Form = "across" if abs(away[0]) < _CLEAR else "aligned"
-    return Measure("diameter", cylinder.diameter, "section", form, points, count)
+    return Measure("diameter", cylinder.diameter, "section", form, points, count, on(cylinder))
 
 
-def length_between(low: float, high: float, section: View, count: int = 1) -> Measure:
+def length_between(seen: PartSurfaces, low: float, high: float, section: View) -> Measure:
     """Return the length between two planes across the shaft."""
     points = (low, _foot(section, low)), (high, _foot(section, high))
-    return Measure("length", high - low, "section", "across", points, count)
+    sides = (on(*seen.planes_at(Z, level)) for level in (low, high))
+    return Measure("length", high - low, "section", "across", points, seen.count, *sides)
 
 
 def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Iterator[Measure]:
     levels = seen.levels(Z)
     for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
-        yield length_between(low, high, section, seen.count)
+        yield length_between(seen, low, high, section)
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         sign = right + up  # one of them is 0
@@ -168,11 +213,12 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
                 if up == 0
                 else (((left, low), (left, high)), "up")
             )
-            yield Measure("width", high - low, "end", flat[1], flat[0], seen.count)  # type: ignore[arg-type]
+            sides = (on(*seen.planes_at(axis, level)) for level in (one, other))
+            yield Measure("width", high - low, "end", flat[1], flat[0], seen.count, *sides)  # type: ignore[arg-type]
 
 
 def _spans(levels: Sequence[float]) -> list[tuple[float, float]]:
-    """From each level to the next, between two that lie alike on either side of the origin, and the whole."""
+    """Yield the spans from each level to the next, between mirrored levels, and the whole."""
     ends = (levels[0], levels[-1]) if levels else ()
     return [
         (low, high)
@@ -192,27 +238,45 @@ def _foot(section: View, z: float) -> float:
 
 
 def _of_axes(cylinders: Iterable[Surface], section: View) -> Iterator[Measure]:
-    """Yield the distances of axes along the shaft that lie in the section from the shaft's own."""
-    heights = {
-        round(section.frame.flat(c.point)[1], 6) for c in cylinders if _within(c, section.frame.towards)
-    }
+    """Yield the distances of axes parallel to the shaft, in the section, from the shaft's own."""
+    heights = defaultdict[float, list[Surface]](list)
+    for cylinder in cylinders:
+        if _within(cylinder, section.frame.towards):
+            heights[round(section.frame.flat(cylinder.point)[1], 6) + 0.0].append(cylinder)
     right = section.box[1][0]
-    for height in sorted(heights - {0.0}):
+    for height in sorted(heights.keys() - {0.0}):
         ends = sorted((0.0, height))
-        yield Measure("offset", abs(height), "section", "up", ((right, ends[0]), (right, ends[1])))
+        points = ((right, ends[0]), (right, ends[1]))
+        yield Measure("offset", abs(height), "section", "up", points, 1, on(*heights[height]))
 
 
-def _of_arcs(section: View, spheres: dict[float, int]) -> Iterator[Measure]:
+def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, int]) -> Iterator[Measure]:
+    """Yield the arcs of the section: of balls, of fillets, and of cylinders that are cut across."""
     for arc in section.arcs:
         points = (arc.centre, arc.middle)
-        count = next((n for d, n in spheres.items() if abs(d - 2 * arc.radius) < _CLEAR), 1)
+        faces = on(*(one for one in standing if _is_cut_in(one, arc, section.frame)))
+        count = max((counts[part] for part, _ in faces), default=1)
         if arc.whole or count > 1:
-            yield Measure("diameter", 2 * arc.radius, "section", "circle", points, count)
-        yield Measure("radius", arc.radius, "section", "arc", points)
+            yield Measure("diameter", 2 * arc.radius, "section", "circle", points, count, faces)
+        yield Measure("radius", arc.radius, "section", "arc", points, 1, faces)
 
 
-def _of_slopes(section: View) -> Iterator[Measure]:
+def _is_cut_in(surface: Surface, arc: Arc, frame: Frame) -> bool:
+    """Return whether a surface is cut in an arc by the plane of the section."""
+    if abs(surface.diameter / 2 - arc.radius) > _CLEAR:
+        return False
+    x, y = frame.flat(surface.point)
+    if surface.about_radius == 0 and surface.reach == (0.0, 0.0):
+        return hypot(x - arc.centre[0], y - arc.centre[1]) < _ARC  # a sphere
+    if not surface.along(Z):
+        return surface.along(frame.towards) and hypot(x - arc.centre[0], y - arc.centre[1]) < _ARC
+    away = abs(arc.centre[1] - y)
+    return surface.about_radius > 0 and abs(arc.centre[0] - x) < _ARC > abs(away - surface.about_radius)
+
+
+def _of_slopes(section: View, standing: Sequence[Surface]) -> Iterator[Measure]:
     """Yield the angles of sloping edges of the section against a plane across the shaft."""
+    planes = [one for one in standing if one.diameter == 0]
     ends = [sorted((a, b), key=lambda point: point[1]) for a, b in section.edges]
     sloping = [(a, b) for a, b in ends if abs(b[0] - a[0]) > _CLEAR < b[1] - a[1]]
     longest = max((hypot(b[0] - a[0], b[1] - a[1]) for a, b in sloping), default=0.0)
@@ -221,18 +285,27 @@ def _of_slopes(section: View) -> Iterator[Measure]:
         size = hypot(lean, rise)
         if size > longest / 2:  # on a short one an angle could not be read
             points = low, (low[0], low[1] + size), high
-            yield Measure("angle", degrees(atan2(abs(lean), rise)), "section", "angle", points)
+            faces = on(*(p for p in planes if all(_holds(p, end, section.frame) for end in (low, high))))
+            angle = degrees(atan2(abs(lean), rise))
+            yield Measure("angle", angle, "section", "angle", points, 1, faces)
+
+
+def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
+    """Return whether a plane goes through a point of a view whose plane contains the origin."""
+    at = frame.right * point[0] + frame.up * point[1]
+    return abs((at - plane.point).dot(plane.direction)) < _ARC
 
 
 def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the angles between planes that hold the shaft's axis, on the side of the material."""
+    """Yield the angles between planes through the shaft's axis, on the side of the material."""
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
-    legs = [_leg(plane, end) for plane in flanks]
-    for one, other in combinations([leg for leg in legs if leg], 2):
+    legs = [(leg, plane) for plane in flanks if (leg := _leg(plane, end))]
+    for (one, plane), (other, second) in combinations(legs, 2):
         turn = degrees(atan2(one[0] * other[1] - one[1] * other[0], one[0] * other[0] + one[1] * other[1]))
         if abs(turn) > _CLEAR:
-            first, second = (one, other) if turn > 0 else (other, one)
-            yield Measure("angle", abs(turn), "end", "angle", ((0.0, 0.0), first, second))
+            legs_of = (one, other) if turn > 0 else (other, one)
+            points = ((0.0, 0.0), *legs_of)
+            yield Measure("angle", abs(turn), "end", "angle", points, 1, on(plane), on(second))
 
 
 def _leg(plane: Surface, end: View) -> Point | None:

@@ -1,32 +1,28 @@
-"""Match sizes in a drawing with parameters: by their values, and by the kind that their words name."""
+"""Match parameters with the measures that the views show: by the faces that carry them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist, isclose
 
 from cad.drafting.curves import Point
 from cad.drafting.measures import Measure, Sort
+from cad.surfaces import Kind, PartSurfaces, Size, Z
 from cad.tolerances import Limits
 from templates.core.units.units import unit
 
-_WORDS: dict[str, tuple[Sort, ...]] = {
+_SORTS: dict[Kind, tuple[Sort, ...]] = {
     "diameter": ("diameter",),
-    "bore": ("diameter",),
+    "sphere": ("diameter",),
     "radius": ("radius",),
-    "fillet": ("radius",),
+    "circle": ("diameter",),
+    "distance": ("length", "width", "gap", "offset"),
+    "chamfer": ("length",),
     "angle": ("angle",),
-    "inclination": ("angle",),
-    "wall": ("gap",),
-    "depth": ("gap", "length", "width"),
-    "throw": ("offset",),
-    "spread": (),  # a difference of two shapes, of which one is drawn
 }
-_LENGTHS: tuple[Sort, ...] = ("length", "width", "offset", "gap")
-_ANY: tuple[Sort, ...] = (*_LENGTHS, "diameter", "radius")
 _AMOUNT = re.compile(
     r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}| [-+±].*)?"
 )  # with a tolerance behind it
@@ -45,28 +41,50 @@ class Dimension:
 
 
 def matched(
-    parameters: Mapping[str, str], measures: Sequence[Measure], limits: Mapping[str, Limits] | None = None
+    parameters: Mapping[str, str],
+    sizes: Mapping[str, Size],
+    measures: Sequence[Measure],
+    limits: Mapping[str, Limits],
 ) -> tuple[list[Dimension], list[str]]:
     """Return a dimension for each parameter that is seen, and the names of those that are not.
 
-    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`;
-    `limits` are those of toleranced ones.
+    Parameters
+    ----------
+    parameters
+        As in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`.
+    sizes
+        Those that faces of the solid carry, by parameter.
+    measures
+        What the views show.
+    limits
+        Those of toleranced parameters.
     """
     matches: list[Dimension] = []
     unseen: list[str] = []
     for name, text in parameters.items():
-        size = _size(text)
+        size = size_of(text)
         if size is None or size[0] == 0:
             continue  # a word, a count, or what is not there
-        fitting = _fitting(name, *size, measures)
-        fresh = [m for m in fitting if all(m.points != taken.measure.points for taken in matches)]
-        if fitting:
-            measure = _clearest(fresh or fitting, matches)
-            alike = tuple(m for m in fresh if _kind(m) == _kind(measure) and m is not measure)
-            matches.append(Dimension(measure, name, (limits or {}).get(name), alike))
+        if fitting := _fitting(sizes[name], measures) if name in sizes else []:
+            measure = _clearest(fitting, matches)
+            alike = tuple(m for m in fitting if _kind(m) == _kind(measure) and m is not measure)
+            if (several := len(sizes[name].places)) > 1:
+                measure = replace(measure, count=measure.count * several)
+            matches.append(Dimension(measure, name, limits.get(name), alike))
         else:
             unseen.append(name)
     return matches, unseen
+
+
+def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
+    """Return the start and end of a length at each of its places along the shaft, if it repeats."""
+    if size.kind != "distance" or len(size.places) < 2:
+        return []
+    at = {plane.face: plane.point.z for one in seen.values() for plane in one.planes if plane.along(Z)}
+    if not all({place.first[0], place.second[0]} <= at.keys() for place in size.places):
+        return []
+    ends = ((at[place.first[0]], at[place.second[0]]) for place in size.places)
+    return sorted((round(min(pair), 6), round(max(pair), 6)) for pair in ends)
 
 
 def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measure:
@@ -83,31 +101,29 @@ def _kind(measure: Measure) -> tuple[str, str, str]:
     return measure.sort, measure.place, measure.form
 
 
-def _fitting(name: str, value: float, is_angle: bool, measures: Sequence[Measure]) -> list[Measure]:
-    sorts = _sorts(name, is_angle)
-    is_length = "length" in name.split("_")  # no distance of a plane from the shaft
-    close = [
-        m
-        for m in measures
-        if m.sort in sorts
-        and _same(m.value, value)
-        and not (is_length and (m.sort, m.place) == ("offset", "end"))
-    ]
-    return sorted(close, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
+def _fitting(size: Size, measures: Sequence[Measure]) -> list[Measure]:
+    """Return the measures of the faces that carry a size, the clearest sort first."""
+    sorts = _SORTS[size.kind]
+    shown = [m for m in measures if m.sort in sorts and _same(m.value, size) and _is_on(m, size)]
+    return sorted(shown, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
 
 
 def _same(one: float, other: float) -> bool:
     return isclose(one, other, rel_tol=_PRECISION, abs_tol=_PRECISION)
 
 
-def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
-    if is_angle:
-        return ("angle",)
-    words = name.split("_")
-    forms = next((_WORDS[word] for word in reversed(words) if word in _WORDS), None)
-    if forms is not None:
-        return forms
-    return _LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY
+def _is_on(measure: Measure, size: Size) -> bool:
+    """Return whether a measure is taken on the faces of a size.
+
+    A measure from an axis has no second faces; the faces of the size are then about that axis.
+    """
+    for place in size.places:
+        for first, second in ((place.first, place.second), (place.second, place.first)):
+            if not measure.first.isdisjoint(first) and (
+                not (measure.second and second) or not measure.second.isdisjoint(second)
+            ):
+                return True
+    return False
 
 
 def length_of(text: str) -> float:
@@ -116,15 +132,15 @@ def length_of(text: str) -> float:
     Raises
     ------
     ValueError
-        If the text is none.
+        If the text is not a length.
     """
-    size = _size(text)
+    size = size_of(text)
     if size is None or size[1]:
         raise ValueError(f"{text!r} is no length")
     return size[0]
 
 
-def _size(text: str) -> tuple[float, bool] | None:
+def size_of(text: str) -> tuple[float, bool] | None:
     """Return a length in millimetres or an angle in degrees, and which of them it is."""
     match = _AMOUNT.fullmatch(text)
     if match is None:
@@ -140,11 +156,10 @@ def _size(text: str) -> tuple[float, bool] | None:
 def references(
     taken: Sequence[Dimension], measures: Sequence[Measure], elsewhere: Sequence[Point] = ()
 ) -> Iterator[Dimension]:
-    """Yield reference lengths: between planes that nothing locates, and overall.
+    """Yield reference lengths: between planes that no dimension locates, and overall lengths.
 
-    What dimensions join is located by them, also those `elsewhere`, of which the two ends along the shaft are
-    given; two planes that lie alike on either side of the origin are joined with it by the dimension between
-    them.
+    Dimensions locate the planes that they connect, including those `elsewhere`, given by their two ends along
+    the shaft; a dimension between two mirrored planes also connects them with the origin.
     """
     lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
     places = sorted({round(point[0], 6) for m in lengths for point in m.points})

@@ -4,7 +4,7 @@ A model declares in `sections` where its drawing has one, by letter:
 
     sections = {"B": {"of": "rod", "at": {"centre_distance": 0.5}, "shows": ["shank_width"]}}
 
-`of` is the part; `at` where it is cut along y, a sum of parameters with their factors; `shows` are the
+`of` is the part. `at` is the position of the cut along y, a sum of parameters with factors. `shows` lists the
 parameters that are dimensioned there instead of in the other views.
 """
 
@@ -17,11 +17,12 @@ from itertools import combinations
 from cadquery import Location, Vector
 
 from cad.drafting.curves import Point
+from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
-from cad.drafting.measures import Form, Measure
+from cad.drafting.measures import Form, Measure, on
 from cad.drafting.page import Page
 from cad.drafting.parameter_match import Dimension, length_of, matched
 from cad.drafting.plan import LANE, Plan
@@ -30,8 +31,7 @@ from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_acro
 from cad.drafting.symbols import arrow
 from cad.drafting.views import View
 from cad.step import Body
-from cad.surfaces import Y, Z
-from cad.tolerances import Limits
+from cad.surfaces import PartSurfaces, Y, Z
 
 LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
@@ -63,10 +63,10 @@ class RemovedSection:
 
 
 def removed_sections(
-    declared: Mapping[str, Mapping[str, object]],
+    declared: DrawingDeclaration,
     parameters: Mapping[str, str],
-    limits: Mapping[str, Limits],
     bodies: Sequence[Body],
+    seen: Mapping[str, PartSurfaces],
     end: View,
 ) -> list[RemovedSection]:
     """Return the removed sections of a drawing; one that shows nothing is left out."""
@@ -74,19 +74,20 @@ def removed_sections(
         return []  # y is not upright in the view in which the section would be marked
     return [
         one
-        for letter, said in declared.items()
-        if (one := _removed(letter, said, parameters, limits, bodies, end)) is not None
+        for letter in declared.sections
+        if (one := _removed(letter, declared, parameters, bodies, seen, end)) is not None
     ]
 
 
 def _removed(
     letter: str,
-    said: Mapping[str, object],
+    declared: DrawingDeclaration,
     parameters: Mapping[str, str],
-    limits: Mapping[str, Limits],
     bodies: Sequence[Body],
+    seen: Mapping[str, PartSurfaces],
     end: View,
 ) -> RemovedSection | None:
+    said = declared.sections[letter]
     factors, shows = said["at"], said["shows"]
     assert isinstance(factors, Mapping)
     assert isinstance(shows, Sequence)
@@ -101,11 +102,12 @@ def _removed(
         return None
     view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
-    dimensions, _ = matched(wanted, [*_measures(view)], limits)
+    shown = [*_measures(view, seen[body.name])]
+    dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
     return RemovedSection(letter, view, height, tuple(dimensions)) if dimensions else None
 
 
-def _measures(view: View) -> Iterator[Measure]:
+def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
     """Yield the distances between straight edges, level and upright, from the lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
@@ -114,14 +116,16 @@ def _measures(view: View) -> Iterator[Measure]:
             if abs(one[along] - other[along]) < CLEAR:
                 place, foot = round(one[along], 6), min(one[1 - along], other[1 - along])
                 feet[place] = min(feet.get(place, foot), foot)
+        axis = view.frame.up if along else view.frame.right
         for low, high in combinations(sorted(feet), 2):
+            sides = (on(*seen.planes_at(axis, level)) for level in (low, high))
             ends = ((low, feet[low]), (high, feet[high]))
             points = ends if along == 0 else tuple((foot, place) for place, foot in ends)
-            yield Measure("width", high - low, "section", form, points)
+            yield Measure("width", high - low, "section", form, points, 1, *sides)
 
 
 def mark(page: Page, room: Room, removed: RemovedSection) -> None:
-    """The line along which a section is cut, in the end view; the arrows point down, as the eye looks."""
+    """Draw the line along which a section is cut, in the end view; the arrows point down."""
     plan = page.plan
     (left, _), (right, _) = removed.view.box
     width = width_of(removed.letter, LETTERS)
@@ -136,7 +140,7 @@ def mark(page: Page, room: Room, removed: RemovedSection) -> None:
 
 
 def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
-    """Draw a section at a free place of the sheet; returns its dimensions.
+    """Draw a section at a free place of the sheet; return its dimensions.
 
     Raises
     ------
@@ -183,7 +187,7 @@ def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
 
 
 def _is_within(one: Dimension, view: View) -> bool:
-    """Return whether what a dimension measures ends within the section, as a web does between two pockets."""
+    """Return whether a dimension ends within the section, as for a web between two pockets."""
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
@@ -214,7 +218,7 @@ def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
 
 
 def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
-    """B–B over the section, above the words that stand there."""
+    """Draw the label B–B over the section, above other texts."""
     (x, _), (right, high) = view.box
     text = f"{letter}–{letter}"
     middle, top = page.plan.paper(((x + right) / 2, high))
@@ -229,7 +233,7 @@ def _moved(one: Dimension, shift: Point) -> Dimension:
 
 
 def _shifted(view: View, shift: Point) -> View:
-    """Return a view at another place."""
+    """Return a view at another position."""
     curves = [curve.moved(shift) for curve in view.visible]
     cut = [
         Cut(

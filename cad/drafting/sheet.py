@@ -1,13 +1,13 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section has its true coordinates, everything is drawn 1:1, and the sheet around it is as large as the
-scale requires. So a DIMENSION measures the true size of the part. Each carries the name of its parameter.
+The section keeps its true coordinates and is drawn 1:1; the sheet around it is enlarged by the scale. So a
+DIMENSION measures the true size of the part. Each DIMENSION carries the name of its parameter.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice
@@ -20,9 +20,9 @@ from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
-from cad.drafting.measures import length_between, measures
+from cad.drafting.measures import lengths, measures
 from cad.drafting.page import Page, document_of
-from cad.drafting.parameter_match import Dimension, matched, references
+from cad.drafting.parameter_match import Dimension, matched, references, spans_of
 from cad.drafting.plan import Plan, plans
 from cad.drafting.protrusions import standing
 from cad.drafting.removed_section import RemovedSection, mark, place, removed_sections
@@ -31,8 +31,9 @@ from cad.drafting.sheet_border import General, frame, notes, table, title_block
 from cad.drafting.title import general_profile
 from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
-from cad.inspect import bounding_box
+from cad.inspect import bounding_box, look_at
 from cad.step import Body
+from cad.surfaces import PartSurfaces
 
 _MOST_LEVELS, _MOST_REPEATED = 14, 100
 """Planes along the shaft between which lengths are given; and if those are counted that repeat."""
@@ -50,7 +51,10 @@ def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
 
 
 def _register_classes(document: Drawing) -> None:
-    """List the classes in one order; ezdxf itself would walk a set, whose order differs by process."""
+    """List the classes in one order.
+
+    Ezdxf itself would iterate over a set, whose order differs by process.
+    """
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
 
@@ -95,8 +99,9 @@ class _Laid:
 
 def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
     """Return the drawing as a document of ezdxf, and its sheet."""
-    declared = DrawingDeclaration.of(header, is_assembly=is_assembly(bodies))
-    content, laid = _laid_out(bodies, header, declared)
+    seen = look_at(bodies)
+    declared = DrawingDeclaration.of(header, seen, is_assembly=is_assembly(bodies))
+    content, laid = _laid_out(bodies, seen, header, declared)
     page = laid.page
     section_label(page, content.section, laid.room)
     _fill(page, content.section, content.end, laid.centres, laid.placed)
@@ -111,29 +116,28 @@ def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format
 
 
 def _laid_out(
-    bodies: Sequence[Body], header: Header | None, declared: DrawingDeclaration
+    bodies: Sequence[Body],
+    seen: Mapping[str, PartSurfaces],
+    header: Header | None,
+    declared: DrawingDeclaration,
 ) -> tuple[_Content, _Laid]:
-    """Return the first sheet on which everything has a place.
-
-    One without removed sections if there is no other.
-    """
+    """Return the first sheet on which everything has room; if there is none, one without removed sections."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = header.parameters if header else {}
-    repeated = declared.repeated(parameters, bodies)
+    repeated = {name: spans for name, size in declared.sizes.items() if (spans := spans_of(size, seen))}
     most = _MOST_REPEATED if repeated else _MOST_LEVELS
-    seen = [*measures(bodies, section, end, most), *standing(bodies, section, end)]
-    several = [
-        Dimension(length_between(*spans[0], section, len(spans)), name, declared.limits.get(name))
-        for name, spans in repeated.items()
+    shown = [
+        *lengths(declared.sizes.values(), seen, section),
+        *measures(bodies, seen, section, end, most),
+        *standing([*seen.values()], section, end),
     ]
-    removed = removed_sections(declared.sections, parameters, declared.limits, bodies, end)
+    removed = removed_sections(declared, parameters, bodies, seen, end)
     for some in ([removed] if removed else []) + [[]]:
-        names = {name for one in some for name in one.names} | repeated.keys()
+        names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
-        matches, unseen = matched(rest, seen, declared.limits)
-        matches += several
+        matches, unseen = matched(rest, declared.sizes, shown, declared.limits)
         along = [ends for one in some for ends in one.along] + list(chain.from_iterable(repeated.values()))
-        content = _Content(section, end, some, [*matches, *references(matches, seen, along)], unseen)
+        content = _Content(section, end, some, [*matches, *references(matches, shown, along)], unseen)
         tried = content.plans()
         for plan in tried:
             is_last = plan is tried[-1] and not some
@@ -183,7 +187,7 @@ def _fill(
 
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
-    """Return the sheet with its views, into which no words may come, and its centre lines."""
+    """Return the sheet with its views, which texts must avoid, and its centre lines."""
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):

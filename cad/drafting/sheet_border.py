@@ -1,15 +1,16 @@
-"""Border, title block, notes and the table of parameters of a sheet."""
+"""The border, title block, notes and parameter table of a sheet."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from cad.drafting.formats import COLUMN, EDGE, LEFT
 from cad.drafting.frames import Frame
+from cad.drafting.labels import deviations, number_of
 from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.page import APP, Page
+from cad.drafting.parameter_match import size_of
 from cad.drafting.symbols import basic_texture, first_angle, texture
 from cad.drafting.title import (
     CAPTION,
@@ -23,16 +24,16 @@ from cad.drafting.title import (
 )
 from cad.header import Header
 from cad.stamp import MARK
+from cad.tolerances import Limits, limits_of
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
-_BOTH_WAYS = re.compile(r"^(\S+ \S+ )\+(\S+)/-\2(?= )")  # equal deviations: ±0.1 mm
 _MOST_LINES = 3  # of one value in the table
 
 
 def frame(page: Page) -> None:
-    """The border of the sheet and of its areas; the sheet itself comes first."""
+    """Draw the border of the sheet and of its areas, after the sheet itself."""
     format = page.plan.format
     width, height = format.width, format.height
     right, column, block = width - EDGE, width - EDGE - COLUMN, width - EDGE - WIDTH
@@ -53,7 +54,7 @@ class General:
 
     @property
     def has_profile(self) -> bool:
-        """Return whether ISO 22081 holds."""
+        """Return whether ISO 22081 applies."""
         return self.profile is not None and self.datum != ""
 
     @property
@@ -71,14 +72,14 @@ class General:
         )
 
     def draw(self, page: Page, left: float, low: float) -> None:
-        """The frame of the profile behind the words that begin at a place."""
+        """Draw the frame of the profile after the text at a position."""
         if self.profile is not None and self.datum:
             frame = Frame("profile", self.profile, self.datum, 2.5)
             frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
 
 
 def title_block(page: Page, header: Header | None, general: General) -> None:
-    """The fields of ISO 7200; a stamp fills in those that belong to a design."""
+    """Draw the fields of ISO 7200; a stamp fills in those of a design."""
     left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
     texts = {
@@ -113,7 +114,7 @@ def title_block(page: Page, header: Header | None, general: General) -> None:
 
 
 def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
-    """What holds for the whole drawing, to the left of the title block."""
+    """Draw the notes for the whole drawing, to the left of the title block."""
     left, top = LEFT + 3.0, EDGE + HEIGHT - 6.0
     lines = [
         "dimensions in mm, measured on the solid, at 20 °C (ISO 1); ( ) for reference",
@@ -136,14 +137,16 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
 
 
 def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> None:
-    """The parameters with their values."""
+    """Draw the parameters with their values."""
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
+    page.write("mm", left + _NAMES, top, _LETTERS)
+    limits = limits_of(parameters)
     rows = [
         (name.replace("_", " ") + (" *" if name in unseen else "") if number == 0 else "", line)
         for name, text in parameters.items()
-        for number, line in enumerate(_wrapped(_BOTH_WAYS.sub(r"\1±\2", text), COLUMN - _NAMES - 6))
+        for number, line in enumerate(_wrapped(_value(text, limits.get(name)), COLUMN - _NAMES - 6))
     ]
     room = top - (EDGE + HEIGHT) - 3.0
     row = min(_ROW, room / max(len(rows), 1))
@@ -152,6 +155,20 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
         y = top - row * number
         page.write(clipped(name, _NAMES - 2, size), left, y, size)
         page.write(text, left + _NAMES, y, size)
+
+
+def _value(text: str, limits: Limits | None) -> str:
+    """Return a length in mm with its deviations, an angle in degrees, and other values unchanged."""
+    size = size_of(text)
+    if size is None:
+        return text
+    value, is_angle = size
+    if is_angle:
+        return f"{number_of(value, 6)}°"
+    if limits is None:
+        return number_of(value, 6)
+    ends = "/".join(filter(None, deviations(limits)))
+    return " ".join(filter(None, (number_of(value, 6), limits.zone, ends)))
 
 
 def _wrapped(text: str, width: float) -> list[str]:

@@ -1,9 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-The section takes one of two planes through the shaft: one that is not a joint, and then the one that holds
-the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
-first-angle projection, stands the view from the left. Balls, shafts and round bars are not cut lengthwise
-(ISO 128-3): they are drawn whole, a shaft with its hidden lines.
+The section uses one of two planes through the shaft: one that is not a joint, and of these the one that
+contains the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
+first-angle projection, is the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO
+128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cad.drafting.breaks import breaks, opened
 from cad.drafting.curves import Curve, Point, Round, curves_of, joined
 from cad.drafting.section import CLEAR, Arc, Cut, Frame, arc_of, cut_of, faces_across, half_behind, reach_of
 from cad.step import Body
-from cad.surfaces import Surface, X, Y, Z, faces_of, look
+from cad.surfaces import Surface, X, Y, Z, look
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
 _LITTLE = 0.02  # of the depth on the other side: what is less is no side of its own
@@ -85,7 +85,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Return whether balls or bars stand among other parts: then the drawing is that of an assembly."""
+    """Return whether this is the drawing of an assembly, with balls or bars among other parts."""
     whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
     return any(whole) and not all(whole)
 
@@ -128,7 +128,7 @@ def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
 
 
 def _axes_across(placed: Sequence[_PlacedPart], frame: Frame) -> list[tuple[Point, Point]]:
-    """Return the axes of cylinders that lie in the plane of the paper, from where to where these reach."""
+    """Return the axes of cylinders in the plane of the paper, with their start and end."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
         if abs(cylinder.direction.dot(frame.towards)) < CLEAR:
@@ -153,10 +153,8 @@ def _is_ball(shape: Shape) -> bool:
 
 def _is_bar(shape: Shape) -> bool:
     """Return whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
-    faces = faces_of(shape)
-    return sorted(face.kind for face in faces) == ["cylinder", "plane", "plane"] and any(
-        face.kind == "cylinder" and face.surface.about(Z) for face in faces
-    )
+    seen = look(shape)
+    return (len(shape.Faces()), len(seen.planes), len(seen.about(Z))) == (3, 2, 1)
 
 
 def _upright(bodies: Sequence[Body]) -> Vector:
@@ -191,12 +189,12 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """Return whether the shaft's axis lies within a bore or a joint relief."""
+    """Return whether the shaft's axis is within a bore or a joint relief."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
-    """Return the reach of a shape against a normal along an axis, and with it."""
+    """Return the extent of a shape in both directions of a normal along an axis."""
     box = shape.BoundingBox()
     corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
     low, high = sorted(corner.dot(normal) for corner in corners)
@@ -227,7 +225,7 @@ def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
 
 
 def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
-    """Return the edges of shapes as they are seen, with those that are hidden."""
+    """Return the visible and the hidden edges of shapes."""
     toward, right = frame.towards, frame.right
     eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*toward.toTuple()), gp_Dir(*right.toTuple()))
     whole = Compound.makeCompound(shapes)

@@ -1,1 +1,1 @@
-"""FreeCAD as a program that draws: the process in which it opens one file, and which files it may open."""
+"""FreeCAD as a drawing program: the process in which it opens one file, and the files that it may open."""

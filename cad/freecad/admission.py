@@ -1,11 +1,11 @@
-"""Which files of FreeCAD are opened: packages of a bounded size, of features that run no Python.
+"""Admit FreeCAD files: packages of limited size, with features that run no Python.
 
 A `.FCStd` is a ZIP of `Document.xml` and the shapes that it names. A Python feature is an object whose type
 ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file is refused, as is
 one that reads other files. An accepted file is packed again with only the parts that the document names. So
 macros are dropped, and FreeCAD reads only packages that this program wrote.
 
-Runs in a process of its own, whose memory and time are limited.
+This check runs in a separate process with limited memory and time.
 """
 
 from __future__ import annotations
@@ -104,9 +104,7 @@ def _check_directory(content: bytes) -> None:
             "package", f"it is not a complete ZIP package (its directory is missing): {AGAIN}"
         )
     if content.startswith(_LARGE_DIRECTORY, max(0, place - 20)):
-        raise UnreadableModel(
-            "package", f"it is a package of the form ZIP64, which says its size twice: {AGAIN}"
-        )
+        raise UnreadableModel("package", f"it is a ZIP64 package, which states its size twice: {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS or size > MOST_PARTS * 400:
         raise UnreadableModel("too_large", f"it has {entries} parts; a model has at most {MOST_PARTS}")

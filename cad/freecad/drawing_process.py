@@ -1,18 +1,19 @@
-"""The process in which FreeCAD opens one file: run by the Python for which FreeCAD is installed.
+"""The process in which FreeCAD opens one file, run by the Python for which FreeCAD is installed.
 
-Nothing of this program is imported here: that Python is another one. The arguments are the descriptor of a
-lifeline, the folder that the process may write to, the folders of FreeCAD's modules, and its memory [MiB].
+This module imports nothing of Crankwright, because that Python is a different one. The arguments are the
+descriptor of a lifeline, the folder that the process may write to, the folders of FreeCAD's modules, and its
+memory [MiB].
 
-It takes requests from its standard input and answers on its standard output; each message is a JSON object
-behind its length, and an answer is followed by the shapes whose sizes it lists.
+It takes requests from its standard input and answers on its standard output; each message is its length
+followed by a JSON object, and an answer is followed by the shapes whose sizes it lists.
 
     {"do": "describe"}                    every parameter of the file, and its solids
     {"do": "draw", "set": [...]}          the solids for some values
     both with "file", "seconds"           the path of the file, and the processor time it may take
 
-Each request opens the file again: the same values give the same solids, whatever was drawn before. Before the
-first one the process gives up the network, other programs and processes, signals to others, and files outside
-its folder.
+Each request opens the file again, so the same values always give the same solids. Before the first request
+the process gives up its access to the network, other programs and processes, signals, and files outside its
+folder.
 """
 
 import ctypes
@@ -308,7 +309,7 @@ def solids(document: Any) -> list[tuple[str, float, bytes]]:
             listed.append((name, solid.Volume, solid.exportBrepToString().encode()))
     if not listed:
         remedy = "make a Body or a Part with a solid visible, and save it"
-        raise Refused("no_solid", f"the file shows no solid: {remedy}")
+        raise Refused("no_solid", f"the file contains no visible solid: {remedy}")
     if len(listed) > MOST_SOLIDS:
         raise Refused("too_large", f"it has {len(listed)} solids; a model has at most {MOST_SOLIDS}")
     return listed

@@ -8,7 +8,7 @@ import numpy as np
 
 from cad.model import STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
-from cad.surfaces import PartSurfaces, X, Y, Z
+from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
 IRON: tuple[float, float, float] = (0.42, 0.44, 0.47)
@@ -47,13 +47,15 @@ class BearingHousing(CadModel):
         "oil_drilling_diameter": "5 mm",
     }
     toleranced = {
-        "housing_bore": {"of": "block", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "housing_width": {"of": "block", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "housing_breadth": {"of": "block", "planes": "x"},
-        "block_height": {"of": "block", "planes": "y"},
-        "cap_height": {"of": "cap", "planes": "y"},
-        "bolt_hole_diameter": {"of": "block", "beside": "y"},
-        "oil_drilling_diameter": {"of": "block", "cylinders": "y"},
+        "housing_bore": {"datum": "A", "cylindricity": 0.5},
+        "housing_width": {"perpendicularity": 1, "to": "A"},
+        "housing_breadth": {},
+        "block_height": {},
+        "cap_height": {},
+        "bolt_hole_diameter": {},
+        "oil_drilling_diameter": {},
+        "bolt_spacing": {},
+        "bolt_hole_depth": {},
     }
 
     D: Array = given("mm", "housing bore", symbol="D_h", ge=2, le=2000)
@@ -172,18 +174,19 @@ class BearingHousing(CadModel):
         block, cap = seen["block"], seen["cap"]
         holes = [hole.turned(Y) for hole in block.cylinders if hole.along(Y)]
         bolts = [hole for hole in holes if not hole.about(Y)]
-        oil = [hole.diameter for hole in holes if hole.about(Y)]
-        right, left = block.levels(X)[-1], block.levels(X)[0]
-        sizes = {
+        oil = [hole for hole in holes if hole.about(Y)]
+        sizes: dict[str, float] = {
             "housing_bore": block.diameters(Z)[0],
             "housing_width": block.length(Z),
-            "housing_breadth": right - left,
+            "housing_breadth": block.length(X),
             "block_height": block.length(Y),
             "cap_height": cap.length(Y),
-            "bolt_hole_diameter": bolts[0].diameter if bolts else 0.0,
-            "oil_drilling_diameter": oil[0] if oil else 0.0,
+            "bolt_hole_diameter": Size.diameter(bolts) if bolts else 0.0,
+            "oil_drilling_diameter": Size.diameter(oil) if oil else 0.0,
         }
         if bolts:
-            sizes["bolt_spacing"] = max(b.point.x for b in bolts) - min(b.point.x for b in bolts)
-            sizes["bolt_hole_depth"] = bolts[0].reach[1]
+            left, right = [b for b in bolts if b.point.x < 0], [b for b in bolts if b.point.x > 0]
+            spacing = max(b.point.x for b in right) - min(b.point.x for b in left)
+            sizes["bolt_spacing"] = Size.distance(spacing, left, right)
+            sizes["bolt_hole_depth"] = block.apart(Y, 0.0, bolts[0].reach[1])
         return sizes

@@ -9,7 +9,7 @@ import numpy as np
 from cad.model import BRIGHT_STEEL, STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
 from cad.shells.rod import Rod
-from cad.surfaces import PartSurfaces, X, Y, Z
+from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
 
@@ -53,13 +53,22 @@ class ConnectingRod(CadModel):
         "web_thickness": "5 mm",
     }
     toleranced = {
-        "big_end_bore": {"of": "rod", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "small_end_bore": {"of": "rod", "beside": "z", "parallelism": 1, "to": "A"},
-        "small_end_diameter": {"of": "rod", "beside": "z"},
-        "centre_distance": {"of": "rod", "between": ["big_end_bore", "small_end_bore"]},
-        "big_end_breadth": {"of": "rod", "planes": "x"},
-        "cap_height": {"of": "cap", "planes": "y"},
-        "bolt_hole_diameter": {"of": "rod", "beside": "y"},
+        "big_end_bore": {"datum": "A", "cylindricity": 0.5},
+        "small_end_bore": {"parallelism": 1, "to": "A"},
+        "small_end_diameter": {},
+        "centre_distance": {},
+        "big_end_breadth": {},
+        "cap_height": {},
+        "bolt_hole_diameter": {},
+        "big_end_width": {},
+        "shoulder_height": {},
+        "small_end_width": {},
+        "shank_width": {},
+        "shank_thickness": {},
+        "pocket_width": {},
+        "web_thickness": {},
+        "bolt_spacing": {},
+        "bolt_hole_depth": {},
     }
 
     sections = {
@@ -270,26 +279,32 @@ class ConnectingRod(CadModel):
         across, along = rod.levels(X), [z for z in rod.levels(Z) if z > 0]
         bolts = [hole.turned(Y) for hole in rod.cylinders if hole.along(Y)]
         eyes = sorted((c for c in rod.cylinders if c.along(Z) and not c.about(Z)), key=lambda c: c.diameter)
-        bore = rod.about(Z)[0]
+        small = [c for c in eyes if c.diameter < eyes[-1].diameter - 1e-6]
+        ring = [c for c in eyes if c not in small]
+        bore = rod.about(Z)
+        shoulder = rod.levels(Y)[2 if bolts else 1]
         has_pockets = len(across) == 6  # sides of big end, shank and pockets
-        sizes = {
-            "big_end_bore": bore.diameter,
-            "big_end_width": bore.reach[1] - bore.reach[0],
-            "big_end_breadth": across[-1] - across[0],
-            "shoulder_height": rod.levels(Y)[2 if bolts else 1],
+        thick = along[1 if has_pockets else 0]
+        sizes: dict[str, float] = {
+            "big_end_bore": Size.diameter(bore),
+            "big_end_width": rod.apart(Z, *bore[0].reach),
+            "big_end_breadth": rod.length(X),
+            "shoulder_height": Size.distance(shoulder, bore, rod.planes_at(Y, shoulder)),
             "cap_height": cap.length(Y),
-            "bolt_hole_diameter": bolts[0].diameter if bolts else 0.0,
-            "centre_distance": eyes[0].point.y,
-            "small_end_bore": eyes[0].diameter,
-            "small_end_diameter": eyes[-1].diameter,
-            "small_end_width": eyes[0].reach[1] - eyes[0].reach[0],
-            "shank_width": across[-2] - across[1],
-            "shank_thickness": 2 * along[1 if has_pockets else 0],
-            "pocket_width": across[-3] - across[2] if has_pockets else 0.0,
+            "bolt_hole_diameter": Size.diameter(bolts) if bolts else 0.0,
+            "centre_distance": Size.distance(eyes[0].point.y, bore, small),
+            "small_end_bore": Size.diameter(small),
+            "small_end_diameter": Size.diameter(ring),
+            "small_end_width": rod.apart(Z, *small[0].reach),
+            "shank_width": rod.between(X, 1, -2),
+            "shank_thickness": rod.apart(Z, -thick, thick),
+            "pocket_width": rod.between(X, 2, -3) if has_pockets else 0.0,
         }
         if bolts:
-            sizes["bolt_spacing"] = max(b.point.x for b in bolts) - min(b.point.x for b in bolts)
-            sizes["bolt_hole_depth"] = bolts[0].reach[1]
+            left, right = [b for b in bolts if b.point.x < 0], [b for b in bolts if b.point.x > 0]
+            spacing = max(b.point.x for b in right) - min(b.point.x for b in left)
+            sizes["bolt_spacing"] = Size.distance(spacing, left, right)
+            sizes["bolt_hole_depth"] = rod.apart(Y, 0.0, bolts[0].reach[1])
         if has_pockets:
-            sizes["web_thickness"] = 2 * along[0]
+            sizes["web_thickness"] = rod.apart(Z, -along[0], along[0])
         return sizes

@@ -8,7 +8,6 @@ read, explains the parameters; parameters, rules and the solid are those of `cad
 from collections.abc import Mapping
 from math import sin
 
-from cad.cranks.outline import Outline
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import Throw
 from cad.cranks.throw_readback import (
@@ -25,7 +24,7 @@ from cad.cranks.volume import volume
 from cad.fillets import Crank
 from cad.model import Box, Part, mm
 from cad.shaft import Shaft
-from cad.surfaces import PartSurfaces, Y
+from cad.surfaces import PartSurfaces, Size, Y
 from templates.core.language.template import Array, formula
 
 
@@ -74,14 +73,17 @@ class CrankThrow(CrankRules):
         "face_inclination": "8 deg",
     }
     toleranced = {
-        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "journal_bore": {"cylinders": "z"},
-        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
-        "pin_bore": {"beside": "z"},
-        "throw": {"between": ["journal_diameter", "pin_diameter"]},
-        "oil_drilling_diameter": {"askew": True},
-        "pin_length": {"planes": "z", "levels": [[2, 3]], "perpendicularity": 1, "to": "A"},
-        "web_thickness": {"planes": "z", "levels": [[1, 2], [3, 4]]},
+        "journal_diameter": {"datum": "A", "cylindricity": 0.5},
+        "journal_bore": {},
+        "pin_diameter": {"cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {},
+        "throw": {},
+        "oil_drilling_diameter": {},
+        "pin_length": {"perpendicularity": 1, "to": "A"},
+        "web_thickness": {},
+        "web_width": {},
+        "fillet": {},
+        "counterweight_radius": {},
     }
 
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
@@ -90,26 +92,7 @@ class CrankThrow(CrankRules):
 
     def drawn(self) -> Throw:
         """Return the parameters as radii, lengths and angles of the drawn shape."""
-        return Throw(
-            outline=Outline(
-                throw=mm(self.R),
-                half_width=mm(self.W) / 2,
-                rectangular=self.web_shape == "rectangular",
-                counterweight=mm(self.R_w),
-                half_angle=float(self.phi_w) / 2,
-            ),
-            web_thickness=mm(self.L_w),
-            journal=mm(self.D_j) / 2,
-            journal_bore=mm(self.d_j) / 2,
-            journal_length=mm(self.L_s),
-            pin=mm(self.D_c) / 2,
-            pin_bore=mm(self.d_c) / 2,
-            pin_length=mm(self.L_c),
-            fillet=mm(self.r_f),
-            drilling=mm(self.d_o) / 2,
-            inclination=float(self.beta),
-            incline_start=mm(self.x_b),
-        )
+        return self.throw_drawn(mm(self.R_w))
 
     def build(self) -> tuple[Part, ...]:
         """Return one solid."""
@@ -149,13 +132,14 @@ class CrankThrow(CrankRules):
         """Return every parameter; the angle of a counterweight only if there is one."""
         surfaces, webs = seen[self.id], Webs.of(seen[self.id])
         front, rear = (stub[0] for stub in stubs(surfaces, webs))
+        before, behind = -front.reach[1], rear.reach[1]  # the end faces, in mid-journal
         return {
-            "journal_diameter": max(front.diameter, rear.diameter),
-            "journal_length": front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3],
+            "journal_diameter": Size.diameter([front, rear]),
+            "journal_length": webs.faces[0] - before + behind - webs.faces[3],
             "journal_bore": journal_bore(surfaces, webs),
             **pin(surfaces, webs),
-            "pin_length": webs.apart,
-            "web_thickness": webs.thickness,
+            "pin_length": webs.apart(surfaces),
+            "web_thickness": webs.thickness(surfaces),
             "web_width": surfaces.length(Y),
             "fillet": fillet(surfaces),
             "oil_drilling_diameter": drilling(surfaces),

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, pi, sin
+from math import pi
 
 import numpy as np
-from cadquery import Location, Vector
-from cadquery.func import sphere
 
+from cad.ball_row import BallRow
 from cad.deep_groove import (
     SIZES,
     Cage,
-    Ring,
     bore_by_designation,
     dynamic_capacity_ISO_281_2007,
     outside_by_designation,
@@ -20,15 +18,14 @@ from cad.deep_groove import (
     static_factor_ISO_76_2006,
     width_by_designation,
 )
-from cad.model import BRIGHT_STEEL, BRONZE, Box, CadModel, Part, mm
-from cad.surfaces import PartSurfaces, Z
+from cad.model import BRONZE, Part, mm
+from cad.surfaces import PartSurfaces, Size, Z
 from templates.core.language.template import Array, Truth, choice, derived, formula, require
 
-INWARDS, OUTWARDS = -1, 1
 BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
 
 
-class DeepGrooveBearing(CadModel):
+class DeepGrooveBearing(BallRow):
     """Deep groove ball bearing by its designation: rings, balls and cage, with its load ratings.
 
     The designation, such as 6210, gives bore, outer diameter and width: series 618, 60, 62 and 63. A size
@@ -58,11 +55,13 @@ class DeepGrooveBearing(CadModel):
 
     example = {"designation": "6210", "ball_diameter": "12.7 mm", "balls": 10}
     toleranced = {
-        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
-        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "ball_diameter": {"of": "ball", "spheres": True},
-        "cage_width": {"of": "cage", "planes": "z"},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"cylindricity": 0.5},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "ball_diameter": {},
+        "cage_width": {},
+        "cage_thickness": {},
+        "pocket_bore": {},
     }
 
     designation: str = choice(*SIZES, words="designation")
@@ -101,18 +100,6 @@ class DeepGrooveBearing(CadModel):
         """Of the cage's pockets."""
         return 1.04 * self.D_w
 
-    @formula("mm", "pitch diameter", symbol="D_{pw}")
-    def D_pw(self) -> Array:
-        return (self.d + self.D) / 2
-
-    @formula("mm", "ring section", symbol="h")
-    def h(self) -> Array:
-        return (self.D - self.d) / 2
-
-    @formula("mm", "groove radius", symbol="r_g", source="conformity 0.52, Harris and Kotzalas 2006")
-    def r_g(self) -> Array:
-        return 0.52 * self.D_w
-
     @formula("kN", "dynamic capacity", symbol="C", source="ISO 281:2007, 5.1.1")
     def C(self) -> Array:
         return dynamic_capacity_ISO_281_2007(self.D_w, self.D_pw, self.n)
@@ -125,32 +112,10 @@ class DeepGrooveBearing(CadModel):
     def C_0(self) -> Array:
         return static_capacity_ISO_76_2006(self.f_0, self.n, self.D_w)
 
-    @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or leave it out")
-    def has_section(self) -> Truth:
-        """The outer diameter is at least 2 % larger than the bore."""
-        return self.D >= 1.02 * self.d
-
-    @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take smaller balls")
-    def balls_fit_between_rings(self) -> Truth:
-        """A ball takes at most 90 % of the height from bore to outside, so that no groove cuts a ring."""
-        return self.D_w <= 0.9 * self.h
-
     @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take balls of another size")
     def balls_are_rated(self) -> Truth:
         """A ball measures 1 % to 40 % of the pitch diameter, as far as ISO 281 and ISO 76 have capacities."""
         return (self.D_w >= 0.01 * self.D_pw) & (self.D_w <= 0.4 * self.D_pw)
-
-    @require("ball_diameter", "width", remedy="take smaller balls or a wider bearing")
-    def balls_fit_in_width(self) -> Truth:
-        """A ball is not wider than the bearing, so that the rings hold the whole groove."""
-        return self.D_w <= self.B
-
-    @require(
-        "balls", "ball_diameter", "outer_diameter", "inner_diameter", remedy="take fewer or smaller balls"
-    )
-    def balls_do_not_touch(self) -> Truth:
-        """Between neighbouring balls on the pitch circle there is at least 1 % of a ball's diameter."""
-        return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 
     @require("pocket_bore", "ball_diameter", "cage_width", remedy="make the pockets larger")
     def pockets_hold_balls(self) -> Truth:
@@ -175,37 +140,15 @@ class DeepGrooveBearing(CadModel):
 
     def build(self) -> tuple[Part, ...]:
         """Return two rings, the balls, and the cage if there is one."""
-        ring, radius, balls = self.ring(), mm(self.D_pw) / 2, round(float(self.n))
-        angles = (2 * pi * i / balls for i in range(balls))
-        places = tuple(Location(Vector(radius * cos(a), radius * sin(a), 0)) for a in angles)
-        ball = mm(self.D_w)
-        parts = [
-            Part("inner_ring", ring.solid(radius, INWARDS), ring.volume(radius, INWARDS)),
-            Part("outer_ring", ring.solid(radius, OUTWARDS), ring.volume(radius, OUTWARDS)),
-            Part("ball", sphere(ball), pi * ball**3 / 6, BRIGHT_STEEL, places=places),
-        ]
+        shoulder, chamfer = 0.3 * mm(self.D_w), 0.05 * min(mm(self.h), mm(self.B))
+        parts: list[Part] = [*self.rings_and_balls(self.ring(shoulder, chamfer))]
         if self.B_c > 0:
+            radius, balls = mm(self.D_pw) / 2, round(float(self.n))
             cage = Cage(radius, mm(self.t_c), mm(self.B_c), mm(self.D_p) / 2, balls)
             parts.append(
                 Part("cage", cage.solid(), cage.volume(), BRONZE, BRASS_DENSITY, material="CuZn39Pb3")
             )
         return tuple(parts)
-
-    def ring(self) -> Ring:
-        """Return the cross-section that both rings share; one is turned inwards, one outwards."""
-        return Ring(
-            shoulder=0.3 * mm(self.D_w),
-            back=mm(self.h) / 2,
-            width=mm(self.B),
-            chamfer=0.05 * min(mm(self.h), mm(self.B)),
-            groove_radius=mm(self.r_g),
-            groove_centre=mm(self.D_w) / 2 - mm(self.r_g),
-        )
-
-    def bounding_box(self) -> Box:
-        """Return the outside of the outer ring; neither balls nor cage stand out of the width."""
-        radius, half = mm(self.D) / 2, mm(self.B) / 2
-        return Box((-radius, -radius, -half), (radius, radius, half))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every length and the count of balls, as the parts show them.
@@ -213,17 +156,17 @@ class DeepGrooveBearing(CadModel):
         Include those of the cage if there is one.
         """
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
-        sizes = {
+        sizes: dict[str, float] = {
             "inner_diameter": inner.diameters(Z)[0],
             "outer_diameter": outer.diameters(Z)[-1],
-            "width": outer.length(Z),
+            "width": inner.length(Z),
             "balls": ball.count,
-            "ball_diameter": ball.spheres[0],
+            "ball_diameter": Size.sphere(ball.spheres),
         }
         if "cage" in seen:
             cage = seen["cage"]
-            walls = cage.diameters(Z)
+            walls = cage.rings(Z)
             sizes["cage_width"] = cage.length(Z)
-            sizes["cage_thickness"] = (walls[-1] - walls[0]) / 2
-            sizes["pocket_bore"] = next(c.diameter for c in cage.cylinders if not c.about(Z))
+            sizes["cage_thickness"] = Size.wall(walls[0], walls[-1])
+            sizes["pocket_bore"] = Size.diameter([c for c in cage.cylinders if not c.about(Z)])
         return sizes

@@ -14,7 +14,7 @@ from cadquery.func import cut
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import Point, drill, drilled_volume, outline, turned, turned_volume
-from cad.surfaces import PartSurfaces, Y, Z
+from cad.surfaces import PartSurfaces, Size, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 
@@ -109,11 +109,16 @@ class FlangedBush(CadModel):
     }
     film_bore = "inner_diameter"
     toleranced = {
-        "inner_diameter": {"of": "bush", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "flange_diameter": {"of": "bush", "cylinders": "z"},
-        "flange_thickness": {"of": "bush", "planes": "z", "levels": [[0, 1]]},
-        "width": {"of": "bush", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "oil_hole_diameter": {"of": "bush", "along": "y"},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "flange_diameter": {},
+        "flange_thickness": {},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "oil_hole_diameter": {},
+        "wall": {},
+        "inner_chamfer": {},
+        "outer_chamfer": {},
+        "oil_groove_width": {},
+        "oil_groove_depth": {},
     }
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
@@ -262,25 +267,20 @@ class FlangedBush(CadModel):
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every length that the bush has; no groove and no hole show none."""
         bush = seen["bush"]
-        about, levels, holes = (
-            bush.about(Z),
-            bush.levels(Z),
-            [c.diameter for c in bush.cylinders if c.along(Y)],
-        )
-        diameters = bush.diameters(Z)
-        bore = [c.reach for c in about if abs(c.diameter - diameters[0]) < 1e-6]
-        outside = [c.reach for c in about if abs(c.diameter - diameters[-2]) < 1e-6]
-        sizes = {
-            "inner_diameter": diameters[0],
-            "wall": (diameters[-2] - diameters[0]) / 2,
-            "flange_diameter": diameters[-1],
-            "flange_thickness": levels[1] - levels[0],
-            "width": levels[-1] - levels[0],
-            "inner_chamfer": min(low for low, _ in bore) - levels[0],
-            "outer_chamfer": levels[-1] - max(high for _, high in outside),
-            "oil_hole_diameter": holes[0] if holes else 0.0,
+        levels, holes = bush.levels(Z), [c for c in bush.cylinders if c.along(Y)]
+        rings = bush.rings(Z)
+        bore, outside, flange = rings[0], rings[-2], rings[-1]
+        sizes: dict[str, float] = {
+            "inner_diameter": Size.diameter(bore),
+            "wall": Size.wall(bore, outside),
+            "flange_diameter": Size.diameter(flange),
+            "flange_thickness": bush.between(Z, 0, 1),
+            "width": bush.length(Z),
+            "inner_chamfer": bush.chamfer(min(c.reach[0] for c in bore) - levels[0], bore),
+            "outer_chamfer": bush.chamfer(levels[-1] - max(c.reach[1] for c in outside), outside),
+            "oil_hole_diameter": Size.diameter(holes) if holes else 0.0,
         }
         if len(levels) == 5:  # both ends, the back of the flange, both sides of a groove
-            sizes["oil_groove_width"] = levels[3] - levels[2]
-            sizes["oil_groove_depth"] = (diameters[1] - diameters[0]) / 2
+            sizes["oil_groove_width"] = bush.between(Z, 2, 3)
+            sizes["oil_groove_depth"] = Size.wall(bore, rings[1])
         return sizes

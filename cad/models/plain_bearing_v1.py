@@ -121,14 +121,22 @@ class PlainBearing(ShellRules):
     film_bore = "inner_diameter"
     rounds_noise = True
     toleranced = {
-        "inner_diameter": {"of": [*LININGS, *BACKS], "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "wall": {"of": BACKS, "inside": LININGS, "walls": "z"},
-        "lining_thickness": {"of": LININGS, "walls": "z"},
-        "width": {"of": BACKS, "planes": "z", "perpendicularity": 1, "to": "A"},
-        "flange_diameter": {"of": BACKS, "cylinders": "z"},
-        "flange_thickness": {"of": BACKS, "planes": "z", "levels": [[-2, -1]]},
-        "oil_hole_diameter": {"of": BACKS, "along": "y"},
-        "oil_groove_width": {"of": [*LININGS, *BACKS], "sides": "z"},
+        "inner_diameter": {"datum": "A", "cylindricity": 0.5},
+        "wall": {},
+        "lining_thickness": {},
+        "width": {"perpendicularity": 1, "to": "A"},
+        "flange_diameter": {},
+        "flange_thickness": {},
+        "oil_hole_diameter": {},
+        "oil_groove_width": {},
+        "crush_height": {},
+        "inner_chamfer": {},
+        "outer_chamfer": {},
+        "relief_depth": {},
+        "tang_width": {},
+        "tang_length": {},
+        "tang_height": {},
+        "oil_groove_depth": {},
     }  # fmt: skip
 
     state: str = choice("fitted", "free", words="state", default="fitted")

@@ -1,4 +1,4 @@
-"""Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
+"""Thrust washer: a flat ring or a half ring with radial oil grooves, a pin hole, and a locating lug.
 
 The class below, which users read, explains the parameters.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from math import atan2, cos, degrees, hypot, pi, radians, sin, sqrt
+from math import atan2, cos, degrees, pi, radians, sin, sqrt
 
 import numpy as np
 from cadquery import Edge, Shape, Solid, Vector
@@ -16,7 +16,7 @@ from cadquery.func import cut, extrude, face, segment, wire
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import nearest, sheet_under_arc
-from cad.surfaces import PartSurfaces, X, Y, Z
+from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import (
     Array,
     Truth,
@@ -187,10 +187,14 @@ class ThrustWasher(CadModel):
     }
 
     toleranced = {
-        "inner_diameter": {"of": "washer", "cylinders": "z", "datum": "A"},
-        "outer_diameter": {"of": "washer", "cylinders": "z"},
-        "thickness": {"of": "washer", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "pin_hole_diameter": {"of": "washer", "beside": "z"},
+        "inner_diameter": {"datum": "A"},
+        "outer_diameter": {},
+        "thickness": {"perpendicularity": 1, "to": "A"},
+        "pin_hole_diameter": {},
+        "oil_groove_width": {},
+        "oil_groove_depth": {},
+        "lug_width": {},
+        "lug_height": {},
     }
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bearing diameter", "bore"))
@@ -332,23 +336,28 @@ class ThrustWasher(CadModel):
         """Return every parameter; those of grooves, pin hole and lug only if there are any."""
         washer, wanted = seen["washer"], self.drawn()
         about, levels = washer.diameters(Z), washer.levels(Z)
+        outside = washer.rings(Z)[-1]
         pins = [c for c in washer.cylinders if c.along(Z) and not c.about(Z)]
-        sizes = {
+        sizes: dict[str, float] = {
             "inner_diameter": about[0],
             "outer_diameter": about[-1],
-            "thickness": levels[-1] - levels[0],
+            "thickness": washer.length(Z),
             "oil_grooves": 0.0,
-            "pin_hole_diameter": pins[0].diameter if pins else 0.0,
+            "pin_hole_diameter": Size.diameter(pins) if pins else 0.0,
         }
         if len(levels) == 3:
             floors = [p for p in washer.planes if p.along(Z) and abs(p.point.z - levels[1]) < 1e-6]
-            sides = (2 * abs(p.point.dot(p.direction)) for p in washer.planes if not p.along(Z))
+            sides = [p for p in washer.planes if not p.along(Z)]
+            width = nearest((2 * abs(p.point.dot(p.direction)) for p in sides), 2 * wanted.half_groove)
+            faces = [p for p in sides if abs(2 * abs(p.point.dot(p.direction)) - width) < 1e-6]
             sizes["oil_grooves"] = float(len(floors))
-            sizes["oil_groove_width"] = nearest(sides, 2 * wanted.half_groove)
-            sizes["oil_groove_depth"] = levels[2] - levels[1]
+            sizes["oil_groove_width"] = Size.distance(width, faces, faces)
+            sizes["oil_groove_depth"] = washer.between(Z, 1, 2)
         if pins:
-            sizes["pin_circle_diameter"] = 2 * hypot(pins[0].point.x, pins[0].point.y)
+            sizes["pin_circle_diameter"] = Size.circle(pins)
         if wanted.half_lug > 0:
-            sizes["lug_width"] = nearest((2 * abs(x) for x in washer.levels(X)), 2 * wanted.half_lug)
-            sizes["lug_height"] = washer.levels(Y)[-1] - about[-1] / 2
+            half = nearest((abs(x) for x in washer.levels(X)), wanted.half_lug)
+            sizes["lug_width"] = washer.apart(X, -half, half)
+            top = washer.levels(Y)[-1]
+            sizes["lug_height"] = Size.distance(top - about[-1] / 2, outside, washer.planes_at(Y, top))
         return sizes

@@ -1,1 +1,1 @@
-"""Half shells of thin-walled plain bearings: the drawn shape, its volume, and how it is read back."""
+"""Half shells of thin-walled plain bearings: shape, volume, and readback."""

@@ -1,4 +1,4 @@
-"""Where the split bore of a model is, and how its solid is held there, for finite elements.
+"""The position of a model's split bore, and the support of its solid, for finite elements.
 
 A housing is held by the flat top of its block, where the crankcase goes on. A rod is held by the bore of its
 small end.

@@ -1,4 +1,4 @@
-"""Parameters of the shells of a plain bearing as the housing holds them, and what follows from them.
+"""Parameters of plain-bearing shells as fitted in the housing, and derived quantities.
 
 The digest of a released model covers this file: put a change into a new file. A parameter of 0 omits the
 feature: lining, tang, relief, hole, groove, flange, chamfers, crush height.

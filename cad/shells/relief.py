@@ -1,4 +1,4 @@
-"""Joint relief: beside its joint the bore is a circle about an axis a little aside, so it opens gradually.
+"""Joint relief: near the joint the bore is a circle about a slightly offset axis, so it opens gradually.
 
 The circle meets the joint at the bore's radius and the depth of the relief, and the bore at the relief's
 height above the joint. Its axis lies on the plane of the joint.

@@ -1,8 +1,8 @@
-"""Rules for which a half shell is refused, always by the names of the parameters and with a way out.
+"""Rules that refuse a half shell; each names the parameters and a remedy.
 
-The digest of a released model covers this file: put a change into a new file. The rules are a
-little stricter than geometry requires, so that edges keep clear of each other and the kernel draws whatever
-they accept; and what they accept, the closed form of the volume covers.
+The digest of a released model covers this file: put a change into a new file. The rules are a little stricter
+than geometry requires, so that edges keep clear of each other. The kernel can draw every shell that they
+accept, and the closed form of the volume covers it.
 """
 
 from __future__ import annotations

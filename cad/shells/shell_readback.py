@@ -1,4 +1,4 @@
-"""Sizes of a half shell as the surfaces of its back and its lining show them."""
+"""Sizes of a half shell, read from the surfaces of its back and its lining."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from math import asin, degrees, hypot, pi
 from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
 from cad.shells.relief import read_relief
-from cad.surfaces import PartSurfaces, Surface, Y, Z
+from cad.surfaces import PartSurfaces, Place, Size, Surface, Y, Z, faces_of
 
 _SAME = 1e-6  # [mm]
 
@@ -29,11 +29,11 @@ class ShellReadback:
         """Every parameter by name; `side` is 1 of an upper shell, -1 of a lower one, 0 of a full bush."""
         joint = self.back.levels(Y)[0 if side > 0 else -1] if side else 0.0
         return {
-            "inner_diameter": 2 * self.bore,
+            "inner_diameter": Size.diameter(self.bore_ring),
             "wall": self.wall,
-            "width": self.width(),
+            "width": self.back.length(Z),
             "lining_thickness": self.lining_wall,
-            "crush_height": -side * joint + 0.0,
+            "crush_height": self._crush(side, joint),
             **self.chamfers(),
             **self.relief(),
             **self.tang(),
@@ -41,26 +41,41 @@ class ShellReadback:
             **(self.groove() if with_oil else {}),
         }
 
+    def _crush(self, side: int, joint: float) -> float:
+        """Return the distance of the joint from the axis of the shaft [mm]; none of a full bush."""
+        if side == 0:
+            return 0.0
+        return Size.distance(-side * joint + 0.0, self.bore_ring, self.back.planes_at(Y, joint))
+
+    @property
+    def bore_ring(self) -> list[Surface]:
+        """Return the faces of the bore."""
+        return self.lining.rings(Z)[0]
+
+    @property
+    def outside_ring(self) -> list[Surface]:
+        """Return the faces of the back's outside; a flange is larger."""
+        return self.back.rings(Z)[-2 if self.wanted.flange else -1]
+
     @property
     def bore(self) -> float:
         """Return the radius [mm]."""
-        return self.lining.diameters(Z)[0] / 2
+        return self.bore_ring[0].diameter / 2
 
     @property
     def wall(self) -> float:
         """Return the back and lining [mm]."""
-        return self.outside - self.bore
+        return Size.wall(self.bore_ring, self.outside_ring)
 
     @property
     def outside(self) -> float:
         """Return the radius of the back [mm]; a flange is larger."""
-        diameters = self.back.diameters(Z)
-        return diameters[-2 if self.wanted.flange else -1] / 2
+        return self.outside_ring[0].diameter / 2
 
     @property
     def lining_wall(self) -> float:
         """Return the thickness of the lining [mm]; 0 if there is none."""
-        return self.lining.diameters(Z)[-1] / 2 - self.bore if self.wanted.is_lined else 0.0
+        return Size.wall(self.bore_ring, self.lining.rings(Z)[-1]) if self.wanted.is_lined else 0.0
 
     @property
     def groove_turn(self) -> float:
@@ -80,16 +95,13 @@ class ShellReadback:
     def chamfers(self) -> dict[str, float]:
         """Return the chamfers of the bore, and of the back where it has no flange."""
         half = self.width() / 2
-        bore = self._highest(self.lining, self.bore)
+        bore, outside = self.bore_ring, self.outside_ring
         flange = self.wanted.flange
-        sizes = {"inner_chamfer": half - bore}
+        sizes = {"inner_chamfer": self.lining.chamfer(half - max(c.reach[1] for c in bore), bore)}
         if flange is None or flange.count == 1:
-            reaches = [c.reach[0] for c in self.back.about(Z) if abs(c.diameter / 2 - self.outside) < _SAME]
-            sizes["outer_chamfer"] = half + min(reaches)
+            reach = min(c.reach[0] for c in outside)
+            sizes["outer_chamfer"] = self.back.chamfer(half + reach, outside)
         return sizes
-
-    def _highest(self, seen: PartSurfaces, radius: float) -> float:
-        return max(c.reach[1] for c in seen.about(Z) if abs(c.diameter / 2 - radius) < _SAME)
 
     def relief(self) -> dict[str, float]:
         """Return the height and depth of the joint relief."""
@@ -98,28 +110,41 @@ class ShellReadback:
             return {"relief_depth": 0.0}
         one = circles[0]
         height, depth = read_relief(self.bore, hypot(one.point.x, one.point.y), one.diameter / 2)
-        return {"relief_height": height, "relief_depth": depth}
+        deep = Size.distance(depth, self.bore_ring, circles)
+        return {"relief_height": height, "relief_depth": deep}
 
     def groove(self) -> dict[str, float]:
         """Return the width, depth and turn of the oil groove, and the diameter of the oil hole."""
-        holes = [c.diameter for c in self.back.cylinders if c.about(Y)]
-        sizes = {"oil_hole_diameter": holes[0] if holes else 0.0}
+        holes = [c for c in self.back.cylinders if c.about(Y)]
+        sizes = {"oil_hole_diameter": Size.diameter(holes) if holes else 0.0}
         groove = self.wanted.groove
         if groove is None:
             return sizes
-        levels, half = self.lining.levels(Z), groove.half_width
-        width = 2 * levels[0] if self.wanted.is_split else nearest(levels, half) - nearest(levels, -half)
         return {
             **sizes,
-            "oil_groove_width": width,
-            "oil_groove_depth": self._groove_bottom() - self.bore,
-            "oil_groove_angle": degrees(self.groove_turn),
+            "oil_groove_width": self._groove_width(groove.half_width),
+            "oil_groove_depth": Size.wall(self.bore_ring, self._groove_bottom()),
+            "oil_groove_angle": self._groove_angle(),
         }
 
-    def _groove_bottom(self) -> float:
-        lining = self.lining.diameters(Z)
-        deep: Sequence[float] = self.back.diameters(Z)
-        return lining[1] / 2 if len(lining) == 3 else deep[1] / 2
+    def _groove_width(self, half: float) -> float:
+        """Return the distance of its sides; those of a groove that parts the lining are on the back."""
+        levels = self.lining.levels(Z)
+        if not self.wanted.is_split:
+            return self.lining.apart(Z, nearest(levels, -half), nearest(levels, half))
+        sides = self.back.levels(Z)
+        return self.back.apart(Z, nearest(sides, -levels[0]), nearest(sides, levels[0]))
+
+    def _groove_angle(self) -> float:
+        """Return the angle between its ends [deg], which are planes through the axis of the shaft."""
+        angle = degrees(self.groove_turn)
+        ends = [p for p in self._radial() if abs(_from_crown(p) - self.groove_turn / 2) < _SAME]
+        right, left = ([p for p in ends if _side(p) == side] for side in (1, -1))
+        return Size(angle, "angle", Place(faces_of(right), faces_of(left))) if right and left else angle
+
+    def _groove_bottom(self) -> list[Surface]:
+        lining = self.lining.rings(Z)
+        return lining[1] if len(lining) == 3 else self.back.rings(Z)[1]
 
     def tang(self) -> dict[str, float]:
         """Return the lip at the back."""
@@ -127,12 +152,14 @@ class ShellReadback:
         if tang is None:
             return {"tang_width": 0.0}
         levels, upright = self.back.levels(Z), [p for p in self.back.planes if not p.along(Z)]
-        away = [abs(p.point.dot(p.direction)) for p in upright]
         low, high = (nearest(levels, tang.z + side * tang.width / 2) for side in (-1, 1))
+        end, height = tang.length, self.wanted.outside + tang.height
+        length, top = (_nearest_planes(upright, away) for away in (end, height))
+        joint = _nearest_planes(upright, 0.0)
         return {
-            "tang_width": high - low,
-            "tang_length": nearest(away, tang.length),
-            "tang_height": nearest(away, self.wanted.outside + tang.height) - self.outside,
+            "tang_width": self.back.apart(Z, low, high),
+            "tang_length": Size.distance(off_axis(length[0]), joint, length),
+            "tang_height": Size.distance(off_axis(top[0]) - self.outside, self.outside_ring, top),
         }
 
     def flange(self) -> dict[str, float]:
@@ -145,9 +172,26 @@ class ShellReadback:
         shoulders = [z for z in self.back.levels(Z) if abs(abs(z) - inner) < 1e-4]
         return {
             "flange_diameter": self.back.diameters(Z)[-1],
-            "flange_thickness": half - max(shoulders),
+            "flange_thickness": self.back.apart(Z, max(shoulders), half),
             "flanges": float(len(shoulders)),
         }
+
+
+def _nearest_planes(planes: Sequence[Surface], away: float) -> list[Surface]:
+    """Return the planes along the shaft whose distance from its axis [mm] is nearest to another."""
+    distance = nearest(map(off_axis, planes), away)
+    return [plane for plane in planes if abs(off_axis(plane) - distance) < _SAME]
+
+
+def off_axis(plane: Surface) -> float:
+    """Return the distance [mm] of the shaft's axis from a plane along it."""
+    return abs(plane.point.dot(plane.direction))
+
+
+def _side(plane: Surface) -> int:
+    """Return 1 if a plane through the axis of the shaft rises to the right of the crown, else -1."""
+    arm = plane.direction.cross(Z)
+    return 1 if (arm.x > 0) == (arm.y > 0) else -1
 
 
 def _from_crown(plane: Surface) -> float:

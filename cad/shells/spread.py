@@ -1,7 +1,7 @@
-"""Free spread: the shape of a half shell that nothing holds, which is wider over its joints than its seat.
+"""Free spread: the shape of a free half shell, which is wider at its joints than the seat.
 
 The free shell is drawn as an arc of a larger radius: the middle of the wall keeps the length that it has in
-the housing, and each crush height stays a straight leg. So the curvature changes alike everywhere, as in a
+the housing, and each crush height stays a straight leg. So the curvature changes equally everywhere, as in a
 thin ring under a uniform moment; the seat forces the arc back to a half circle.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
-from cad.shells.shell_readback import ShellReadback
+from cad.shells.shell_readback import ShellReadback, off_axis
 from cad.surfaces import Surface, X, Y, Z
 from templates.core.language.declare import on_paper
 from templates.core.language.template import Array, units
@@ -66,12 +66,12 @@ class FreeShellReadback(ShellReadback):
 
     def _joints(self) -> list[Surface]:
         """Return the planes at the ends of the wall."""
-        away = nearest(map(_off_axis, self._upright()), self.wanted.crush)
-        return [plane for plane in self._upright() if abs(_off_axis(plane) - away) < 1e-6]
+        away = nearest(map(off_axis, self._upright()), self.wanted.crush)
+        return [plane for plane in self._upright() if abs(off_axis(plane) - away) < 1e-6]
 
     def free_sizes(self, *, with_oil: bool) -> dict[str, float]:
         """Return every parameter by name."""
-        angle, crush = self.angle, _off_axis(self._joints()[0])
+        angle, crush = self.angle, off_axis(self._joints()[0])
         fitted = (self.bore + self.wall / 2) * angle / (pi / 2)
         width = 2 * (self.outside * sin(angle) + crush * cos(angle))
         groove = self.groove() if with_oil else {}
@@ -83,7 +83,7 @@ class FreeShellReadback(ShellReadback):
         return {
             "inner_diameter": 2 * fitted - self.wall,
             "wall": self.wall,
-            "width": self.width(),
+            "width": self.back.length(Z),
             "lining_thickness": self.lining_wall,
             "crush_height": crush,
             "free_spread": width - (2 * fitted + self.wall),
@@ -103,11 +103,6 @@ def reach_of(shell: HalfShell) -> tuple[float, float, float]:
     inside = shell.bore + (shell.relief.depth if shell.relief else 0.0)
     left, right = (radius * cos(lift) + crush * sin(lift) for radius in (collar, max(collar, lip)))
     return left, right, inside * sin(lift) - crush * cos(lift)
-
-
-def _off_axis(plane: Surface) -> float:
-    """Return the distance [mm] of the shaft's axis from a plane along it."""
-    return abs(plane.point.dot(plane.direction))
 
 
 def _from_crown(plane: Surface) -> float:

@@ -9,7 +9,7 @@ from handbook.rendering import render
 from templates.core.language.template import Template
 from templates.core.paper.demands import described_criteria
 from templates.door import built_in
-from templates.library.reading import read_sources
+from templates.library.csv_tables import read_sources
 from templates.library.tables import SOURCES, Table, tables
 
 

@@ -14,7 +14,7 @@ from handbook.rendering import render
 from handbook.rendering import unit as unit_of
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate
-from templates.core.language.levels import SINGLE, accuracy, accuracy_file, truth_of
+from templates.core.language.levels import SINGLE, Accuracy, accuracy, accuracy_file
 from templates.core.language.template import Template
 from templates.core.paper.schema import describe
 from templates.door import built_in
@@ -115,10 +115,18 @@ def levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
     measured = accuracy(cls)
     costs = _costs(_measurement(cls)["levels"]) if measured else {}
     for level in cls.levels or ((SINGLE,) if measured else ()):
-        tables = measured.errors.get(level, {}) if measured else {}
-        stated = {name: table for name, table in tables.items() if not np.isnan(table).all()}
-        errors = [{**_spread(name, t), "truth": truth_of(cls, level, name)} for name, t in stated.items()]
-        yield {"name": level, "cost": costs.get(level), "errors": errors}
+        yield {
+            "name": level,
+            "cost": costs.get(level),
+            "errors": list(_errors(measured, level)) if measured else [],
+        }
+
+
+def _errors(measured: Accuracy, level: str) -> Iterator[dict[str, Any]]:
+    """Each output whose error is stated, with the truth against which it was measured."""
+    for name, table in measured.errors.get(level, {}).items():
+        if not np.isnan(table).all():
+            yield {**_spread(name, table), "truth": measured.truth(level, name)}
 
 
 def _measurement(cls: type[Template]) -> Any:

@@ -1,7 +1,7 @@
 """Loads of crankpin, main and wristpin bearing, wall and crank over the cycle of one cylinder (DYREMI).
 
-From gas pressure and the motion of crank, rod and piston at constant speed; each load as a curve whose x
-and y draw the polar diagram.
+The loads follow from the gas pressure and the motion of crank, rod and piston at constant speed. Each load is
+a curve whose x and y draw the polar diagram.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import numpy as np
 
 from templates.core.language.template import Array, formula, profile, shared
 from templates.groups.cylinder import DYREMI, NO_INERTIA, Cylinder
+from templates.groups.petrol_engine import OVERLAP, PETROL_CYCLE
 from templates.physics.engine.crank_loads import (
     CrankForces,
     axial_force,
@@ -91,19 +92,8 @@ class BearingLoad(Cylinder):
         "rod_pendulum_period": "0.7 s",
         "piston_mass": "0.48 kg",
         "strokes": 4,
-        "gas_cycle": "four_stroke",
-        "suction_pressure": "0.9 bar",
-        "exhaust_pressure": "1.1 bar",
-        "compression_ratio": 10,
-        "compression_exponent": 1.32,
-        "expansion_exponent": 1.28,
-        "combustion_pressure": "60 bar",
-        "cutoff": 1.15,
-        "inlet_opens": "705 deg",
-        "inlet_closes": "222 deg",
-        "exhaust_opens": "492 deg",
-        "exhaust_closes": "14 deg",
-        "crankcase_pressure": "1 bar",
+        **PETROL_CYCLE,
+        **OVERLAP,
         "crank_angle_step": "30 deg",
     }
     criteria = {

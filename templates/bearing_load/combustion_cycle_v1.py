@@ -1,6 +1,6 @@
-"""Gas pressure of a four-stroke cylinder from the heat of its fuel: one zone, Wiebe's law.
+"""Gas pressure of a four-stroke cylinder from the heat of its fuel: single zone, Wiebe's law.
 
-Its curve is the pressure table of `engine` and `bearing_load`.
+Its curve serves as the pressure table of `engine` and `bearing_load`.
 """
 
 from __future__ import annotations
@@ -10,14 +10,16 @@ import numpy as np
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
 from templates.physics.combustion.wiebe import (
     FIRING,
-    Burning,
-    Closed,
+    ClosedCylinder,
+    HeatRelease,
+    Peak,
     burnt_share,
     closed_cylinder,
     closed_work,
     cycle_pressure,
     energy_change,
     four_stroke_angles,
+    highest,
     peak,
     peak_angle,
     released_heat,
@@ -43,6 +45,7 @@ class CombustionCycle(Template):
     the exhaust's opening to there the pressure goes linearly in the crank angle.
     The burnt share is 1 - exp(-a y^(m+1)), y the share of the duration; what is left at its end, exp(-a),
     does not burn.
+    steps says at which angles the curves are returned; the peak does not depend on it.
     Work and energy balance are of the closed part, from inlet closing to exhaust opening.
     energy_balance_error is heat less work less change of inner energy, over the heat and suction pressure
     times swept volume: work is a quadrature of the pressure of its own, so this measures both.
@@ -107,12 +110,17 @@ class CombustionCycle(Template):
         return FIRING + self.t_s + self.t_d <= self.eo
 
     @shared
-    def cylinder(self) -> Closed:
+    def cylinder(self) -> ClosedCylinder:
         """The cylinder with closed valves."""
-        burning = Burning(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
+        burning = HeatRelease(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
         return closed_cylinder(
             self.n, self.V_h, self.epsilon, self.p_s, self.ic, self.eo, self.gamma, burning
         )
+
+    @shared
+    def highest(self) -> Peak:
+        """The largest pressure, and where it is."""
+        return highest(self.cylinder, self.p_s, self.p_e)
 
     @formula("1", "rod ratio")
     def n(self) -> Array:
@@ -138,11 +146,11 @@ class CombustionCycle(Template):
     @formula("bar", "peak pressure", symbol=r"p_\mathrm{max}", published=(None, 400),
              remedy="check the heat and the ratio")  # fmt: skip
     def p_max(self) -> Array:
-        return peak(self.p)
+        return peak(self.highest)
 
     @formula("deg", "peak pressure angle", symbol=r"\theta_\mathrm{max}")
     def theta_max(self) -> Array:
-        return peak_angle(self.p, self.theta)
+        return peak_angle(self.highest)
 
     @formula("J", "burnt heat", symbol=r"Q_{b}", latex=r"Q\left(1-e^{-a}\right)")
     def Q_b(self) -> Array:

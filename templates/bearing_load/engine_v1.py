@@ -1,4 +1,4 @@
-"""A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+"""A whole engine of any layout: pins and firing, balance by orders, torque, and loads of every bearing.
 
 In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
 that need not be equal; mains with play.
@@ -19,6 +19,7 @@ from templates.core.language.template import (
 from templates.groups.articulated_engine import ArticulatedEngine
 from templates.groups.engine_cylinders import EACH
 from templates.groups.engine_motion import CYCLE
+from templates.groups.petrol_engine import OVERLAP, PETROL_CYCLE, SHAFT
 from templates.physics.crankshaft.crank_frame import CrankSections
 from templates.physics.crankshaft.main_bearings import (
     ShaftLoads,
@@ -31,7 +32,7 @@ from templates.physics.crankshaft.main_bearings import (
     mains_ascend,
 )
 from templates.physics.crankshaft.main_clearance import (
-    Supported,
+    SupportReactions,
     Supports,
     flexibilities,
     law_residual,
@@ -53,6 +54,9 @@ from templates.physics.crankshaft.shaft_loads import (
 )
 
 MAINS = "mains"
+UNEQUAL = (
+    "sections of journals, pins and webs whose stiffnesses differ 1e12-fold cannot be solved: check the units"
+)
 UNLOADED = "no load, or no mains, or no crank"
 
 
@@ -139,30 +143,12 @@ class Engine(ArticulatedEngine):
         "rod_centre": {"value": [40, 36], "unit": "mm"},
         "rod_inertia": {"value": [2900, 700], "unit": "kg*mm**2"},
         "piston_mass": "0.48 kg",
-        "gas_cycle": "four_stroke",
-        "suction_pressure": "0.9 bar",
-        "exhaust_pressure": "1.1 bar",
-        "compression_ratio": 10,
-        "compression_exponent": 1.32,
-        "expansion_exponent": 1.28,
-        "combustion_pressure": "60 bar",
-        "cutoff": 1.15,
-        "inlet_opens": "705 deg",
-        "inlet_closes": "222 deg",
-        "exhaust_opens": "492 deg",
-        "exhaust_closes": "14 deg",
-        "crankcase_pressure": "1 bar",
+        **PETROL_CYCLE,
+        **OVERLAP,
         "orders": [1, 2],
         "main_positions": {"value": [0, 94, 170], "unit": "mm"},
         "web_positions": {"value": [22, 72, 132], "unit": "mm"},
-        "web_unbalance": "12 kg*mm",
-        "counterweights": "16 kg*mm",
-        "support_stiffness": "500 kN/mm",
-        "journal_diameter": "55 mm",
-        "crankpin_diameter": "48 mm",
-        "crankpin_length": "32 mm",
-        "web_thickness": "18 mm",
-        "web_width": "80 mm",
+        **SHAFT,
     }
     criteria = {
         "main_load": {
@@ -198,9 +184,12 @@ class Engine(ArticulatedEngine):
     l_p: Array = given("mm", "crankpin length", optional=True, single=True, gt=0, le=1e4)
     t_s: Array = given("mm", "web thickness", optional=True, single=True, gt=0, le=1e4)
     b_s: Array = given("mm", "web width", optional=True, single=True, gt=0, le=1e4)
-    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10)
-    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
-    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
+    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10,
+                       assumed="the mains have no clearance")  # fmt: skip
+    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along x")  # fmt: skip
+    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10,
+                       assumed="the main bores are in line along y")  # fmt: skip
     E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
     nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
     f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
@@ -260,7 +249,7 @@ class Engine(ArticulatedEngine):
         return supports_of(self.z_m, self.k_s, self.c_m, self.o_x, self.o_y)
 
     @shared
-    def played(self) -> Supported | None:
+    def played(self) -> SupportReactions | None:
         """Loads of mains with play; none where they have none, or the crank is not given."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
@@ -307,15 +296,15 @@ class Engine(ArticulatedEngine):
     def i_m(self) -> Array:
         return governing(self.mains)
 
-    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
+    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}", remedy=UNEQUAL)
     def F_ex(self) -> Array:
         return along_x(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
+    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}", remedy=UNEQUAL)
     def F_ey(self) -> Array:
         return along_y(self.elastic_mains, self.grid)
 
-    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
+    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}", remedy=UNEQUAL)
     def F_e_max(self) -> Array:
         return greatest(self.elastic_mains)
 

@@ -1,6 +1,6 @@
-"""Measured curves beside calculated ones, with verdicts on how far they differ.
+"""Compare measured curves with calculated ones, and judge how far they differ.
 
-A measurement has its own angles; it is read at those of the calculation.
+A measurement has its own angles; it is interpolated at the angles of the calculation.
 """
 
 from __future__ import annotations

@@ -86,14 +86,16 @@ class RollingBearingLife(Template):
     }
 
     F_r: Array = curve("N", "radial load", constant=True, ge=0, le=1e12)
-    F_a: Array = curve("N", "axial load", constant=True, default="0 N", ge=0, le=1e12)
+    F_a: Array = curve("N", "axial load", constant=True, default="0 N", ge=0, le=1e12,
+                       assumed="there is no axial load")  # fmt: skip
     n: Array = given("rpm", "speed", gt=0, le=1e7)
     C: Array = given("kN", "dynamic capacity", gt=0, le=1e9)
     C_0: Array = given("kN", "static capacity", gt=0, le=1e9)
     f_0: Array = given("1", "calculation factor", alternative=True, ge=5, le=20,
                        remedy="f0 of the catalogue, 11 to 17")  # fmt: skip
     elements: str = choice("ball", "roller", words="rolling elements", default="ball")
-    S: Array = given("1", "reliability", default="0.9", ge=0.9, le=0.9995)
+    S: Array = given("1", "reliability", default="0.9", ge=0.9, le=0.9995,
+                     assumed="one bearing in ten fails earlier")  # fmt: skip
 
     @require("calculation_factor", "axial_load", remedy="give f0 of the bearing's catalogue", missing=True)
     def factor_is_known(self) -> Truth:

@@ -1,1 +1,1 @@
-"""The language in which a template is written; knows no physics."""
+"""The language in which templates are written; it contains no physics."""

@@ -1,4 +1,4 @@
-"""The array types of templates, of physics and of geometry."""
+"""The array types of templates, physics and geometry."""
 
 import numpy as np
 from numpy.typing import NDArray

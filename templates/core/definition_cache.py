@@ -1,8 +1,8 @@
-"""Units and grammars that were read from their definitions before, kept beside Python's bytecode.
+"""Parsed units and grammars, cached beside Python's bytecode.
 
 Python keeps the bytecode of a module in `__pycache__`, or below `sys.pycache_prefix`. Parsed definitions are
-kept there too. Their files say from what and by which versions they were made; others are made again. Where
-Python may not write bytecode, nothing is written either, and each start reads the definitions.
+cached there too. Each cache file records its source and program versions, and is replaced if they differ.
+Where Python may not write bytecode, nothing is cached, and each start parses the definitions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Errors of a calculation, worded so that its user can correct it.
+"""Errors of a calculation, worded so that the user can correct the input.
 
 TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`

@@ -1,4 +1,4 @@
-"""The declared names that come nearest to one that is unknown, at a bounded cost whatever the names are."""
+"""The declared names nearest to an unknown one, at a bounded cost whatever the names are."""
 
 from __future__ import annotations
 

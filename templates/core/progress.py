@@ -1,4 +1,4 @@
-"""Report the progress of a long calculation or a job; who listens, if anybody does, is set from outside."""
+"""Report the progress of a long calculation or a job; the caller may set a listener from outside."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Worksheets to begin with: the paper's, and one of three lines."""
+"""Example worksheets: the paper's, and one of three lines."""

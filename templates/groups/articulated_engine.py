@@ -1,4 +1,4 @@
-"""Group: an engine some of whose rods are articulated: they work on the big end of a master rod."""
+"""Group: an engine with articulated rods, which act on the big end of a master rod."""
 
 from __future__ import annotations
 

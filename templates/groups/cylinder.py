@@ -1,60 +1,33 @@
-"""Group: a cylinder with its crank mechanism and its gas, as `bearing_load` and `engine` share it."""
+"""Group: a cylinder with its crank mechanism and its gas, shared by `bearing_load` and `engine`."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from templates.core.language.template import (
-    Array,
-    Template,
-    Truth,
-    choice,
-    curve,
-    derived,
-    formula,
-    given,
-    require,
-    shared,
-)
+from templates.core.language.template import Array, Template, Truth, derived, formula, given, require, shared
+from templates.groups.cylinder_gas import CylinderGas
 from templates.physics.engine.crank_loads import excess_at, pendulum_inertia
-from templates.physics.engine.gas_checks import (
-    CYCLES,
-    GIVEN_PEAK,
-    POLYTROPIC,
-    angles_rise,
-    burns_before_exhaust,
-    crankcase_is_filled,
-    full_cycle,
-    is_manageable,
-    known_for,
-    pressure_rises,
-    pressures_are_of_one_kind,
-    table_closes,
-    table_is_known,
-    valves_in_order,
-)
-from templates.physics.engine.gas_cycle import Charge, Valves, gas_cycle
+from templates.physics.engine.gas_checks import is_manageable
+from templates.physics.engine.gas_cycle import gas_cycle
 from templates.physics.engine.gas_pressure import GasCycle, mean_effective
-from templates.physics.engine.slider_crank import steps_in
 from templates.physics.numerics.crank_grid import COARSE
 
 DYREMI = "Rao & Singh 1993"
 NO_INERTIA = "needs rod_inertia or rod_pendulum_period"
 
 
-class Cylinder(Template):
-    """A cylinder with its crank mechanism and its gas."""
+class CrankMechanism(Template):
+    """The crank mechanism of a cylinder."""
 
-    levels = ("lumped", "rigid")
-    default_level = "rigid"
-    most_points = {"lumped": 2_700, "rigid": 2_700}
+    step: Array
 
     omega: Array = given("rpm", "speed")
     s: Array = given("mm", "stroke", gt=0, le=1e5)
     n: Array = given("1", "rod ratio", gt=1, le=1e6, remedy="rod length over crank radius, half the stroke")
     D: Array = given("mm", "bore", ge=0, le=1e5)
-    m_cp: Array = given("kg", "crankpin mass", symbol="m_{cp}", default="0 kg", ge=0)
-    m_w: Array = given("kg", "crank mass", default="0 kg", ge=0)
+    m_cp: Array = given("kg", "crankpin mass", symbol="m_{cp}", default="0 kg", ge=0,
+                        assumed="the crankpin weighs nothing")  # fmt: skip
+    m_w: Array = given("kg", "crank mass", default="0 kg", ge=0, assumed="the webs weigh nothing")
     g_w: Array = given("mm", "crank centre", default="0 mm")
     m_cb: Array = given("kg", "counterweight mass", symbol="m_{cb}", default="0 kg", ge=0)
     g_cb: Array = given("mm", "counterweight centre", symbol="g_{cb}", default="0 mm", ge=0)
@@ -63,46 +36,6 @@ class Cylinder(Template):
     tau: Array = given("s", "rod pendulum period", alternative=True, gt=0)
     m_4: Array = given("kg", "piston mass", ge=0)
     strokes: Array = given("1", "strokes", symbol="z", integer=True, single=True, ge=2, le=4)
-    gas_cycle: str = choice(*CYCLES, words="gas cycle")
-    p_s: Array = given("bar", "suction pressure", alternative=True, gt=0, le=100)
-    epsilon: Array = given("1", "compression ratio", symbol=r"\epsilon", alternative=True, gt=1, le=1000)
-    k_c: Array = given("1", "compression exponent", default="1.4", gt=0, le=3)
-    k_e: Array = given("1", "expansion exponent", default="1.4", gt=0, le=3)
-    p_3: Array = given("bar", "combustion pressure", alternative=True, gt=0, le=1000)
-    rho: Array = given("1", "cutoff", default="1", ge=1,
-                       remedy="volume at the end of combustion over that at its begin")  # fmt: skip
-    io: Array = given("deg", "inlet opens", symbol=r"\theta_{io}", default="0 deg", ge=-90, le=810)
-    ic: Array = given("deg", "inlet closes", symbol=r"\theta_{ic}", default="180 deg", gt=0, lt=360)
-    eo: Array = given("deg", "exhaust opens", symbol=r"\theta_{eo}", default="540 deg", gt=360, lt=720)
-    ec: Array = given("deg", "exhaust closes", symbol=r"\theta_{ec}", default="720 deg", ge=-90, le=810)
-    theta_p: Array = curve("deg", "pressure angle", along="pressure_angle", symbol=r"\theta_{p}",
-                           alternative=True, ge=-720, le=1440)  # fmt: skip
-    p_t: Array = curve("bar", "pressure", along="pressure_angle", alternative=True, ge=-1.1, le=1000,
-                       remedy="check its unit")  # fmt: skip
-    p_0: Array = given("bar", "crankcase pressure", default="0 bar", ge=0, le=100)
-    step: Array = given("deg", "crank angle step", symbol=r"\Delta\theta", default="1 deg", single=True,
-                        ge=0.1, le=30)  # fmt: skip
-
-    @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
-    def p_e(self) -> Array:
-        """Default: the suction pressure."""
-        return self.p_s
-
-    @derived("kg*m**2", "rod inertia", symbol="I_3", shown=True, ge=0, absent=NO_INERTIA, source=DYREMI,
-             remedy="no rod swings faster about its wristpin than a point mass at its centre")  # fmt: skip
-    def I_3(self) -> Array:
-        """About its centre of mass."""
-        return pendulum_inertia(self.m_3, self.a_g, self.tau)
-
-    @require("strokes", remedy="give 2 or 4")
-    def two_or_four(self) -> Truth:
-        """An engine has two strokes or four."""
-        return self.strokes != 3
-
-    @require("crank_angle_step", "strokes", remedy="take 1 deg, 2 deg, 5 deg or the like")
-    def step_divides(self) -> Truth:
-        """The step divides the cycle evenly."""
-        return abs(self.steps - np.round(self.steps)) < 1e-6
 
     @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
     def manageable(self) -> Truth:
@@ -120,83 +53,22 @@ class Cylinder(Template):
         """The rod's centre of mass lies between its ends."""
         return self.b_g <= self.n * self.s / 2
 
-    @require("gas_cycle", "strokes", remedy="take otto, diesel or a table for two strokes")
-    def cycle_has_its_strokes(self) -> Truth:
-        """The practical four-stroke cycle has four strokes."""
-        return (self.gas_cycle != "four_stroke") | (self.strokes != 2)
 
-    @require("suction_pressure", remedy="an absolute pressure, with that of the crankcase", missing=True)
-    def suction_is_known(self) -> Truth:
-        """Cycles otto, diesel and four_stroke need a suction pressure."""
-        return known_for(self.gas_cycle, POLYTROPIC, self.p_s)
+class Cylinder(CylinderGas, CrankMechanism):
+    """A cylinder with its crank mechanism and its gas."""
 
-    @require("compression_ratio", remedy="volume at bottom over volume at top dead centre", missing=True)
-    def ratio_is_known(self) -> Truth:
-        """Cycles otto, diesel and four_stroke need a compression ratio."""
-        return known_for(self.gas_cycle, POLYTROPIC, self.epsilon)
+    levels = ("lumped", "rigid")
+    default_level = "rigid"
+    most_points = {"lumped": 2_700, "rigid": 2_700}
 
-    @require("combustion_pressure", remedy="give the highest pressure of the cycle", missing=True)
-    def peak_is_known(self) -> Truth:
-        """Cycles otto and four_stroke need a combustion pressure."""
-        return known_for(self.gas_cycle, GIVEN_PEAK, self.p_3)
+    step: Array = given("deg", "crank angle step", symbol=r"\Delta\theta", default="1 deg", single=True,
+                        ge=0.1, le=30)  # fmt: skip
 
-    @require("pressure", remedy="give it in steps of 5 deg, say, or take another gas_cycle", missing=True)
-    def table_is_known(self) -> Truth:
-        """The cycle table needs the pressure over one cycle."""
-        return table_is_known(self.gas_cycle, self.p_t)
-
-    @require("pressure_angle", remedy="give one list, ascending, a value for each pressure")
-    def table_rises(self) -> Truth:
-        """The angles of the table rise strictly and are as many as its pressures."""
-        return angles_rise(self.gas_cycle, self.theta_p, self.p_t)
-
-    @require(
-        "pressure_angle",
-        "pressure",
-        "strokes",
-        remedy="at least 8 points; the last need not repeat the first",
-    )
-    def table_is_full(self) -> Truth:
-        """The table covers one full cycle: 720° in four strokes, 360° in two."""
-        return full_cycle(self.gas_cycle, self.strokes, self.theta_p, self.p_t)
-
-    @require("pressure", remedy="leave the last point out")
-    def table_closes(self) -> Truth:
-        """A last point that repeats the first has its pressure."""
-        return table_closes(self.gas_cycle, self.strokes, self.theta_p, self.p_t)
-
-    @require("inlet_opens", "inlet_closes", "exhaust_opens", "exhaust_closes",
-             remedy="as 710, 220, 490 and 15 deg; suction begins at 0")  # fmt: skip
-    def valves_in_order(self) -> Truth:
-        """Inlet opens and exhaust closes within 90° of 720°, inlet closes from 90°, exhaust opens to 630°."""
-        return valves_in_order(self.io, self.ic, self.eo, self.ec)
-
-    @require("cutoff", "compression_ratio", "exhaust_opens", remedy="burn for a shorter time")
-    def burns_in_time(self) -> Truth:
-        """Combustion ends before the exhaust opens."""
-        return burns_before_exhaust(self.gas_cycle, lambda: self.gas)
-
-    @require("combustion_pressure", warning="pressure_falls", remedy="check pressures, ratio and exponent")
-    def pressure_rises(self) -> Truth:
-        """Combustion does not begin below the pressure at the end of compression."""
-        return pressure_rises(self.gas)
-
-    @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
-             remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
-    def crankcase_is_filled(self) -> Truth:
-        """The crankcase of cycles otto, diesel and four_stroke has an absolute pressure above 0."""
-        return crankcase_is_filled(self.gas_cycle, self.p_0)
-
-    @require("pressure", "crankcase_pressure", warning="gauge_or_absolute",
-             remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
-    def pressures_are_of_one_kind(self) -> Truth:
-        """The pressures of the table and of the crankcase are both absolute, or both gauge."""
-        return pressures_are_of_one_kind(self.gas_cycle, self.p_t, self.p_0)
-
-    @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
-    def runs_forwards(self) -> Truth:
-        """The crank angle rises with time."""
-        return (self.omega >= 0) | (self.gas_cycle == "none")
+    @derived("kg*m**2", "rod inertia", symbol="I_3", shown=True, ge=0, absent=NO_INERTIA, source=DYREMI,
+             remedy="no rod swings faster about its wristpin than a point mass at its centre")  # fmt: skip
+    def I_3(self) -> Array:
+        """About its centre of mass."""
+        return pendulum_inertia(self.m_3, self.a_g, self.tau)
 
     @require("crank_mass", "crankpin_mass", "counterweight_mass", warning="massless_crank",
              remedy="give their masses; main loads, balance and inertia are of rods alone")  # fmt: skip
@@ -208,11 +80,6 @@ class Cylinder(Template):
         """Return the levels for which the rod is known well enough."""
         known = not np.isnan(np.asarray(self.I_3)).all()
         return self.levels if known else self.levels[:1]
-
-    @shared
-    def steps(self) -> Array:
-        """Number of steps of a cycle."""
-        return steps_in(self.strokes, self.step)
 
     @formula("mm", "crank radius")
     def r(self) -> Array:
@@ -268,10 +135,8 @@ class Cylinder(Template):
     @shared
     def gas(self) -> GasCycle:
         """Gas cycle of the cylinder."""
-        charge = Charge(self.p_s, self.p_e, self.p_3, self.epsilon, self.rho, self.k_c, self.k_e)
-        valves = Valves(self.io, self.ic, self.eo, self.ec)
         return gas_cycle(
-            self.gas_cycle, self.strokes, self.n, charge, valves, self.theta_p, self.p_t, self.p_0
+            self.gas_cycle, self.strokes, self.n, self.charge, self.valves, self.theta_p, self.p_t, self.p_0
         )
 
     @formula("bar", "indicated mean effective pressure", symbol="p_{mi}",

@@ -19,7 +19,7 @@ from templates.core.language.template import (
     text,
 )
 from templates.physics.orbits.cyclic_film import Duty, cycle_length, largest_load, mean_speed
-from templates.physics.supplied.feeding import Feeding, is_back, supply_kind, within_bearing
+from templates.physics.supplied.supply_geometry import SupplyGeometry, is_back, supply_kind, within_bearing
 
 FED = (
     "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
@@ -37,6 +37,31 @@ WIDTHS = (
     "give bearing_width and bearing_diameter in mm in such a ratio; level mobility_short takes 0.01 … 100"
 )
 PIN_BACK = "give speeds in rpm with which it turns by whole turns in the frame in a cycle"
+EXAMPLE: dict[str, object] = {
+    "load_x": {
+        "value": [
+            -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
+            3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
+        ],
+        "unit": "kN",
+    },
+    "load_y": {
+        "value": [
+            0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
+            0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
+        ],
+        "unit": "kN",
+    },
+    "speed": "3000 rpm",
+    "bearing_diameter": "48 mm",
+    "bearing_width": "18 mm",
+    "diametral_clearance": "0.055 mm",
+    "groove_width": "3 mm",
+    "groove_start": "-90 deg",
+    "groove_extent": "180 deg",
+    "supply_pressure": "4 bar",
+}  # fmt: skip
+"""A big end under the loads of a petrol engine, in 24 steps of its cycle."""
 
 
 class FedBearing(Template):
@@ -153,9 +178,9 @@ class FedBearing(Template):
         return self.W / self.D
 
     @shared
-    def feeding(self) -> Feeding:
+    def feeding(self) -> SupplyGeometry:
         """Groove and holes."""
-        return Feeding(
+        return SupplyGeometry(
             self.D, self.W, self.W_g, self.phi_g, self.ext_g,
             self.l_B, self.a_B, self.phi_B, self.l_J, self.a_J, self.phi_J,
         )  # fmt: skip

@@ -1,7 +1,7 @@
-"""Groups: an oil and its viscosity at a film's temperature; and what gives a film that temperature.
+"""Groups: an oil with its viscosity at the film temperature, and the sources of that temperature.
 
-A template that inherits `Oil` says in `T_film` which temperature its film has [K]; the viscosity follows,
-unless it is given. One that inherits `WarmOil` says instead in `balance` what its heat balance finds.
+A template that inherits `Oil` defines the film temperature in `T_film` [K]; the viscosity follows from it,
+unless it is given. A template that inherits `WarmOil` instead defines its heat balance in `balance`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Oil(Template):
 
     T_film: Array  # a formula of the template: the temperature of its film [K], NaN without one
 
-    grade: str = choice(*grades(), words="oil grade", default="sae_15w_40")
+    grade: str = choice(*grades(), words="oil grade", default="sae_15w_40", assumed="the oil is SAE 15W-40")
     T_1: Array = given("degC", "temperature 1", default="40 degC", ge=-100, le=500)
     T_2: Array = given("degC", "temperature 2", default="100 degC", ge=-100, le=500)
     law: str = choice("walther", "vogel", words="viscosity law", default="walther")

@@ -1,4 +1,4 @@
-"""Group: what steel bears in fatigue, by its ultimate strength and Marin's factors; what a notch counts."""
+"""Group: the fatigue strength of steel, by its ultimate strength, Marin's factors, and notch sensitivity."""
 
 from __future__ import annotations
 
@@ -30,11 +30,13 @@ class SteelEndurance(Template):
 
     sigma_u: Array = given("MPa", "ultimate strength", symbol="S_u", ge=50, le=5000)
     sigma_y: Array = given("MPa", "yield strength", symbol="S_y", alternative=True, gt=0, le=5000)
-    surface: str = choice(*SURFACES, words="surface", default="machined")
+    surface: str = choice(*SURFACES, words="surface", default="machined", assumed="the surface is machined")
     d: Array = given("mm", "diameter", alternative=True, gt=0, le=1e4)
     loading: str = choice(BENDING, AXIAL, words="loading", default=BENDING)
-    R: Array = given("1", "reliability", default=0.5, ge=0.5, le=0.999999)
-    k_m: Array = given("1", "other factors", symbol="k_m", default=1, gt=0, le=1)
+    R: Array = given("1", "reliability", default=0.5, ge=0.5, le=0.999999,
+                     assumed="half of the parts fail earlier")  # fmt: skip
+    k_m: Array = given("1", "other factors", symbol="k_m", default=1, gt=0, le=1,
+                       assumed="nothing else lowers the strength")  # fmt: skip
     N_e: Array = given("1", "knee cycles", symbol="N_e", default=1e6, ge=1e5, le=1e8)
     K_t: Array = given("1", "stress concentration factor", symbol="K_t", alternative=True, ge=1, le=20)
     r: Array = given("mm", "notch radius", alternative=True, gt=0, le=1e4)

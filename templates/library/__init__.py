@@ -1,1 +1,1 @@
-"""Library: bearing materials, oils and surface finishes as cited tables, each value with its source."""
+"""Library: bearing materials, oils and surface finishes as tables, each value with its source."""

@@ -1,4 +1,4 @@
-"""Offer the tables of the library as choices for limits: `"limits": {"bearing_material": "tin_bronze"}`."""
+"""Offer the tables of the library as values for limits: `"limits": {"bearing_material": "tin_bronze"}`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of the library, and what a row of one gives: limits of criteria, or inputs."""
+"""The tables of the library, and the values that their rows give for limits of criteria or for inputs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from templates.core.errors import TemplateError
 from templates.core.units.units import unit
-from templates.library.reading import CitedValue, Row, UnusableTable, read_rows, read_sources
+from templates.library.csv_tables import CitedValue, Row, UnusableTable, read_rows, read_sources
 from templates.physics.journals.oil import MM2_PER_S
 from templates.physics.journals.oil_grades import basis, grades, viscosity_at_40, viscosity_at_100
 

@@ -1,7 +1,8 @@
-"""Heat balance of a journal bearing's film over an engine cycle: its effective viscosity and what follows.
+"""Heat balance of a journal bearing's film over an engine cycle: effective viscosity and dependent results.
 
-Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the temperature
-of the supply give one viscosity; the orbit and the smallest film are those of that viscosity.
+One viscosity follows from the power loss and side flow of the film over the cycle, from the flow that the
+supply pressure drives, and from the supply temperature; the orbit and the smallest film are calculated at
+that viscosity.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from templates.core.language.template import (
     require,
     shared,
 )
-from templates.groups.fed_bearing import FedBearing
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.fed_bearing import EXAMPLE, FedBearing
+from templates.groups.film_assumptions import FULL, PARALLEL, RIGID, SMOOTH
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
     CycleBearing,
@@ -91,7 +93,8 @@ class CycleHeatBalance(Oil, FedBearing):
     that is there in the loss, and leaves the rate as it is.
     A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
-    No error of the model is stated: no measured cycle with all its inputs was at hand.
+    No level states an error: no ensemble against level supplied was made, and no measured cycle with all its
+    inputs was at hand.
 
     References
     ----------
@@ -102,6 +105,7 @@ class CycleHeatBalance(Oil, FedBearing):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, FULL, "the oil has one temperature over the cycle")
     levels = MARCHED_LEVELS
     default_level = "mobility"
     most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500, "supplied": 1}
@@ -109,54 +113,20 @@ class CycleHeatBalance(Oil, FedBearing):
     level_precision = {"supplied": 1e-5}  # its secants end where a march repeats
     example = {
         "crank_angle": {"value": list(range(0, 720, 30)), "unit": "deg"},
-        "load_x": {
-            "value": [
-                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
-                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
-            ],
-            "unit": "kN",
-        },
-        "load_y": {
-            "value": [
-                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
-                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
-            ],
-            "unit": "kN",
-        },
-        "speed": "3000 rpm",
-        "bearing_diameter": "48 mm",
-        "bearing_width": "18 mm",
-        "diametral_clearance": "0.055 mm",
-        "groove_width": "3 mm",
-        "groove_start": "-90 deg",
-        "groove_extent": "180 deg",
-        "supply_pressure": "4 bar",
+        **EXAMPLE,
         "supply_temperature": "90 degC",
         "hths_viscosity": "3.5 mPa*s",
     }  # fmt: skip
     criteria = {
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "own_film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film of the cycle is not thinner than its user permits",
             "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
         },
-        "temperature": {
-            "require": "film_temperature <= permissible_temperature",
-            "words": "the film is no hotter than the bearing material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "film_temperature", "the film is no hotter than the bearing material bears"
+        ),
         "hot_oil": hot_oil("outlet_temperature"),
         "temperature_rise": {
             "require": "temperature_rise <= permissible_temperature_rise",
@@ -174,7 +144,7 @@ class CycleHeatBalance(Oil, FedBearing):
     rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
     k: Array = given("1", "heat share", default="1", ge=0, le=1)
     eta_H: Array = given("mPa*s", "HTHS viscosity", symbol=r"\eta_\mathrm{HTHS}", name="hths_viscosity",
-                         alternative=True, gt=0)  # fmt: skip
+                         alternative=True, gt=0, assumed="shear does not thin the oil")  # fmt: skip
     r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
     n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
 

@@ -1,7 +1,7 @@
-"""Oil film of a journal bearing under static load whose liner, bore and oil give way to the pressure.
+"""Oil film of a journal bearing under static load whose liner, bore and oil yield to the pressure.
 
-A plain, aligned bearing: rigid; with its liner as columns; with its housing as a thick ring; with its bore by
-the compliance of a drawn housing or rod.
+The plain, aligned bearing is rigid, or has its liner as columns, its housing as a thick ring, or the bore
+compliance of a drawn housing or rod.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from templates.core.language.template import (
     table,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, SMOOTH
 from templates.groups.journal import ISO, Journal
 from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import Oil
@@ -70,7 +71,8 @@ class ElasticFilm(Oil, Journal):
     Static load, laminar and isothermal film, fed along its widest gap; no grooves, no supply pressure.
     Level rigid, the default, is level map of oil_film 2 and 3. What elasticity changes is solved on meshes of
     64 x 8 and 128 x 16 intervals, stiff and soft, and the change is extrapolated and applied to that film.
-    mesh_error is the change of the smallest film between the two meshes, an estimate.
+    mesh_error is the change of the smallest film between the two meshes, an estimate. No level states an
+    error: rigid leaves out what gives way, and the soft levels were not compared with a finer solution.
     Level liner: a bonded layer on a rigid back, each column for itself. It holds for a layer that is thin
     beside the length of the pressed zone; near Poisson's ratio 1/2 a layer is softer than its columns.
     Level housing: the liner, and behind it a ring in plane strain, free outside. It feels the mean of the
@@ -107,6 +109,7 @@ class ElasticFilm(Oil, Journal):
     DIN 31652:1983, ISO 7902:1998, for the rigid film.
     """
 
+    assumptions = (PARALLEL, SMOOTH, ISOTHERMAL)
     levels = ALL_LEVELS
     default_level = RIGID
     most_points = {"rigid": 5_000, "liner": 100, "housing": 50, "elastic": 20}

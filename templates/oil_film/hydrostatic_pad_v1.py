@@ -1,6 +1,6 @@
 """Hydrostatic pad: a circular or annular step pad with a recess, fed by a pump (MEC 315).
 
-The pump lifts the load at any speed, and at rest: the film follows from the load, the lands and the
+The pump lifts the load at any speed, even at rest: the film follows from the load, the lands and the
 restrictor. Closed forms; laminar, isothermal, incompressible, parallel rigid faces, a deep recess.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, choice, formula, given, require
+from templates.groups.film_criteria import film_exists
 from templates.physics.pads.hydrostatic import (
     CAPILLARY,
     CONSTANT_FLOW,
@@ -60,6 +61,7 @@ class HydrostaticPad(Template):
     Course MEC 315, hydrodynamic and hydrostatic lubrication.
     """
 
+    assumptions = ("the faces are parallel, rigid and smooth", "the oil does not thin as it warms")
     example = {
         "load": "60 kN",
         "outer_diameter": "100 mm",
@@ -82,12 +84,7 @@ class HydrostaticPad(Template):
                 }
             },
         },
-        "film_exists": {
-            "require": "film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists("film_thickness"),
         "stiffness": {
             "require": "stiffness >= smallest_stiffness",
             "words": "the pad is as stiff as its user wants it",
@@ -109,7 +106,7 @@ class HydrostaticPad(Template):
             "require": "temperature_rise <= 60 K",
             "words": "oil supplied at 40 degC leaves at 100 degC at most; it is much thinner there",
             "source": "ISO 7902-3, 100 degC as the general limit with pressure feed, as textbooks quote it",
-            "unverified": "no public copy of ISO 7902-3 was at hand",
+            "unverified": "customary, source not verified: no public copy of ISO 7902-3 was at hand",
             "warning": "oil_too_hot",
         },
     }
@@ -257,7 +254,7 @@ class HydrostaticPad(Template):
     def eta_P(self) -> Array:
         return self.eta * (1 / self.K) ** (1 / 2)
 
-    @formula("cm**2", "pad area", symbol="A")
+    @formula("cm**2", "pad area", symbol="A", gt=0)
     def A(self) -> Array:
         return pad_area(self.D, self.d)
 

@@ -1,7 +1,8 @@
-"""Mixed friction of a journal bearing: film and roughness share the load; friction over speed (Stribeck).
+"""Mixed friction of a journal bearing: film and roughness share the load; the Stribeck curve.
 
-The roughness of both faces bears what the film does not. At low speed that is all, and friction is that of
-the contact; at high speed nothing, and friction is the oil's; between them lies the curve's lowest point.
+The rough faces carry the share of the load that the film does not. At low speed they carry all of it, and the
+contact causes the friction; at high speed they carry nothing, and the oil causes it. In between, the curve
+has its minimum.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from templates.core.language.template import (
     shared,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import film_parameter, regime_of_contact
 from templates.physics.journals.mixed_journal import (
@@ -93,6 +95,7 @@ class MixedFriction(Oil):
     ISO 7902-1:1998, for the transition.
     """
 
+    assumptions = (RIGID, PARALLEL, ISOTHERMAL)
     levels = LEVELS
     default_level = MAP
     most_points = {"map": 5_000, "averaged": 100}
@@ -170,6 +173,12 @@ class MixedFriction(Oil):
     def clearance_within_bearing(self) -> Truth:
         """The diametral clearance is smaller than the bearing diameter."""
         return self.c < self.D
+
+    @require("journal_roughness", "bearing_roughness", "diametral_clearance",
+             remedy="check the unit of the roughness, in um")  # fmt: skip
+    def roughness_within_clearance(self) -> Truth:
+        """The radial clearance is three times the composite roughness at least; else no film is full."""
+        return self.c / 2 >= FULL_FILM * self.sigma
 
     @formula("um", "composite roughness", symbol=r"\sigma")
     def sigma(self) -> Array:

@@ -1,6 +1,6 @@
-"""Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at five levels.
+"""Oil film of a journal bearing under a periodic load, fed by grooves and holes, at five levels.
 
-The orbit of the journal, the smallest film and where in the cycle it is, pressure, loss and flow.
+Results are the orbit of the journal, the smallest film and its crank angle, pressure, power loss and flow.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from templates.core.language.template import (
     shared,
     text,
 )
-from templates.groups.fed_bearing import FedBearing
+from templates.groups.fed_bearing import EXAMPLE, FedBearing
+from templates.groups.film_assumptions import FULL, ISOTHERMAL, PARALLEL, RIGID, SMOOTH
+from templates.groups.film_criteria import ISOVISCOUS, film_exists
 from templates.physics.elastic.elastic_journal import deflection_in_steel
 from templates.physics.numerics.reserve import above, below
-from templates.physics.orbits.cyclic_film import CycleFilm, Duty
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty, LoadCourse, load_course
 from templates.physics.pads.slider_film import spread
 from templates.physics.supplied.fed_cycle import (
     BOUNDARY,
@@ -32,7 +34,7 @@ from templates.physics.supplied.fed_cycle import (
     fed_film,
     fed_orbit,
 )
-from templates.physics.supplied.feeding import feed_under_load, supply_kind
+from templates.physics.supplied.supply_geometry import feed_under_load, sleeve_motion, supply_kind
 
 BOOKER = "Booker 1965"
 ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
@@ -53,7 +55,7 @@ OUTSIDE = (
 SUPPLIED_ONLY = "level supplied alone follows the oil that is fed; a starved film has no flow that repeats"
 MARCHED_ONLY = "levels flooded and supplied alone are marched in time"
 UNKNOWN_STEP = (
-    "no film repeats, or the gap changes too much from ring to ring to read an error from it; that of level "
+    "no film repeats, or none on a coarser ring of crank angles from which to read an error; that of level "
     "flooded is not known"
 )
 MARCH_IT = "take level supplied"
@@ -119,12 +121,14 @@ class OilFilmCycle(FedBearing):
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl in an orbit of any size.
     Two errors are stated. numerical_error, an output, bounds the error of the smallest film by the step, from
-    orbits on three rings of crank angles. At level supplied it bounds that by mesh, step and cycle: from the
-    change between the last two meshes, and from cycle to cycle. At level flooded it is null.
+    orbits on rings of crank angles. At level supplied it bounds that by mesh, step and cycle: from the change
+    between the last two meshes, and from cycle to cycle. At level flooded it is null.
     The error in the answer is that against the rigid film of level supplied. Level supplied states its
     numerical errors. Of the mobility levels it is a one-sided bound from random duties of the same kind of
-    supply. It is null where fewer than 59 duties support it, where it failed on fresh duties, where no or
-    several inlets are given, for pressures and at level flooded.
+    supply, with a sleeve that is fixed or swings, as a power law of the duty. It is null where fewer than 59
+    duties support it, beyond the range of these, where it failed on other duties, where no or several inlets
+    are given, for a hole that is under the load for more than a tenth of the cycle, for pressures, curves and
+    side flow, and at level flooded.
 
     References
     ----------
@@ -134,6 +138,7 @@ class OilFilmCycle(FedBearing):
     Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH, ISOTHERMAL, FULL)
     levels = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied")
     default_level = "mobility"
     most_points = {
@@ -144,41 +149,15 @@ class OilFilmCycle(FedBearing):
     level_precision = {"supplied": 1e-6}  # its numerical_error is a small difference of films
     example = {
         "crank_angle": {"value": [15.0 * k for k in range(24)], "unit": "deg"},
-        "load_x": {
-            "value": [
-                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
-                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
-            ],
-            "unit": "kN",
-        },
-        "load_y": {
-            "value": [
-                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
-                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
-            ],
-            "unit": "kN",
-        },
-        "speed": "3000 rpm",
-        "bearing_diameter": "48 mm",
-        "bearing_width": "18 mm",
-        "diametral_clearance": "0.055 mm",
+        **EXAMPLE,
         "dynamic_viscosity": "10 mPa*s",
-        "groove_width": "3 mm",
-        "groove_start": "-90 deg",
-        "groove_extent": "180 deg",
-        "supply_pressure": "4 bar",
     }  # fmt: skip
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film of the cycle is not thinner than the permissible one",
         },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "pressure": {
             "require": "maximum_pressure <= permissible_pressure",
             "words": "the largest pressure of the cycle is within the permissible one",
@@ -189,12 +168,7 @@ class OilFilmCycle(FedBearing):
             "source": "an estimate of the deflection at the largest pressure; see the limits",
             "warning": "elasticity_left_out",
         },
-        "isoviscous": {
-            "require": "maximum_pressure <= 500 MPa",
-            "words": "the pressure does not make the oil thousands of times thicker",
-            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
-            "warning": "pressure_thickens_oil",
-        },
+        "isoviscous": ISOVISCOUS,
         "specific_load": {
             "require": "largest_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
             "words": "the largest load over bore times width is within the static limit of the material",
@@ -272,10 +246,36 @@ class OilFilmCycle(FedBearing):
         return self.orbit.march_error(output)
 
     def measured_case(self) -> str:
-        """The kind of supply; none of pressures and holes beyond those of the duties that were marched."""
-        kind = supply_kind(self.feeding)
-        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1))
-        return kind if marched and (kind.endswith("groove") or np.all(self.under_load <= 0.1)) else ""
+        """The kind of supply and the motion of the sleeve; none beyond the duties that were marched."""
+        kind, motion = supply_kind(self.feeding), sleeve_motion(self.motion)
+        marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1)) and motion
+        placed = kind.endswith("groove") or np.all(self.under_load <= 0.1)
+        return f"{kind}, {motion}" if marched and placed else ""
+
+    @shared
+    def course(self) -> LoadCourse:
+        """How the load varies over the cycle."""
+        return load_course(self.theta, self.F_x, self.F_y)
+
+    @shared
+    def peak(self) -> Array:
+        """Largest over mean load, on which the errors of the mobility levels depend."""
+        return self.course.peak
+
+    @shared
+    def turns(self) -> Array:
+        """What the load's direction varies by: 0.05 where it is constant, 1.05 at most; likewise."""
+        return 1.05 - self.course.steadiness
+
+    @shared
+    def whirls(self) -> Array:
+        """What part of the cycle the load turns at about half the crank's speed, and 0.05; likewise."""
+        return 0.05 + self.course.at_half_speed
+
+    @shared
+    def wide(self) -> Array:
+        """B/D over 0.5, or 1 for a narrower bearing; likewise."""
+        return np.maximum(self.b / 0.5, 1.0)
 
     @formula("1/N", "load scale", symbol="s")
     def s(self) -> Array:
@@ -413,7 +413,7 @@ class OilFilmCycle(FedBearing):
         return self.Q
 
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
-             latex=r"\text{from three rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
+             latex=r"\text{from rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
     def numerical_error(self) -> Array:
         """Relative error of the smallest film, without the error of the model."""
         return self.orbit.numerical_error

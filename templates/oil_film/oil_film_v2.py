@@ -1,7 +1,7 @@
 """Oil film of a journal bearing under static load: any bore, aligned or not, at five levels of fidelity.
 
 One bearing and one interface, from Ocvirk's closed form for a plain bore to a mass-conserving solution for
-lobes, bell mouths and a tilted journal; each answer says by which level, and how far off it may be.
+lobes, bell mouths and a tilted journal; each answer states its level and its error.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from templates.core.language.template import (
     table,
     text,
 )
+from templates.groups.film_assumptions import ISOTHERMAL, RIGID
 from templates.groups.journal import ISO, Journal
 from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import WarmOil
-from templates.physics.journals.heat_balance import HeatBalance, Running, heat_balance
+from templates.physics.journals.heat_balance import HeatBalance, OperatingPoint, heat_balance
 from templates.physics.journals.journal_coefficients import Linear
 from templates.physics.journals.journal_motion import mass_of_weight, whirl_speed
 from templates.physics.journals.lubrication_regime import (
@@ -149,6 +150,7 @@ class OilFilm(WarmOil, Journal):
     Lubrication, 1966, for the viscosity; SAE J300 and ISO 3448 for the grades.
     """
 
+    assumptions = (RIGID, ISOTHERMAL)
     levels = ("short_bearing", "fit", "map", "reynolds", "mass_conserving")
     default_level = "map"
     most_points = {"reynolds": 100, "mass_conserving": 20}
@@ -176,11 +178,13 @@ class OilFilm(WarmOil, Journal):
     phi_l: Array = given("deg", "lobe angle", symbol=r"\varphi_{l}", default="0 deg", ge=-360, le=720)
     s_m: Array = given("um", "bell mouth depth", default="0 um", ge=0)
     l_m: Array = given("mm", "bell mouth length", default="0 mm", ge=0)
-    tilt_x: Array = given("mrad", "tilt along load", symbol=r"\gamma_{x}", default="0 mrad")
-    tilt_y: Array = given("mrad", "tilt across load", symbol=r"\gamma_{y}", default="0 mrad")
+    tilt_x: Array = given("mrad", "tilt along load", symbol=r"\gamma_{x}", default="0 mrad",
+                          assumed="the journal does not tilt along the load")  # fmt: skip
+    tilt_y: Array = given("mrad", "tilt across load", symbol=r"\gamma_{y}", default="0 mrad",
+                          assumed="the journal does not tilt across the load")  # fmt: skip
     start_line: str = choice(*START_LINES, words="start line", default="fixed")
-    R_J: Array = given("um", "journal roughness", optional=True, ge=0)
-    R_B: Array = given("um", "bearing roughness", optional=True, ge=0)
+    R_J: Array = given("um", "journal roughness", optional=True, ge=0, assumed="the journal is smooth")
+    R_B: Array = given("um", "bearing roughness", optional=True, ge=0, assumed="the bore is smooth")
 
     @derived("1", "lobe offset", symbol=r"\alpha_{l}", ge=0, le=1)
     def alpha(self) -> Array:
@@ -287,7 +291,7 @@ class OilFilm(WarmOil, Journal):
     def balance(self) -> HeatBalance:
         """The heat balance, if one is requested."""
         return heat_balance(
-            Running(
+            OperatingPoint(
                 F=self.F, D=self.D, W=self.W, psi=self.psi, omega_m=self.omega_h, omega_s=self.omega_s,
                 A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V), b=self.b_V, offset=self.c_V,
                 eta=self.as_given("eta"), rho_ref=self.rho_ref, T_ref=self.T_ref,

@@ -1,6 +1,7 @@
-"""Oil film of a journal bearing under static load, with a temperature at every place.
+"""Oil film of a journal bearing under static load, with a varying temperature in the film.
 
-Dowson's generalised Reynolds equation with the energy equation, and beside it what one temperature gives.
+Dowson's generalised Reynolds equation is solved with the energy equation; a solution with one temperature is
+given for comparison.
 """
 
 from __future__ import annotations
@@ -8,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_assumptions import PARALLEL, RIGID, SMOOTH
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import friction_coefficient
 from templates.physics.journals.oil import by_law
@@ -73,6 +75,7 @@ class ThermalFilm(Oil, Template):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
 
+    assumptions = (RIGID, PARALLEL, SMOOTH)
     levels = LEVELS
     default_level = ONE
     most_points = {"field": 40, "fine_field": 15}
@@ -91,12 +94,7 @@ class ThermalFilm(Oil, Template):
         "ambient_temperature": "40 degC",
     }
     criteria = {
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "own_film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film is not thinner than its user permits",
@@ -113,17 +111,9 @@ class ThermalFilm(Oil, Template):
                 }
             },
         },
-        "temperature": {
-            "require": "greatest_bush_temperature <= permissible_temperature",
-            "words": "the bush is no hotter than its material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "greatest_bush_temperature", "the bush is no hotter than its material bears"
+        ),
         "oil_temperature": {
             "require": "greatest_film_temperature <= permissible_oil_temperature",
             "words": "the film is nowhere hotter than the oil bears",
@@ -149,7 +139,8 @@ class ThermalFilm(Oil, Template):
     W: Array = given("mm", "bearing width", gt=0)
     omega: Array = given("rpm", "speed", symbol=r"\omega", gt=0, also=("journal speed",))
     T_film: Array = given("degC", "supply temperature", symbol="T_{s}", ge=-50, le=300)
-    p_s: Array = given("bar", "supply pressure", default="1 bar", ge=0)
+    p_s: Array = given("bar", "supply pressure", default="1 bar", ge=0,
+                       assumed="the groove is fed with 1 bar")  # fmt: skip
     phi_g: Array = given("deg", "groove angle", symbol=r"\varphi_{g}", default="180 deg", ge=-360, le=360)
     ext_g: Array = given("deg", "groove width", symbol=r"\Delta\varphi_{g}", default="20 deg", ge=2, le=90)
     l_g: Array = given("1", "groove length ratio", symbol="l_{g}", default="0.8", ge=0.2, le=0.95)

@@ -1,7 +1,8 @@
 """Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
 
-The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
-Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+The film follows from the load, and its temperature from the friction heat that the oil carries off. The film
+is isothermal with an effective viscosity, incompressible and laminar; faces are rigid, and the pressure
+around the pads is ambient.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Truth, formula, given, require, shared
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_assumptions import ISOTHERMAL
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.journals.oil import by_law, viscosity_at
 from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_collar
@@ -52,6 +54,7 @@ class ThrustBearing(Oil):
 
     precision = 1e-8
 
+    assumptions = (ISOTHERMAL, "pads and collar are rigid and smooth", "every pad bears its share")
     example = {
         "load": "20 kN",
         "outer_diameter": "200 mm",
@@ -73,12 +76,7 @@ class ThrustBearing(Oil):
                 }
             },
         },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "specific_load": {
             "require": "specific_load <= permissible_specific_load",
             "words": "the load over the area of the pads is within what the bearing material bears",
@@ -90,17 +88,9 @@ class ThrustBearing(Oil):
                 }
             },
         },
-        "temperature": {
-            "require": "outlet_temperature <= permissible_temperature",
-            "words": "the oil at the outlet is no hotter than the bearing material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "outlet_temperature", "the oil at the outlet is no hotter than the bearing material bears"
+        ),
         "hot_oil": hot_oil("outlet_temperature"),
         "laminar": {
             "require": "film_reynolds_number <= 1000",

@@ -1,7 +1,8 @@
-"""Torsional stiffness of a crank throw from its drawing's dimensions, after Carter and after Ker Wilson.
+"""Torsional stiffness of a crank throw from its drawn dimensions, after Carter and after Ker Wilson.
 
-From mid-journal to mid-journal, for a first layout and as a check of finite elements. Fits to tests of
-common proportions; fillets, oil holes, counterweights and the shape of the web are not in them.
+The stiffness is from mid-journal to mid-journal, for a first layout and as a check of finite elements. Both
+formulas are fitted to tests of common proportions; they ignore fillets, oil holes, counterweights and the
+shape of the web.
 """
 
 from __future__ import annotations
@@ -89,12 +90,12 @@ class CrankStiffness(Template):
 
     L_j: Array = given("mm", "journal length", gt=0)
     D_j: Array = given("mm", "journal diameter", gt=0)
-    d_j: Array = given("mm", "journal bore", default="0 mm", ge=0)
+    d_j: Array = given("mm", "journal bore", default="0 mm", ge=0, assumed="the journal is solid")
     L_w: Array = given("mm", "web thickness", gt=0)
     W: Array = given("mm", "web width", gt=0)
     L_c: Array = given("mm", "pin length", gt=0)
     D_c: Array = given("mm", "pin diameter", gt=0)
-    d_c: Array = given("mm", "pin bore", default="0 mm", ge=0)
+    d_c: Array = given("mm", "pin bore", default="0 mm", ge=0, assumed="the pin is solid")
     R: Array = given("mm", "throw", gt=0, also=("crank radius",))
     G: Array = given("GPa", "shear modulus", gt=0)
     K_0: Array = given("N*m/rad", "reference stiffness", optional=True, gt=0)

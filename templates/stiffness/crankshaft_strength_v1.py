@@ -1,7 +1,8 @@
 """Fatigue strength of a crankshaft at its fillets and oil bores, by IACS UR M53.
 
-For the endurance limit of a life under the cycle, where a factor for a plain specimen does not do: the rule
-holds the size of the shaft, how it is made, and the support that a small fillet gives itself.
+It gives the endurance limit for a life under the engine cycle, where a factor for a plain specimen is not
+sufficient: the rule includes the size of the shaft, its manufacture, and the support effect of a small
+fillet.
 """
 
 from __future__ import annotations
@@ -64,7 +65,8 @@ class CrankshaftStrength(Template):
         return self.R_H
 
     D_o: Array = given("mm", "oil bore", symbol="D_o", optional=True, ge=4, le=500, remedy=SMALLEST)
-    manufacture: str = choice(*MANUFACTURES, words="manufacture", default="free_form_forged")
+    manufacture: str = choice(*MANUFACTURES, words="manufacture", default="free_form_forged",
+                              assumed="the shaft is free-form forged")  # fmt: skip
 
     @formula("1", "manufacture factor", symbol="K", source=M53)
     def K(self) -> Array:

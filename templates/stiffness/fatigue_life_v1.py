@@ -1,7 +1,7 @@
-"""Life under the engine's cycle: tensors of unit loads superposed, cycles counted, damage summed.
+"""Life under the engine cycle: superposed tensors of unit loads, counted cycles, summed damage.
 
-For the fillets of a crank, and for any part whose stresses under unit loads are known: by finite elements, or
-measured. Elastic throughout.
+For the fillets of a crank, and for any part whose stresses under unit loads are known from finite elements or
+measurements. All stresses are elastic.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from templates.physics.fatigue.damage import (
     RAINFLOW,
     SIGNED,
     YES,
-    Counted,
+    CycleCounts,
     compression_used,
     counted_cycles,
     damages,
@@ -239,7 +239,7 @@ class FatigueLife(SteelEndurance):
         return superposed(self.loads, self.stresses)
 
     @shared
-    def counted(self) -> Counted:
+    def counted(self) -> CycleCounts:
         """Cycles of every point."""
         return counted_cycles(self.history, self.criterion, self.level, self.k_F, self.credit)
 

@@ -1,4 +1,4 @@
-"""Forced torsional vibration of an engine's train: torque, twist, stress of every shaft over the speeds.
+"""Forced torsional vibration of an engine's train: torque, twist and stress of every shaft over the speeds.
 
 Inertias, shafts, branches, gears, dampers and a propeller, excited by gas and inertia torque of cylinders.
 """

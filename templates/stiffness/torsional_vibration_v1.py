@@ -1,7 +1,7 @@
 """Torsional vibration of a chain of inertias: natural frequencies, mode shapes, critical speeds.
 
-For the free, undamped vibration of a crankshaft or drive line as a row of inertias joined by massless
-shafts. It shows where resonances lie, not how high they are.
+The free, undamped vibration of a crankshaft or drive line is that of a row of inertias joined by massless
+shafts. It shows where resonances are, not how high.
 """
 
 from __future__ import annotations

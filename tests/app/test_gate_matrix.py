@@ -50,6 +50,7 @@ READS = {  # by POST: nothing of a design or a worksheet changes
     "POST /api/v1/designs/{id}/tolerance",
     "POST /api/v1/verify",
     "POST /tables",
+    "POST /verdicts",
 }
 CHECKS = {
     f"POST {place}/worksheets/{{id}}/{step}"
@@ -139,9 +140,9 @@ def test_the_gate_sees_all_routes_that_fastapi_serves():
 
 
 def test_no_route_of_an_app_is_left_unguarded():
-    from app.http.access import Guarded
+    from app.http.access import RoleGuard
 
-    unguarded = [path for _, path, route in ROUTES if not isinstance(route.handle, Guarded)]
+    unguarded = [path for _, path, route in ROUTES if not isinstance(route.handle, RoleGuard)]
     assert unguarded == []
-    assert isinstance(APP.router.default, Guarded)
+    assert isinstance(APP.router.default, RoleGuard)
     assert any(isinstance(route, Mount) for _, _, route in ROUTES)

@@ -123,7 +123,7 @@ def test_an_offset_is_added_to_the_angles_in_their_own_unit():
         assert read.texts == {}
         assert words in read.faults[0]
     loads = PastedTable(text="load x [kN]\n1\n2\n", fields=FIELDS, offset="10 deg")
-    assert "no column of crank angles" in paste(loads).faults[0]
+    assert "no column holds crank angles" in paste(loads).faults[0]
 
 
 def test_a_column_needs_a_unit_that_fits_its_field():

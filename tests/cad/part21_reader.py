@@ -25,7 +25,10 @@ class Ref:
 
 @dataclass(frozen=True)
 class Dimension:
-    """A toleranced dimension, and the surfaces on each of its sides by keyword and radius."""
+    """A toleranced dimension, and the surfaces on each of its sides by keyword and radius.
+
+    `places` are these surfaces with a point and a direction: of a plane its normal, else the axis.
+    """
 
     name: str
     kind: str
@@ -33,6 +36,7 @@ class Dimension:
     lower: float
     upper: float
     sides: tuple[frozenset[tuple[str, float]], ...]
+    places: tuple[tuple[tuple, ...], ...] = ()
 
 
 def parsed(body):
@@ -105,12 +109,14 @@ class File:
             ((keyword, arguments),) = self.entities[dimension.number].items()
             kind = next(a for a in arguments if type(a) is str)
             aspects = [a for a in arguments if isinstance(a, Ref)]
-            sides = tuple(self.surfaces(aspect) for aspect in aspects)
+            faces = [self.faces(aspect) for aspect in aspects]
+            sides = tuple(frozenset(map(self.surface, some)) for some in faces)
+            places = tuple(tuple(map(self.place, some)) for some in faces)
             assert len(sides) == (1 if keyword == "DIMENSIONAL_SIZE" else 2)
-            yield Dimension(name, kind, self.measure(item), lower, upper, sides)
+            yield Dimension(name, kind, self.measure(item), lower, upper, sides, places)
 
-    def surfaces(self, aspect):
-        """The surfaces of the faces of a shape aspect, or of the aspects of which it is composed."""
+    def faces(self, aspect):
+        """The faces of a shape aspect, or of the aspects of which it is composed."""
         members = {aspect}
         for number in self.of["SHAPE_ASPECT_RELATIONSHIP"]:
             one, other = self.entities[number]["SHAPE_ASPECT_RELATIONSHIP"][2:]
@@ -121,11 +127,23 @@ class File:
             if (arguments := self.entities[number]["GEOMETRIC_ITEM_SPECIFIC_USAGE"])[2] in members
         ]
         assert faces, "an aspect of no face"
-        return frozenset(self.surface(face) for face in faces)
+        return faces
 
     def surface(self, face):
         ((keyword, arguments),) = self.entities[self.get(face, "ADVANCED_FACE")[2].number].items()
         return keyword, arguments[2] if keyword in ("CYLINDRICAL_SURFACE", "SPHERICAL_SURFACE") else 0.0
+
+    def place(self, face):
+        """The keyword of the surface of a face, a point of it or its axis, its normal or axis, its radius."""
+        keyword, radius = self.surface(face)
+        ((_, arguments),) = self.entities[self.get(face, "ADVANCED_FACE")[2].number].items()
+        point, axis, _ = self.get(arguments[1], "AXIS2_PLACEMENT_3D")[1:]
+        return (
+            keyword,
+            tuple(self.get(point, "CARTESIAN_POINT")[1]),
+            tuple(self.get(axis, "DIRECTION")[1]),
+            radius,
+        )
 
     def tolerances(self):
         """Name, kind, width and datums of every geometric tolerance."""

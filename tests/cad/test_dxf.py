@@ -20,9 +20,10 @@ from cad.drafting.parameter_match import matched
 from cad.drafting.views import views
 from cad.export import derive
 from cad.header import read_header
-from cad.inspect import bounding_box
+from cad.inspect import bounding_box, look_at
 from cad.regenerate import Build, as_text, regenerate_class
 from cad.step import read_step
+from cad.surfaces import Z
 from templates.core.units.units import unit
 
 SHEETS = {
@@ -155,12 +156,14 @@ def bare(**given: str) -> Build:
     return regenerate_class(model, as_text(model.from_quantities({**BUSH, **given})))
 
 
-def test_a_size_is_matched_by_value_and_by_sort() -> None:
+def test_a_size_is_matched_by_the_faces_that_carry_it() -> None:
     build = bare(inner_diameter="40 mm", width="40 mm")
     bodies = read_step(build.step)
-    result, unseen = matched(
-        {"width": "40 mm", "inner_diameter": "40 mm", "wall": "7 mm"}, measures(bodies, *views(bodies))
-    )
+    seen = look_at(bodies)
+    part = seen["full_back"]
+    sizes = {"width": part.length(Z), "inner_diameter": part.diameters(Z)[0]}
+    texts = {"width": "40 mm", "inner_diameter": "40 mm", "wall": "7 mm"}
+    result, unseen = matched(texts, sizes, measures(bodies, seen, *views(bodies)), {})
     sorts = {one.name: one.measure.sort for one in result}
     assert sorts == {"width": "length", "inner_diameter": "diameter"}
     assert unseen == ["wall"]

@@ -9,6 +9,7 @@ from cad.drafting.parameter_match import matched
 from cad.regenerate import Build, as_text, regenerate, regenerate_class
 from cad.shells.spread import half_angle
 from cad.step import read_step
+from cad.surfaces import Place, Size
 from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice
 
@@ -126,7 +127,11 @@ def test_the_default_tang_keeps_off_the_sides_of_the_groove() -> None:
 
 def test_a_drawing_gives_the_spread_as_a_parameter_and_not_as_another_length() -> None:
     """The lining of the example is as thick as its spread."""
-    measures = [Measure("gap", 0.6, "section", "aligned", ((0.0, 0.0), (0.0, 0.6)))]
-    matches, unseen = matched({"lining_thickness": "0.6 mm", "free_spread": "0.6 mm"}, measures)
+    bore, back = ("upper_lining", 0), ("upper_lining", 1)
+    ends = ((0.0, 0.0), (0.0, 0.6))
+    measure = Measure("gap", 0.6, "section", "aligned", ends, 1, frozenset({bore}), frozenset({back}))
+    sizes = {"lining_thickness": Size(0.6, "distance", Place((bore,), (back,)))}
+    texts = {"lining_thickness": "0.6 mm", "free_spread": "0.6 mm"}
+    matches, unseen = matched(texts, sizes, [measure], {})
     assert [match.name for match in matches] == ["lining_thickness"]
     assert unseen == ["free_spread"]

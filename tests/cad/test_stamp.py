@@ -15,7 +15,7 @@ from seeds import examples
 from cad.catalogue import models
 from cad.drafting.letter_width import clipped, width_of
 from cad.export import derive
-from cad.file_names import plain_name, stem, wide_stem
+from cad.file_names import name, plain_name, stem, wide_stem
 from cad.header import Header
 from cad.model import Part
 from cad.part21 import end_of_string, plain, quoted
@@ -56,7 +56,7 @@ def test_the_kernel_reads_the_product_back(shell, design):
     step = stamped(shell, "step", stamp(design))
     assert step.isascii()
     (body,) = read_step(step)
-    assert body.name == wide_stem(design, "shell", 3)
+    assert body.name == f"{name(design)}_shell"
     assert body.shape.isValid()
     text = step.decode()
     start = text.index("'design ")
@@ -65,11 +65,33 @@ def test_the_kernel_reads_the_product_back(shell, design):
     assert not is_copy(shell, step.replace(b"PRODUCT(", b"PRODUKT(", 1))
 
 
+def test_the_product_keeps_its_id_from_revision_to_revision_and_rows_differ(shell):
+    one = stamp("435 cc")
+    products = {}
+    for key, each in {
+        "first": one,
+        "next": replace(one, revision=4),
+        "row": replace(one, variant="main_2"),
+        "numbered": replace(one, number="PN-100", mark="C"),
+    }.items():
+        text = stamped(shell, "step", each).decode()
+        (id,) = re.findall(r"= PRODUCT\(\s*'([^']*)'", text)
+        (version,) = re.findall(r"PRODUCT_DEFINITION_FORMATION\(\s*'([^']*)'", text)
+        products[key] = id, version
+    assert products == {
+        "first": ("435_cc_shell", "3"),
+        "next": ("435_cc_shell", "4"),
+        "row": ("435_cc_main_2", "3"),
+        "numbered": ("PN-100", "C"),
+    }
+    assert "mass 0.125 kg" in stamped(shell, "step", replace(one, mass=0.125)).decode()
+
+
 @settings(max_examples=examples(25), deadline=None)
 @given(st.text("ab'\\,;)(# X204µ轴/*🔩", min_size=1, max_size=30))
 def test_property_the_kernel_reads_odd_names(shell, design):
     (body,) = read_step(stamped(shell, "step", stamp(design)))
-    assert body.name == wide_stem(design, "shell", 3)
+    assert body.name == f"{name(design)}_shell"
     assert plain(quoted(design)) == design
 
 
@@ -173,10 +195,10 @@ def test_fields_of_a_title_block(drawings):
 @settings(max_examples=examples(200), deadline=None)
 @given(NAME)
 def test_property_names_of_files_are_safe(design):
-    for name in (stem(design, "model", 1), wide_stem(design, "model", 1)):
-        assert len(f"{name}.drawing.svg.part".encode()) <= 255
-        assert not set(name) & set('/\\\0"*?<>|:\r\n')
-        assert not name.startswith((".", "-"))
+    for each in (stem(design, "model", 1), wide_stem(design, "model", 1)):
+        assert len(f"{each}.drawing.svg.part".encode()) <= 255
+        assert not set(each) & set('/\\\0"*?<>|:\r\n')
+        assert not each.startswith((".", "-"))
     assert stem(design, "model", 1).isascii()
     assert plain_name(plain_name(design)) == plain_name(design)
 

@@ -6,7 +6,7 @@ from scipy.sparse import csc_array, diags_array, random_array
 
 from templates.physics.cavities.cavitating_film import measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
-from templates.physics.cavities.column_scaled import ColumnScaledSum
+from templates.physics.cavities.scaled_sum import ColumnScaledSum
 
 
 @pytest.mark.parametrize("seed", range(5))

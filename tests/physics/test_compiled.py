@@ -7,7 +7,7 @@ import numba
 import pytest
 
 SOURCE = '''
-from templates.physics.numerics.compiled import compiled
+from templates.physics.numerics.machine_code import compiled
 
 @compiled
 def doubled(x: float) -> float:

@@ -13,12 +13,12 @@ from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.orbits.cyclic_film import Duty
 from templates.physics.orbits.grooved_mobility import Groove
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.turning import turning
-from templates.physics.supplied.feeding import Feeding, feed_under_load
+from templates.physics.orbits.rotation import turning
 from templates.physics.supplied.supplied_march import Duty as FilmDuty
 from templates.physics.supplied.supplied_mesh import supplied_mesh
 from templates.physics.supplied.supplied_orbit import under_load
 from templates.physics.supplied.supply import Pocket, Supply
+from templates.physics.supplied.supply_geometry import SupplyGeometry, feed_under_load
 
 D, PSI, ETA, OMEGA, RATIO = 0.1, 1e-3, 0.02, 300.0, 0.5
 COUNT = 24
@@ -82,7 +82,7 @@ def test_analytic_a_hole_in_a_pin_at_half_speed_stays_under_a_load_that_turns_wi
     """The pin turns once in a cycle of two turns of the crank. At the crank's own speed it lies within 60° of
     the load for a third of that cycle."""
     angle, none = np.radians(np.arange(0, 720, 5.0)), np.array(np.nan)
-    hole = Feeding(np.array(D), np.array(D * RATIO), *[none] * 6, *map(np.array, (5e-3, 5e-3, 0.0)))
+    hole = SupplyGeometry(np.array(D), np.array(D * RATIO), *[none] * 6, *map(np.array, (5e-3, 5e-3, 0.0)))
     load = np.cos(angle / 2), np.sin(angle / 2)
     for speed, share in ((OMEGA / 2, 1.0), (OMEGA, 1 / 3)):
         speeds = map(np.array, (speed, 0.0, 0.0, OMEGA))

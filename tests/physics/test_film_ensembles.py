@@ -6,21 +6,26 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from benchmarks.film_cycle_duties import (
-    FRESH,
-    KEPT,
-    LOADS,
-    MARCH,
-    OTHER_SEED,
-    OUTPUTS,
-    SEED,
-    WIDTHS,
-    band,
-    drawn,
-    kept,
-    wanted,
+from benchmarks.film_cycle_duties import KEPT, LOADS, MARCH, WIDTHS, band, drawn, kept, wanted
+from benchmarks.film_cycle_engines import KEPT as ENGINE_LINES
+from benchmarks.film_cycle_ensemble import (
+    FILE,
+    HOLDS,
+    SMALLEST,
+    Law,
+    admitted,
+    bound,
+    by_output,
+    case_of,
+    coverage,
+    error_of,
+    first_duties,
+    fresh_engines,
+    law_of,
+    laws,
+    rounded_up,
+    trials,
 )
-from benchmarks.film_cycle_ensemble import FILE, HOLDS, admitted, bound, coverage, rounded_up, tables
 from benchmarks.supplied_duties import SUPPLIES
 from benchmarks.supplied_orbits import DUTIES, sampled
 
@@ -50,59 +55,114 @@ class TestBounds:
         assert rounded_up(value) == pytest.approx(stated, rel=1e-12)
 
 
-def test_example_a_bound_that_holds_too_seldom_with_the_other_seed_is_withdrawn():
-    stated = {
-        "half_groove": {"mobility": {"film": [[0.5, None]], "loss": [[0.2, 0.3]], "flow": [[0.1, 0.1]]}}
-    }
-    held = {"half_groove": {"mobility": {"film": [93, 100], "loss": [92, 100]}}}
-    left = admitted(stated, held)["half_groove"]["mobility"]
-    assert left["film"] == [[0.5, None]]
-    assert left["loss"] == [[None, None], [None, None]]
-    assert left["flow"] == [[0.1, 0.1]]
+def line(**changes):
+    return {
+        "kind": "pin_hole", "load": "big_end_4", "S": 2.0, "b": 0.4, "P": 0.2, "course": [3.0, 0.5, 0.1],
+        "repeat": 0.0, "errors": {"mobility": [0.1, 0.02, None, None, None, 0.05, None]},
+    } | changes  # fmt: skip
+
+
+class TestLaws:
+    """Bounds as a factor times powers of what the duty is."""
+
+    def test_property_powers_of_a_spread_that_grows_are_found(self):
+        """Errors up to 0.2 b² of 400 duties: the bound follows, and is 2 times the error in the median."""
+        rng = np.random.default_rng(4)
+        widths = np.exp(rng.uniform(np.log(0.15), np.log(1.2), 400))
+        errors = 0.2 * widths**2 * rng.random(400)
+        lines = [
+            line(b=b, errors={"mobility": [e] * 7})
+            for b, e in zip(widths.tolist(), errors.tolist(), strict=True)
+        ]
+        law = law_of(lines, "mobility", SMALLEST)
+        ratios = np.array([law.of(one) / error_of(one, "mobility", SMALLEST) for one in lines])
+        assert (ratios >= 1).mean() >= 0.95
+        assert np.median(ratios) < 2.5
+        assert law.of(lines[int(widths.argmax())]) > 8 * law.of(lines[int(widths.argmin())])
+
+    def test_property_null_out_of_the_range_of_the_duties(self):
+        lines = [line(S=1 + k / 30) for k in range(60)]
+        law = law_of(lines, "mobility", SMALLEST)
+        assert law.of(lines[30]) == pytest.approx(0.1, rel=0.02)
+        assert law.of(line(S=3.5)) is None
+        assert law.of(line(S=2.0, P=0.3)) is None
+        assert law_of(lines[:58], "mobility", SMALLEST).of(lines[30]) is None
+
+    def test_example_cases(self):
+        assert case_of(line()) == "pin_hole, swinging"
+        assert case_of(line(load="fourier")) == case_of(line(load="main_2")) == "pin_hole, fixed"
+        engine = {**line(extent=1.5, under_load=0.3), "kind": None}
+        assert case_of(engine | {"fed_by": "slot"}) is None  # under the load
+        assert case_of(engine | {"fed_by": "slot", "under_load": 0.1}) == "sleeve_hole, swinging"
+        assert case_of(engine | {"fed_by": "part_groove"}) is None
+        assert case_of(engine | {"fed_by": "part_groove", "extent": 2.2}) == "half_groove, swinging"
+        assert case_of(engine | {"fed_by": "several"}) is None
+        assert case_of(line(P=1.1)) is None
+
+    def test_example_a_bound_that_holds_too_seldom_on_other_duties_is_withdrawn(self):
+        laws = {name: Law(1.0, {}, {}) for name in ("film", "loss", "flow")}
+        held = {"half_groove, fixed": {"mobility": {"film": [93, 100], "loss": [92, 100]}}}
+        left = admitted({"half_groove, fixed": {"mobility": laws}}, held)["half_groove, fixed"]["mobility"]
+        assert [left[name].factor for name in ("film", "loss", "flow")] == [1.0, None, 1.0]
+
+
+def bounds_over_errors(lines):
+    """Return the bound of the file over the error of the smallest film, of those duties that have one."""
+    content = json.loads(FILE.read_text(encoding="utf-8"))
+    ratios = []
+    for one in lines:
+        case = case_of(one) or ""
+        level = "mobility_grooved" if "groove" in case else "mobility"
+        ((factor,),) = content["cases"].get(case, {}).get(level, {}).get(SMALLEST, [[None]])
+        if factor is not None:
+            law = Law(factor, content["powers"][case][level][SMALLEST], content["within"][case])
+            if (limit := law.of(one)) is not None:
+                ratios.append(limit / error_of(one, level, SMALLEST))
+    return np.array(ratios)
 
 
 class TestFile:
     """The bounds that the service states are those of the kept duties."""
 
+    @pytest.mark.slow
     def test_golden_bounds_and_counts_follow_from_the_kept_lines(self):
-        lines, stated = kept(), json.loads(FILE.read_text(encoding="utf-8"))
-        first = [line for line in lines if line["seed"] == SEED]
-        held = coverage(tables(first), [line for line in lines if line["seed"] == OTHER_SEED])
-        assert stated["held_with_another_seed"] == held
-        assert stated["cases"] == admitted(tables(first), held)
+        first, stated = first_duties(), json.loads(FILE.read_text(encoding="utf-8"))
+        measured = laws(first)
+        held = coverage(trials(first, fresh_engines(), measured))
+        assert stated["held_on_other_duties"] == held
+        assert stated["cases"] == by_output(admitted(measured, held), lambda law: [[law.factor]])
 
-    @pytest.mark.parametrize("kind", ["half_groove", "full_groove"])
-    def test_property_every_bound_of_grooves_holds_for_93_of_100_fresh_duties(self, kind):
+    def test_property_the_bounds_of_the_file_hold_for_fresh_engines(self):
+        """For 95 % of those of seed 303 that have one, as is stated."""
+        ratios = bounds_over_errors(fresh_engines())
+        assert len(ratios) > 20
+        assert np.mean(ratios >= 1) >= 0.95
+
+    def test_property_bounds_of_engines_are_not_far_from_their_errors(self):
+        """In the median 6 times the error, 5 times of big ends; before 7.5 to 13 times."""
+        own = first_duties()
+        engines = [one for one in own if one["load"] != "fourier"]
+        big_ends = [one for one in engines if one["load"].startswith("big_end")]
+        assert len(big_ends) > 350
+        assert np.median(bounds_over_errors(engines)) < 6
+        assert np.median(bounds_over_errors(big_ends)) < 5
+
+    def test_property_every_stated_bound_holds_on_93_of_100_other_duties(self):
         stated = json.loads(FILE.read_text(encoding="utf-8"))
-        assert sum(line["kind"] == kind and line["seed"] == OTHER_SEED for line in kept()) == FRESH
-        counts = stated["held_with_another_seed"][kind]
-        assert len(counts) == 3
-        for level, outputs in counts.items():
-            for output, (good, of) in outputs.items():
-                assert of == FRESH, (level, output)
-                assert good >= HOLDS * FRESH, (level, output)
-                assert None not in np.ravel(stated["cases"][kind][level][output]), (level, output)
+        checked = 0
+        for case, levels in stated["cases"].items():
+            for level, outputs in levels.items():
+                for output, cell in outputs.items():
+                    if cell != [[None]]:
+                        good, of = stated["held_on_other_duties"][case][level][output]
+                        assert good >= HOLDS * of, (case, level, output)
+                        assert stated["duties"][case] >= 59, case
+                        checked += 1
+        assert checked > 40
 
-    @pytest.mark.parametrize("kind", ["sleeve_hole", "pin_hole"])
-    def test_property_holes_are_bounded_where_59_duties_and_the_fresh_ones_support_it(self, kind):
-        """None of these starved, so nothing else makes a bound null."""
-        stated = json.loads(FILE.read_text(encoding="utf-8"))
-        assert stated["cases"][kind].keys() == {"mobility_short", "mobility"}
-        for level, outputs in stated["cases"][kind].items():
-            counts = stated["held_with_another_seed"].get(kind, {}).get(level, {})
-            for output in OUTPUTS:
-                good, of = counts.get(output, (0, 0))
-                for (i, j), value in np.ndenumerate(np.array(outputs[output], dtype=object)):
-                    few = stated["duties"][kind].get(f"{i},{j}", 0) < 59
-                    assert (value is None) == (few or good < HOLDS * of), (level, output, i, j)
-
-    def test_property_holes_in_the_sleeve_have_a_bound_of_their_film(self):
-        stated = json.loads(FILE.read_text(encoding="utf-8"))
-        for level, outputs in stated["cases"]["sleeve_hole"].items():
-            assert None not in np.ravel(outputs["minimum_film_thickness"]), level
-
-    def test_property_the_record_is_small(self):
+    def test_property_the_records_are_small(self):
         assert KEPT.stat().st_size < 1e6
+        assert ENGINE_LINES.stat().st_size < 1e6
 
 
 def test_property_no_duty_counts_twice_or_outside_the_bands():

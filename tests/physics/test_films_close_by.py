@@ -5,7 +5,7 @@ import pytest
 
 from templates.physics.cavities import transient_film
 from templates.physics.cavities.transient_balance import balance, transient_mesh
-from templates.physics.journals.heat_balance import Running
+from templates.physics.journals.heat_balance import OperatingPoint
 from templates.physics.orbits.cyclic_film import cycle_of
 from templates.physics.orbits.film_mobility import film_mobility
 from templates.physics.orbits.short_mobility import short_film_under_load
@@ -71,11 +71,11 @@ def test_oil_too_thin_for_the_map_loses_the_power_of_the_thinnest_film_on_it():
     bearing = {"D": 0.05, "W": 0.025, "psi": 1e-3, "omega_m": 100.0, "omega_s": 100.0, "eta": 1e-4}
     air = {"heat_capacity": 1.8e6, "T_supply": 313.0, "T_ambient": 293.0, "kA": 10.0}
     given = {name: np.asarray(value) for name, value in {**numbers, **bearing, **air}.items()}
-    power, flow = Running(F=np.array([1e13, 2e13, 1e15]), **given).power_and_flow(np.asarray(320.0))
+    power, flow = OperatingPoint(F=np.array([1e13, 2e13, 1e15]), **given).power_and_flow(np.asarray(320.0))
     assert power == pytest.approx(power[0], rel=1e-12)
     assert flow == pytest.approx(flow[0], rel=1e-12)
     assert power[0] > 0
-    inside = Running(F=np.array([1.0]), **given).power_and_flow(np.asarray(320.0))[0]
+    inside = OperatingPoint(F=np.array([1.0]), **given).power_and_flow(np.asarray(320.0))[0]
     assert inside < power[0]
 
 

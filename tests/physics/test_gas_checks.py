@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from templates.physics.engine import gas_checks as checks
-from templates.physics.engine.gas_pressure import NoGas, Tabulated, one_cycle, peak_pressure
+from templates.physics.engine.gas_pressure import NoGas, TabulatedCycle, one_cycle, peak_pressure
 
 FOUR = np.asarray(4.0)
 
@@ -97,7 +97,7 @@ class TestTable:
 class TestPressure:
     def test_a_table_is_linear_between_its_points_and_goes_round(self):
         angle, p = table(12, first=0.5)
-        gas = Tabulated(angle, np.stack([p, 2 * p]), np.asarray([3.5, 4.0]), 4 * np.pi)
+        gas = TabulatedCycle(angle, np.stack([p, 2 * p]), np.asarray([3.5, 4.0]), 4 * np.pi)
         step = angle[1] - angle[0]
         theta = np.array([0.5, 0.5 + 0.25 * step, 0.5 - 0.25 * step, angle[3] + 8 * np.pi])
         expected = np.array([p[0], 0.75 * p[0] + 0.25 * p[1], 0.75 * p[0] + 0.25 * p[-1], p[3]])

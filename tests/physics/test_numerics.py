@@ -25,7 +25,7 @@ RANDOM = np.random.default_rng(5)
 X, Y, Z = Axis(-1.0, 0.25, 9), Axis(2.0, 0.5, 11), Axis(0.5, 0.125, 7)
 
 
-class Counted:
+class CycleCounts:
     """A function that counts how often it is asked."""
 
     def __init__(self, function):
@@ -50,20 +50,20 @@ class TestRoots:
 
     def test_an_inverse_parabola_is_met_at_once(self):
         """x = (f + 1.2)² - 1: two ends, a bisection, the parabola through the three, and its check."""
-        counted = Counted(lambda x: np.sqrt(x + 1) - 1.2)
+        counted = CycleCounts(lambda x: np.sqrt(x + 1) - 1.2)
         assert bracketed_root(counted, np.array([0.0]), np.array([1.0])) == pytest.approx(0.44, rel=1e-14)
         assert counted.calls <= 7
 
     @pytest.mark.parametrize("function", [lambda x: np.cos(x) - x, lambda x: np.exp(x) - 5, np.tan])
     def test_it_is_faster_than_bisection(self, function):
         """Halving an interval of 3 down to 4e-16 takes 53 steps."""
-        counted = Counted(function)
+        counted = CycleCounts(function)
         root = bracketed_root(counted, np.array([-1.4]), np.array([1.5 if function is np.tan else 1.7]))
         assert function(root) == pytest.approx(0, abs=4e-15)
         assert counted.calls < 20
 
     def test_a_loose_tolerance_ends_sooner_and_keeps_it(self):
-        loose, tight = Counted(lambda x: x**5 - 2), Counted(lambda x: x**5 - 2)
+        loose, tight = CycleCounts(lambda x: x**5 - 2), CycleCounts(lambda x: x**5 - 2)
         low, high = np.array([0.0]), np.array([3.0])
         rough = bracketed_root(loose, low, high, 1e-3)
         assert rough == pytest.approx(2**0.2, rel=4e-3)

@@ -12,14 +12,14 @@ from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.orbits.transient_orbit import (
     MOST_CYCLES,
     REPEATS,
-    Marching,
+    MarchSettings,
     along_march,
     sampled_orbit,
 )
 
 ANGLE = np.radians(np.arange(-170.0, 190.0, 30.0))
 LOAD = CyclicLoad(ANGLE, 2 * np.pi, np.ones((2, 1, 12)), np.full((1, 12), 0.5))
-MARCHING = Marching(around=8, across=2, step=np.radians(30.0))
+MARCHING = MarchSettings(around=8, across=2, step=np.radians(30.0))
 SMALLEST_GAP = 0.02
 CIRCLE = ((np.cos, np.sin), (lambda angle: -np.sin(angle), np.cos))  # a place on it, the direction ahead
 

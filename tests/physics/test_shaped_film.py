@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from templates.physics.cavities import shaped_balance
 from templates.physics.cavities.fed_film import Feed
-from templates.physics.cavities.shaped_balance import Loaded, NoBalance, balance
+from templates.physics.cavities.shaped_balance import BearingCase, NoBalance, balance
 from templates.physics.cavities.shaped_film import shaped_film
 from templates.physics.cavities.shaped_network import Pocket, shaped_nodes
 from templates.physics.films.film_shape import Bore, Lie, gap, narrowest
@@ -64,7 +64,7 @@ class TestLimits:
         coarse, fine = (static_film(eps, ratio, n, m) for n, m in ((128, 16), (256, 32)))
         So = fine.So + (fine.So - coarse.So) / 3
         attitude = fine.attitude + (fine.attitude - coarse.attitude) / 3
-        e, film = placed(Loaded(So, ratio, Bore(), ALIGNED, Feed(), conserving))
+        e, film = placed(BearingCase(So, ratio, Bore(), ALIGNED, Feed(), conserving))
         assert 1 - np.hypot(*e) == pytest.approx(1 - eps, rel=2e-4)
         assert np.arctan2(e[1], e[0]) == pytest.approx(attitude, abs=2e-4)
         assert film.peak[0] == pytest.approx(fine.P_max, rel=2e-3)
@@ -75,9 +75,9 @@ class TestLimits:
         """On the whole width; the gap's change is of second order in the tilt, the couple of first."""
         feed = SPLIT if bore.is_lobed else Feed()
         lost, couples = [], []
-        straight = placed(Loaded(1.5, 0.5, bore, np.array([1e-9, 0.0]), feed, False))[0]
+        straight = placed(BearingCase(1.5, 0.5, bore, np.array([1e-9, 0.0]), feed, False))[0]
         for tilt in (0.02, 0.04):
-            e, film = placed(Loaded(1.5, 0.5, bore, np.array([tilt, 0.0]), feed, False))
+            e, film = placed(BearingCase(1.5, 0.5, bore, np.array([tilt, 0.0]), feed, False))
             lost.append(float(np.hypot(*(e - straight))))
             couples.append(film.couple[0])
         assert lost[1] / lost[0] == pytest.approx(4, rel=0.1)
@@ -85,7 +85,8 @@ class TestLimits:
 
     def test_property_tilt_the_other_way_turns_the_couple(self):
         one, other = (
-            placed(Loaded(1.5, 0.5, Bore(), sign * np.array([0.1, 0.05]), Feed(), False)) for sign in (1, -1)
+            placed(BearingCase(1.5, 0.5, Bore(), sign * np.array([0.1, 0.05]), Feed(), False))
+            for sign in (1, -1)
         )
         np.testing.assert_allclose(one[0], other[0], rtol=1e-9)
         np.testing.assert_allclose(one[1].couple, -other[1].couple, rtol=1e-7)
@@ -93,7 +94,7 @@ class TestLimits:
     def test_property_preload_of_nought_is_plain(self):
         """With grooves, which both have."""
         plain, lobed = (
-            placed(Loaded(1.0, 0.5, bore, ALIGNED, SPLIT, True)) for bore in (Bore(), Bore(3, 0.0, 0.4))
+            placed(BearingCase(1.0, 0.5, bore, ALIGNED, SPLIT, True)) for bore in (Bore(), Bore(3, 0.0, 0.4))
         )
         np.testing.assert_allclose(plain[0], lobed[0], rtol=1e-6)
 
@@ -104,9 +105,9 @@ class TestLimits:
         assert not Bore(3, 0.4).is_plain
 
     def test_property_small_preload_tends_to_plain(self):
-        plain = placed(Loaded(1.0, 0.5, Bore(), ALIGNED, SPLIT, False))[0]
+        plain = placed(BearingCase(1.0, 0.5, Bore(), ALIGNED, SPLIT, False))[0]
         away = [
-            float(np.hypot(*(placed(Loaded(1.0, 0.5, Bore(2, m), ALIGNED, SPLIT, False))[0] - plain)))
+            float(np.hypot(*(placed(BearingCase(1.0, 0.5, Bore(2, m), ALIGNED, SPLIT, False))[0] - plain)))
             for m in (0.01, 0.02)
         ]
         assert away[1] / away[0] == pytest.approx(2, rel=0.1)
@@ -114,14 +115,14 @@ class TestLimits:
 
     def test_property_lobed_bore_turned_by_a_lobe_is_the_same(self):
         one, other = (
-            placed(Loaded(1.0, 0.5, Bore(3, 0.5, angle), ALIGNED, Feed(), False))[0]
+            placed(BearingCase(1.0, 0.5, Bore(3, 0.5, angle), ALIGNED, Feed(), False))[0]
             for angle in (0.2, 0.2 + 2 * np.pi / 3)
         )
         np.testing.assert_allclose(one, other, rtol=1e-9)
 
     def test_property_oil_is_conserved(self):
         """What pockets feed leaves at the ends."""
-        film = balance(Loaded(1.0, 0.5, Bore(2, 0.5), np.array([0.1, 0.1]), SPLIT, True)).fine.film
+        film = balance(BearingCase(1.0, 0.5, Bore(2, 0.5), np.array([0.1, 0.1]), SPLIT, True)).fine.film
         loss = film.network.loss(film.solution.P, film.solution.void).reshape(film.nodes.shape)
         inner = loss[~film.network.fixed.reshape(loss.shape)]
         assert np.abs(inner).max() < 1e-9 * np.abs(loss).max()
@@ -146,7 +147,7 @@ class TestSecondMethods:
     @pytest.mark.sampled(1)
     @pytest.mark.parametrize("conserving", [False, True])
     def test_analytic_stiffness_is_the_slope_of_the_force(self, conserving):
-        loaded = Loaded(1.0, 0.5, Bore(2, 0.5, 0.2), np.array([0.1, -0.05]), SPLIT, conserving)
+        loaded = BearingCase(1.0, 0.5, Bore(2, 0.5, 0.2), np.array([0.1, -0.05]), SPLIT, conserving)
         film = balance(loaded).fine.film
         lie, pockets, h = balance(loaded).fine.lie, loaded.pockets(0.0), 1e-6
         for k in range(2):
@@ -164,7 +165,7 @@ class TestSecondMethods:
         places = []
         for n in (1, 2, 4):
             monkeypatch.setattr(shaped_balance, "MESHES", [(32 * n, 6 * n)] * 3)
-            loaded = Loaded(1.5, 0.5, Bore(2, 0.5), np.array([0.05, 0.0]), Feed(), False)
+            loaded = BearingCase(1.5, 0.5, Bore(2, 0.5), np.array([0.05, 0.0]), Feed(), False)
             places.append(narrowest(loaded.bore, balance(loaded).fine.lie)[0])
         assert 3 < (places[1] - places[0]) / (places[2] - places[1]) < 6
 
@@ -194,7 +195,7 @@ class TestLiterature:
     def test_literature_elliptical_bearing(self, row, conserving):
         """Their groups go with c_p = 2 c_b: So of c_b is a quarter of 1/(2 π S), eps and K half and twice."""
         So = 1 / (2 * np.pi * row["S"]) / 4
-        e, film = placed(Loaded(So, 1.0, Bore(2, 0.5), ALIGNED, SPLIT, conserving))
+        e, film = placed(BearingCase(So, 1.0, Bore(2, 0.5), ALIGNED, SPLIT, conserving))
         assert np.hypot(*e) / 2 == pytest.approx(row["eps"], abs=1e-3)
         printed_off_its_trend = row["S"] == 0.161
         angle = np.degrees(np.arctan2(e[1], e[0]))
@@ -231,7 +232,9 @@ class TestGrooveInTheLoadLine:
 
     def found(self, angle, pressure):
         return balance(
-            Loaded(1.5, 0.5, Bore(), ALIGNED, Feed(pressure, ((np.radians(angle), np.radians(20)),)), True)
+            BearingCase(
+                1.5, 0.5, Bore(), ALIGNED, Feed(pressure, ((np.radians(angle), np.radians(20)),)), True
+            )
         ).fine.lie
 
     @pytest.mark.parametrize("pressure", [0.02, 1.0])
@@ -250,4 +253,4 @@ class TestGrooveInTheLoadLine:
 
 def test_property_tilt_that_touches_is_refused():
     with pytest.raises(NoBalance):
-        balance(Loaded(1.5, 0.5, Bore(), np.array([1.1, 0.0]), Feed(), False))
+        balance(BearingCase(1.5, 0.5, Bore(), np.array([1.1, 0.0]), Feed(), False))

@@ -8,13 +8,13 @@ import pytest
 from benchmarks.supplied_duties import GROOVES, random_duty
 from templates.core.arrays import Array
 from templates.core.progress import reporting
-from templates.physics.cavities.cavitating_film import cavitating_film
+from templates.physics.cavities.cavitating_film import measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
-    Meshing,
+    MeshSettings,
     SuppliedOrbit,
     Verdict,
     supplied_orbit,
@@ -25,7 +25,9 @@ QUICK = (replace(COARSE, around=48), replace(COARSE, step=np.radians(3.0)))
 ANGLE = np.arange(72) * np.pi / 36
 
 
-def constant(S: float, ratio: float, supply: Supply, meshes: tuple[Meshing, ...] = QUICK) -> SuppliedOrbit:
+def constant(
+    S: float, ratio: float, supply: Supply, meshes: tuple[MeshSettings, ...] = QUICK
+) -> SuppliedOrbit:
     """The orbit under a load at rest along x, the sleeve at rest too."""
     load = CyclicLoad(
         ANGLE, 2 * np.pi, np.array([S, 0.0])[:, None, None] * np.ones(72), np.full((1, 72), 0.5)
@@ -51,7 +53,7 @@ def static(eps: float, ratio: float, pocket: Pocket, pressure: float) -> tuple[f
     """Load and attitude of the static mass-conserving film, extrapolated; pocket from the narrowest gap."""
     groove = Groove(pocket.centre, 2 * pocket.half_angle, pocket.half_length, pressure)
     coarse, fine = (
-        cavitating_film(eps, ratio, [groove], around=n, across=m) for n, m in ((64, 8), (128, 16))
+        measured(solved_ring(eps, ratio, [groove], around=n, across=m)) for n, m in ((64, 8), (128, 16))
     )
     return 2 * fine.So - coarse.So, 2 * fine.attitude - coarse.attitude
 
@@ -189,7 +191,7 @@ def test_progress_rises_and_a_reporter_may_cancel() -> None:
 def test_a_hole_that_does_not_come_back_is_refused() -> None:
     load = CyclicLoad(ANGLE, 2 * np.pi, np.ones((2, 1, 72)), np.full((1, 72), 0.5))
     hole = Supply((Pocket(0.0, 0.1, 0.3, on_journal=True),), 0.2)
-    with pytest.raises(ValueError, match="18° off its place"):
+    with pytest.raises(ValueError, match="18° away from its initial position"):
         supplied_orbit(load, np.full(72, 1.1), 0.4, hole, QUICK)
 
 
@@ -198,7 +200,7 @@ def test_a_hole_that_does_not_come_back_is_refused() -> None:
 def test_converges_in_mesh_and_step(number: int) -> None:
     """The change of the least gap from mesh to mesh falls, and the default is within 2 % of the finest."""
     duty = random_duty(7, number)
-    ladder = [Meshing(int(96 * k), int(6 * k), np.radians(2 / k), 12) for k in (1, 4 / 3, 2, 8 / 3)]
+    ladder = [MeshSettings(int(96 * k), int(6 * k), np.radians(2 / k), 12) for k in (1, 4 / 3, 2, 8 / 3)]
     gaps = np.array([
         supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, (COARSE, mesh)).least_gap
         for mesh in ladder
@@ -226,11 +228,13 @@ def test_random_duties_repeat_wander_or_starve(number: int) -> None:
 def test_extrapolated_the_static_film_is_met_to_two_parts_in_a_thousand() -> None:
     eps, ratio, pocket, pressure = 0.8, 1.0, Pocket(np.pi, np.radians(10), 0.7), 0.05
     groove = Groove(pocket.centre, 2 * pocket.half_angle, pocket.half_length, pressure)
-    films = [cavitating_film(eps, ratio, [groove], around=n, across=m) for n, m in ((128, 16), (256, 32))]
+    films = [
+        measured(solved_ring(eps, ratio, [groove], around=n, across=m)) for n, m in ((128, 16), (256, 32))
+    ]
     So, attitude = (2 * getattr(films[1], name) - getattr(films[0], name) for name in ("So", "attitude"))
     supply = Supply((replace(pocket, centre=pocket.centre + attitude),), pressure)
     coarse, fine = (
-        constant(So, ratio, supply, (COARSE, Meshing(96 * k, 6 * k, np.radians(2 / k), 12))).gap.mean()
+        constant(So, ratio, supply, (COARSE, MeshSettings(96 * k, 6 * k, np.radians(2 / k), 12))).gap.mean()
         for k in (1, 2)
     )
     assert 2 * fine - coarse == pytest.approx(1 - eps, rel=2e-3)

@@ -9,13 +9,13 @@ from templates.physics.thermal.across import across, strip_edges
 from templates.physics.thermal.anderson import Anderson
 from templates.physics.thermal.arc import groove_arc
 from templates.physics.thermal.bearing_place import NoBalance
-from templates.physics.thermal.energy import Heating, carried, heated
+from templates.physics.thermal.energy import HeatSources, carried, heated
 from templates.physics.thermal.pressure import gap_of, pressed
 from templates.physics.thermal.thermal_balance import Bearing, both, one_temperature, warm
 
 SUPPLY = 313.15  # K
 GROOVE = (np.pi, np.radians(20), 0.8)
-HEATING = Heating(delta=1.0, kappa=0.03, wall=0.0, outside=SUPPLY, supply=SUPPLY, journal=np.nan)
+HEATING = HeatSources(delta=1.0, kappa=0.03, wall=0.0, outside=SUPPLY, supply=SUPPLY, journal=np.nan)
 TINY, SMALL = (24, 4, 8), (48, 8, 12)
 
 
@@ -148,7 +148,7 @@ class TestCouette:
         errors = []
         for strips in (8, 16):
             film = couette(np.ones((17, strips)), strips)
-            heating = Heating(200.0, 100.0, np.inf, SUPPLY, SUPPLY, SUPPLY)
+            heating = HeatSources(200.0, 100.0, np.inf, SUPPLY, SUPPLY, SUPPLY)
             T = heated(film, heating, strip_edges(strips)).T[-3]
             edges = strip_edges(strips)
             Y = (edges[1:] + edges[:-1]) / 2
@@ -159,7 +159,7 @@ class TestCouette:
     def test_an_adiabatic_film_warms_by_twice_delta_a_radian(self):
         """rho c (U h/2) dT/dx = eta U²/h for the flow's mean temperature."""
         film = couette(np.ones((17, 8)), 8)
-        heating = Heating(0.7, 0.05, 0.0, SUPPLY, SUPPLY, np.nan, carry_over=0.0)
+        heating = HeatSources(0.7, 0.05, 0.0, SUPPLY, SUPPLY, np.nan, carry_over=0.0)
         found = heated(film, heating, strip_edges(8))
         assert carried(film).side == pytest.approx(0, abs=1e-13)
         assert found.by_drain / 0.5 == pytest.approx(2 * 0.7 * 6.0, rel=1e-10)
@@ -168,7 +168,7 @@ class TestCouette:
     def test_exponential_viscosity_between_equal_walls(self, nahme):
         """Nahme 1940; Gavis, Laurence 1968: beta (T_max − T_0) = ln(1 + Na/8), and the shear stress."""
         beta, kappa, strips = 0.05, 400.0, 48
-        heating = Heating(kappa * nahme / beta, kappa, np.inf, SUPPLY, SUPPLY, SUPPLY)
+        heating = HeatSources(kappa * nahme / beta, kappa, np.inf, SUPPLY, SUPPLY, SUPPLY)
         T, search = np.full((17, strips), SUPPLY), Anderson()
         for _ in range(60):
             film = couette(np.exp(beta * (T - SUPPLY)), strips)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from templates.core.arrays import Array
-from templates.physics.cavities.cavitating_film import cavitating_film
+from templates.physics.cavities.cavitating_film import measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.cavities.transient_balance import Journal, balance, transient_mesh
 from templates.physics.cavities.transient_film import State, stepped
 from templates.physics.orbits.journal_orbit import CyclicLoad, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw
-from templates.physics.orbits.transient_orbit import Marching, transient_orbit
+from templates.physics.orbits.transient_orbit import MarchSettings, transient_orbit
 
 STEP = np.radians(4.0)
 
@@ -40,7 +40,7 @@ def marched(journal: Journal, eps: Array, loads: Array, w: float) -> list[State]
 )
 def test_constant_load_settles_in_the_static_cavitating_film(eps: float, ratio: float) -> None:
     """That of oil_film 2 with oil fed along the widest gap, on a mesh four times as fine."""
-    static = cavitating_film(eps, ratio, [Groove(np.pi, 0.0)])
+    static = measured(solved_ring(eps, ratio, [Groove(np.pi, 0.0)]))
     loads = np.full((250, 2), [static.So, 0.0])
     settled = marched(transient_mesh(ratio, 96, 6), np.array([0.3, 0.3]), loads, 0.5)[-1].eps
     assert np.hypot(*settled) == pytest.approx(eps, rel=5e-3)
@@ -86,7 +86,7 @@ def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
     S = np.stack([2 + 1.5 * np.cos(angle), np.sin(angle)])[:, None]
     load = CyclicLoad(angle, 2 * np.pi, S, np.full((1, 90), w))
     by_mobility = periodic_orbit(load, MapLaw(np.array([0.5])))
-    result = transient_orbit(load, 0.5, by_mobility.eps[:, 0, 0], Marching(64, 4, STEP))
+    result = transient_orbit(load, 0.5, by_mobility.eps[:, 0, 0], MarchSettings(64, 4, STEP))
     assert result is not None
     assert 1 < result.cycles < 8
     gap = 1 - np.hypot(*result.eps)
@@ -100,7 +100,7 @@ def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
 def test_mirrored_load_and_speed_give_the_mirrored_orbit() -> None:
     angle = np.arange(60) * np.radians(6.0)
     S = np.stack([2 + np.cos(angle), np.sin(angle)])[:, None]
-    marching, mirror = Marching(48, 4, np.radians(6.0)), np.array([1.0, -1.0])
+    marching, mirror = MarchSettings(48, 4, np.radians(6.0)), np.array([1.0, -1.0])
     one = transient_orbit(
         CyclicLoad(angle, 2 * np.pi, S, np.full((1, 60), 0.5)), 0.5, np.array([0.5, 0.2]), marching
     )
@@ -118,4 +118,4 @@ def test_load_that_no_film_bears_is_given_up() -> None:
     angle = np.arange(36) * np.radians(10.0)
     S = np.stack([np.full(36, 50.0), np.zeros(36)])[:, None]
     load = CyclicLoad(angle, 2 * np.pi, S, np.zeros((1, 36)))
-    assert transient_orbit(load, 0.5, np.zeros(2), Marching(48, 4, np.radians(10.0))) is None
+    assert transient_orbit(load, 0.5, np.zeros(2), MarchSettings(48, 4, np.radians(10.0))) is None

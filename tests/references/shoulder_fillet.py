@@ -5,13 +5,15 @@ stress.
 """
 
 from math import pi, sqrt
+from typing import Any
 
+import ngsolve as ng
 import numpy as np
 from cadquery import Shape, Workplane
 
 from cad.analysis.kinds import Kind
 from cad.analysis.solid import Solid, read_solid
-from cad.analysis.stress import Measure, Peaks, first_principal, greatest_stress, von_mises
+from cad.analysis.stress import Components, Measure, Peaks, greatest_stress, von_mises
 from cad.header import Header
 from cad.model import Part
 from cad.shaft import STEEL_MATERIAL, Shaft
@@ -20,6 +22,19 @@ from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey
 
 WIDE, NARROW, FILLET = 60.0, 40.0, 4.0  # mm
 SHOULDER, END = 60.0, 130.0
+
+
+def first_principal(components: Components) -> Any:
+    """Return the largest principal stress, by Cardano's formula; factors of bending are of it."""
+    xx, yy, zz, xy, yz, xz = components
+    mean = (xx + yy + zz) / 3
+    a, b, c = xx - mean, yy - mean, zz - mean
+    radius = von_mises(components) * 2 / 3 + 1e-300  # an unloaded point has no direction
+    determinant = a * b * c + 2 * xy * yz * xz - a * yz**2 - b * xz**2 - c * xy**2
+    cosine = 4 * determinant / radius**3
+    inside = ng.IfPos(cosine - 1, 1, ng.IfPos(-1 - cosine, -1, cosine))  # rounding may leave it outside
+    return mean + radius * ng.cos(ng.acos(inside) / 3)
+
 
 LOADS: dict[Kind, tuple[Measure, float]] = {
     "torsion": (von_mises, sqrt(3) * 16 / (pi * NARROW**3)),

@@ -13,7 +13,7 @@ from listening import NEVER, designs, followed, side
 from patience import until
 from sqlalchemy import text
 
-from app.jobs.events import events_above, note_event
+from app.jobs.events import Event, events_above, note_events
 from app.storage.database import Database
 
 pytest.importorskip("psycopg", reason="the driver of PostgreSQL is not installed")
@@ -168,16 +168,17 @@ def test_numbers_of_a_topic_are_its_own_even_if_units_wait_for_each_other(own_po
         began, go_on = threading.Event(), threading.Event()
 
         def slow(session):
-            number = note_event(session, topic, "slow", {})
+            (noted,) = note_events(session, Event(topic, "slow", {}))
             began.set()
             assert go_on.wait(60)
-            return number
+            return noted.number
 
         with ThreadPoolExecutor(2) as pool:
             first = pool.submit(one.database.write, slow)
             assert began.wait(60)
             second = pool.submit(
-                other.database.write, lambda session: note_event(session, topic, "quick", {})
+                other.database.write,
+                lambda session: note_events(session, Event(topic, "quick", {}))[0].number,
             )
             with other.database.read() as session:
                 assert events_above(session, topic, 0) == []

@@ -3,8 +3,9 @@
 import re
 
 import pytest
+from true_numbers import assert_true_of_its_numbers
 
-from templates.core.criteria.sentences import told_apart
+from templates.core.criteria.judgement import told_apart
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 
@@ -66,26 +67,10 @@ VIOLATED = [  # a template, the input that the warning names, and what violates 
     ("oil_film", "supply_pressure", {"supply_pressure": "2 bar"}, {"level": "map"}),
     ("oil_film", "start_line", {"start_line": "moving", "bore_shape": "lemon", "preload": 0.5}, {}),
 ]  # fmt: skip
-_NUMBER = r"(-?\d[\d.]*(?:e[-+]?\d+)?)"
-_COMPARED = re.compile(rf"{_NUMBER}[^;]*? is (below|not below|above|not above) [^;]*?{_NUMBER}")
-TRUE_OF = {
-    "below": lambda one, other: one < other,
-    "not below": lambda one, other: one >= other,
-    "above": lambda one, other: one > other,
-    "not above": lambda one, other: one <= other,
-}
 
 
 def newest(id):
     return max((cls for cls in built_in() if cls.id == id), key=lambda cls: cls.version)
-
-
-def assert_true_of_its_numbers(sentence):
-    """A comparison in a sentence is true of the numbers beside it; how many there are."""
-    found = _COMPARED.findall(sentence)
-    for one, sign, other in found:
-        assert TRUE_OF[sign](float(one), float(other)), sentence
-    return len(found)
 
 
 @pytest.mark.parametrize(("id", "name", "changes", "fidelity"), VIOLATED)

@@ -38,11 +38,11 @@ BODY = {
 
 @router.post("/curves", openapi_extra={"requestBody": BODY}, dependencies=[needs("viewer")])
 async def read_curve_table(request: Request) -> Curves:
-    """Read a table of curves, such as an indicator diagram: `{"curves": {"pressure": {"value", "unit"}}}`.
+    """Return the curves of a table, such as an indicator diagram: `{"curves": {"pressure": {"value", …}}}`.
 
     The body is the file itself, CSV or XLSX: names, units beside or below them, a row for each point. Several
-    cycles become their mean; time and TDC pulses become crank angles. `assumed` says what was assumed. Each
-    curve can be pasted into `inputs` under the name wanted there. Nothing is stored.
+    cycles are averaged; time and TDC pulses are converted to crank angles. `assumed` lists the assumptions.
+    Each curve can be used in `inputs` under the required name. Nothing is stored.
     """
     kind, _, extra = request.headers.get("content-type", "").lower().partition(";")
     charset = extra.partition("charset=")[2].strip(' "') or "utf-8"

@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
+"""`/templates/{id}/versions/{n}/evaluate`, `…/solve` and `…/worksheet`.
 
 A cheap calculation runs here, in the event loop or a thread. An expensive calculation, or a large body, goes
 to a calculation process.
@@ -25,7 +25,7 @@ from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
 from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
-from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, points, solving_seconds, writing_seconds
+from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
@@ -51,7 +51,7 @@ class LargeRoute(PlainRoute):
     """
 
     async def admit(self, request: StrictRequest) -> None:
-        """Refuse a large body before it comes, if the pool has no room for its calculation."""
+        """Refuse a large body before it arrives, if the pool has no room for its calculation."""
         if int(request.headers.get("content-length", 0)) > LARGE and _system(request) and _is_plain(request):
             await _admit(request)
 
@@ -71,7 +71,7 @@ async def _admit(request: Request) -> None:
     Raises
     ------
     UnknownTemplate, InvalidInputs, TooManyCalculations
-        What its answer would raise now.
+        As raised by the calculation.
     """
     services = services_of(request)
     await services.catalogues.tried(*_template(request))
@@ -87,24 +87,24 @@ async def _answered(request: Request, question: Question) -> Response:
 
 
 def _patience(request: Request) -> float:
-    """Return the time that a request waits for its answer [s]."""
+    """Return how long a request waits for its answer [s]."""
     deadline = services_of(request).steps.deadline
     return min(deadline, patience(request.headers.get("prefer"), deadline))
 
 
 def _is_plain(request: Request) -> bool:
-    """Return whether the path names a template and a version in their usual form."""
+    """Return whether the path names a template and a version in the usual form."""
     id, number = request.path_params["id"], request.path_params["number"]
     return len(id) <= LONGEST_ID and PLAIN_NUMBER.fullmatch(number) is not None
 
 
 def _template(request: Request) -> tuple[str, int]:
-    """Return the template and the version that a plain path names."""
+    """Return the template and the version in a path."""
     return request.path_params["id"], int(request.path_params["number"])
 
 
 def _system(request: Request) -> System | None:
-    """Return the units that the request wants to read; None for a word that names none."""
+    """Return the requested system of units; None if the word names none."""
     return SYSTEMS.get(request.query_params.get("units"))
 
 
@@ -124,11 +124,11 @@ async def evaluate_template(
     body: EvaluateIn,
     prefer: Prefer = None,
 ) -> Response:
-    """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
+    """Evaluate a template: inputs in any unit, scalars or arrays; only the requested outputs are computed."""
     services = services_of(request)
     cls = await services.catalogues.tried(id, number)
     form = _form(request, "evaluate")
-    if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
+    if form == "json" and body.points <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
         return await _answered(request, await _question(request, id, number, "evaluate"))
@@ -193,7 +193,7 @@ async def _question(
 
 
 def _form(request: Request, operation: str) -> Form:
-    """Return the format that the client wants: an array if it names that before JSON."""
+    """Return the requested format: an array if the client lists it before JSON."""
     first = request.headers.get("accept", "").partition(",")[0].partition(";")[0].strip()
     return "npy" if first == NPY and "npy" in OPERATIONS[operation].write else "json"
 

@@ -42,8 +42,8 @@ async def show_evaluation(
     request: Request,
     prefer: Annotated[str | None, Header(description="`wait=5`, for an answer that was lost")] = None,
 ) -> Response:
-    """The answer of an `evaluate`, `solve`, `preview`, `impact` or the like; 202 while its job still runs.
+    """Return the answer of an `evaluate`, `solve`, `preview`, `impact` or similar; 202 while its job runs.
 
-    An answer that was lost is calculated again: the same, but for the time that it took.
+    A lost answer is calculated again; only its elapsed time may differ.
     """
     return await answer_of(services_of(request), job, request, client, prefer)

@@ -37,6 +37,6 @@ class FilmPressureIn(Bounded):
 
 @router.post("/film-pressure", dependencies=[needs("viewer")])
 async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmPressure:
-    """Pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
+    """Return the pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
     field = await run_in_threadpool(solve_film_pressure, body.inputs)
     return field.in_units(units)

@@ -1,4 +1,4 @@
-"""`/templates/{id}/versions/{n}/evaluate.csv`: an evaluation by an address, for spreadsheets."""
+"""`/templates/{id}/versions/{n}/evaluate.csv`: an evaluation requested by its URL alone, for spreadsheets."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ async def evaluate_line(
     level: Annotated[str | None, Query(max_length=64)] = None,
     tolerance: Annotated[float | None, Query(gt=0, lt=1)] = None,
 ) -> Response:
-    """Evaluate a template whose inputs are the query: a row of names, one of units, then the numbers."""
+    """Evaluate a template with the query as inputs: return a row of names, one of units, then the numbers."""
     cls, inputs = catalogues.templates.get(id, number), _inputs(request)
     names = [name.strip() for name in outputs.split(",") if name.strip()] if outputs else None
     run = partial(csv_of, source_of(cls), inputs, names, level, tolerance)
@@ -71,7 +71,7 @@ async def evaluate_line(
 def _inputs(request: Request) -> dict[str, Raw]:
     """Return the inputs as texts.
 
-    A name that stands several times is an array, and a reserved one is refused.
+    A repeated name is an array; a reserved name is refused.
     """
     given: dict[str, list[str]] = {}
     for name, text in request.query_params.multi_items():

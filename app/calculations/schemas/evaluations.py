@@ -45,6 +45,13 @@ class Output(Measured):
     )
 
 
+class Assumption(Answer):
+    """Something that an answer takes for granted and that makes a part look safer."""
+
+    name: str = Field(description="the input whose default stands, or the criterion; empty for the model")
+    detail: str
+
+
 ERROR: JsonDict = {
     "description": "estimated relative error of each point; of a curve, relative to its largest absolute "
     "value; null where none is stated",
@@ -67,6 +74,7 @@ class Results(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
+    assumed: list[Assumption] = Field([], description="defaults that make a part look safer, and stand")
     criteria: list[Criterion] | None = Field(
         None, description="worst first; absent where the template has none whose outputs are wanted"
     )
@@ -103,9 +111,12 @@ class Jump(Quantity):
 
 
 class TracedCurve(Answer):
-    """The output over the unknown, between the bounds."""
+    """The output over the unknown, between the bounds, at one level."""
 
-    x: Values = Field(description="the unknown, even steps, in the logarithm where the bounds span a decade")
+    x: Values = Field(
+        description="the unknown, ascending; even steps, in the logarithm where the bounds span a decade; of "
+        "a level that takes few points, the solutions and a value to both sides of each"
+    )
     y: Shown = Field(description="the output; null where it has no value")
     reasons: list[str | None] = Field(description="why there is no value; null where there is one")
     level: str | None = Field(description="the level of fidelity of all points")
@@ -119,7 +130,12 @@ class Solution(Answer):
     roots: list[Root] = Field([], description="every crossing of the target within the bounds, ascending")
     touching: list[Root] = Field([], description="extrema that just reach the target, ascending")
     jumps: list[Jump] = Field([], description="where the output jumps across the target")
-    curve: TracedCurve | None = Field(None, description="absent in answers of earlier program versions")
+    curve: TracedCurve | None = Field(
+        None, description="the curve that was searched; absent in answers of earlier program versions"
+    )
+    finer: list[TracedCurve] = Field(
+        [], description="the curve of each finer level at which solutions were confirmed"
+    )
     evaluation: Evaluation = Field(description="at `unknown`")
 
 

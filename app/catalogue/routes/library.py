@@ -17,7 +17,7 @@ from app.catalogue.schemas.library import (
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from templates.library.reading import CitedValue, Row
+from templates.library.csv_tables import CitedValue, Row
 from templates.library.tables import Column, Table, table, tables
 
 router = APIRouter(prefix="/api/v1/library", tags=["library"], route_class=StrictRoute)
@@ -27,13 +27,13 @@ Id = Annotated[str, Path(max_length=64, examples=["bearing_material"])]
 
 @router.get("")
 def list_library_tables(limit: Limit = 100, cursor: Cursor = None) -> LibraryTables:
-    """The tables of the library."""
+    """Return the tables of the library."""
     return page_of(LibraryTables, list(tables().values()), limit, cursor, _summary)
 
 
 @router.get("/{table_id}", responses=refusals(404))
 def show_library_table(table_id: Id) -> LibraryTable:
-    """One table: its columns, and its rows with a source for each value."""
+    """Return one table: its columns, and its rows with a source for each value."""
     one = table(table_id)
     return LibraryTable(
         id=one.id,

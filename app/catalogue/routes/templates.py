@@ -49,7 +49,7 @@ Search = Annotated[
 def list_templates(
     catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None, search: Search = ""
 ) -> TemplateList:
-    """Every version of every template, or those that a search finds."""
+    """Return every version of every template, or the results of a search."""
     if not search.strip():
         return listed(catalogues.templates, limit, cursor, marks(catalogues))
     marked = marks(catalogues)
@@ -60,13 +60,13 @@ def list_templates(
 
 @router.get("/{id}", responses=refusals(404))
 def list_template_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
-    """The versions of one template."""
+    """Return the versions of one template."""
     return versions_of(catalogues.templates, id, marks(catalogues))
 
 
 @router.get("/{id}/versions/{number}", responses=refusals(404))
 def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> TemplateAnswer:
-    """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
+    """Return one version: inputs and outputs as JSON Schema, printed formulas, limits, references, errata."""
     cls = catalogues.templates.get(id, number)
     is_latest = cls is catalogues.templates.latest(id)
     return TemplateAnswer.model_validate(
@@ -76,7 +76,7 @@ def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> Template
 
 @router.get("/{id}/versions/{number}/accuracy", responses=refusals(404))
 def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy:
-    """Measured cost and error of each level over the parameter plane; 404 where none was measured."""
+    """Return the measured cost and error of each level over the parameter plane; 404 if none was measured."""
     cls = catalogues.templates.get(id, number)
     measured = accuracy(cls)
     if measured is None:
@@ -109,7 +109,7 @@ Marks = Mapping[Key, Mapping[str, SheetMark]]
 
 
 def marks(catalogues: Catalogues) -> Marks:
-    """Return the worksheet's part of the answer about each template."""
+    """Return the worksheet-related part of the answer about each template."""
     return {
         key: {
             "worksheet": SheetMark(
@@ -143,7 +143,7 @@ def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyTy
 
 
 def summary(cls: type[Template], catalogue: Catalogue[T], marked: Marks) -> TemplateSummary:
-    """Return one version in a list."""
+    """Return one version as a list item."""
     return TemplateSummary(
         id=cls.id,
         version=cls.version,

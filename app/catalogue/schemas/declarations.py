@@ -27,12 +27,12 @@ class DeclaredValue(BaseModel):
 
     @property
     def has_default(self) -> bool:
-        """Return whether a value means an empty field."""
+        """Return whether an empty field means the default value."""
         return "default" in self.model_fields_set
 
     @cached_property
     def is_list(self) -> bool:
-        """Return whether it is a list of values or a curve, as its forms say, or its example."""
+        """Return whether the value is a list or a curve, by its forms or its example."""
         has_list = any(_holds_list(example) for example in self.examples)
         return has_list or (bool(self.anyOf) and all(_is_list(form) for form in self.anyOf))
 
@@ -42,7 +42,7 @@ def _holds_list(example: JsonValue) -> bool:
 
 
 def _is_list(form: dict[str, JsonValue]) -> bool:
-    """Return whether one form of a value is that of a list, or of a quantity with one."""
+    """Return whether one form of a value is a list, or a quantity with a list."""
     match form:
         case {"type": "array"} | {"properties": {"value": {"type": "array"}}}:
             return True
@@ -69,7 +69,7 @@ class _Same:
 
 
 def properties(schema: Schema) -> Mapping[str, DeclaredValue]:
-    """Return the declarations in a schema, by name, in its order; read once while steps share the schema."""
+    """Return the declarations in a schema, by name, in order; cached while steps share the schema."""
     return _read(_Same(schema))
 
 
@@ -79,5 +79,5 @@ def _read(same: _Same) -> Mapping[str, DeclaredValue]:
 
 
 def required(schema: Schema) -> frozenset[str]:
-    """Return the names without which the schema refuses an object."""
+    """Return the names that the schema requires."""
     return _NAMES.validate_python(schema["required"])

@@ -1,4 +1,4 @@
-"""Templates and CAD models as the interface describes them."""
+"""Templates and CAD models as the REST interface returns them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The engine: calculates a design in any number of rows, judges it, shifts it by its errors, decides it.
+"""The engine calculates a design in any number of rows, judges it, shifts it by its errors, and decides it.
 
-A design is a function of rows. One design is one row, of which nothing varies.
+A design is a function of rows. A single design is one row without varied values.
 """

@@ -1,4 +1,4 @@
-"""Calculate a design: all values known now, those that wait for a solid or a job, and the faults.
+"""Calculate a design: the values known now, those that wait for a solid or a job, and the faults.
 
 The calculation does not stop at the first fault, so that a user sees all faults at once. Values that depend
 on varied parameters are calculated for all rows at once. A refused row has no value there.
@@ -43,9 +43,9 @@ def calculate(
 ) -> Calculation:
     """Calculate all nodes in order.
 
-    `measured` returns what a model measures, or None if it is not built, and `analysed` what finite elements
-    computed on it; `assumed` are the SI values of the measures through which iterations run; `broken` are
-    faulty cells.
+    `measured` returns the measurements of a model, or None if it is not built; `analysed` returns its
+    finite-element results; `assumed` are the SI values with which iterations continue; `broken` are faulty
+    cells.
     """
     result = Calculation(graph, assumed or {}, broken=set(broken))
     calculate_nodes(result, graph.order, measured, analysed)
@@ -56,7 +56,7 @@ def calculate(
 
 
 def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
-    """Return a calculation without faults, continued: only what was pending is calculated."""
+    """Return a calculation without faults, continued: only pending values are calculated."""
     result = _copy(before)
     result.pending, result.deferred, result.faults = set(), set(), []
     result.shapes, result.measures = dict(before.shapes), dict(before.measures)
@@ -67,14 +67,14 @@ def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calcu
 
 
 def constants(calculation: Calculation) -> Calculation:
-    """Calculate what all rows share, of that which is needed."""
+    """Calculate the needed values that all rows share."""
     nodes = (node for node in calculation.graph.order if node not in calculation.moving)
     calculate_nodes(calculation, nodes, _unmeasured, _unmeasured)
     return calculation
 
 
 def rows(shared: Calculation, count: int, given: Mapping[Reference, Array]) -> Calculation:
-    """Calculate some rows, from a calculation of what they share."""
+    """Calculate some rows, starting from the shared values."""
     result = _copy(shared)
     result.count, result.given = count, given
     result.faults, result.broken = list(shared.faults), set(shared.broken)
@@ -90,11 +90,10 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """Calculate again from given outputs of steps [SI]; solids stay as they are.
+    """Recalculate with given outputs of steps [SI]; solids do not change.
 
-    Steps are calculated at the `levels` given by their names, so that no other level makes a difference.
-    Those to calculate `again` are calculated whatever they follow from, and compute the `outputs` named. What
-    waits goes on waiting.
+    Steps are calculated at the `levels` given by their names, so that no other level changes the result.
+    Steps in `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
     """
     result = _copy(before)
     result.changed, result.levels = changed, levels
@@ -116,7 +115,7 @@ def recalculated(
 
 
 def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -> None:
-    """Evaluate a step again, maybe for other outputs than those of the design."""
+    """Evaluate a step again, possibly for other outputs than those of the design."""
     asked = block if outputs is None else replace(block, outputs=outputs)
     _block(result, asked)
     if asked in result.pending:
@@ -128,7 +127,7 @@ def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -
 def following(
     calculation: Calculation, changed: Collection[Reference], again: Collection[str] = ()
 ) -> list[Cell | Block]:
-    """Return the cells and steps after some outputs, or after steps calculated `again`, in order."""
+    """Return the cells and steps that depend on some outputs, or on steps in `again`, in order."""
     moved = dict[Node, None]()
     nodes = list[Cell | Block]()
     for node in calculation.graph.order:
@@ -150,7 +149,7 @@ def _is_disjoint(cell: Cell, changed: Collection[Reference]) -> bool:
 
 
 def _copy(before: Calculation) -> Calculation:
-    """Return the same calculation, to be continued; what it has of solids is shared."""
+    """Return a copy of the calculation to be continued; it shares the data of solids."""
     return replace(
         before,
         values=dict(before.values),
@@ -163,13 +162,13 @@ def _copy(before: Calculation) -> Calculation:
 
 
 def _unmeasured(*_: object) -> None:
-    """Measure nothing, because rows build no solids."""
+    """Return no measurement, because rows build no solids."""
 
 
 def calculate_nodes(
     result: Calculation, nodes: Iterable[Node], measured: Measured, analysed: Analysed
 ) -> None:
-    """Calculate some nodes; those before them in order are calculated already."""
+    """Calculate some nodes; earlier nodes are already calculated."""
     for node in nodes:
         if node in result.broken or not _is_needed(result, node):
             continue
@@ -185,7 +184,7 @@ def calculate_nodes(
 
 
 def _is_needed(result: Calculation, node: Node) -> bool:
-    """Return whether a node is calculated; rows know of a solid what is assumed."""
+    """Return whether a node is needed; for rows, only assumed values of solids are known."""
     if (needs := result.needs) is None:
         return True
     return (
@@ -196,18 +195,18 @@ def _is_needed(result: Calculation, node: Node) -> bool:
 
 
 def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[Fault]:
-    """Return faults of a value that needs a model of which a parameter is not set."""
+    """Return the faults of a value that needs a model with an unset parameter."""
     models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
     unset = [f"{model}.{n}" for model in sorted(models) for n in result.missing.get(model, ())]
     return (
-        [Fault(name, "missing", f"this needs {', '.join(unset)}: set it, or map it to an output")]
+        [Fault(name, "missing", f"this needs {', '.join(unset)}: set it, or link it to an output")]
         if unset
         else []
     )
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """Calculate a cell if its sources have values; its block reports a faulty literal."""
+    """Calculate a cell once its sources have values; a faulty literal is reported by its block."""
     sources = result.graph.sources[cell]
     if cell.reference in result.given:
         column = Column(result.given[cell.reference], is_row=True)
@@ -238,18 +237,18 @@ def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
 
 
 def literal(cell: Cell) -> TypedQuantity:
-    """Return a quantity as its user wrote it.
+    """Return a quantity as typed.
 
     Raises
     ------
     FaultyText
-        If it is none.
+        If it is not a quantity.
     """
     return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Calculate the value of relations, in a block in its declared unit."""
+    """Calculate the value of relations; inside a block it has the declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -259,7 +258,7 @@ def _related(result: Calculation, cell: Cell) -> None:
 
 
 def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
-    """Count the operations of relations with arrays: single values are few, the text is limited."""
+    """Count the operations of relations with arrays; single values are few because the text is limited."""
     if any(column.rank for column in uses.values()):
         limit_values(count := spanned(column.places for column in uses.values()))
         result.operations += count * sum(relation.parts for relation in cell.relations)
@@ -267,7 +266,7 @@ def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
 
 
 def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
-    """Return the value of a relation as the template of its block takes it."""
+    """Return the value of a relation in the form that the template of its block needs."""
     si = column.value
     if cell.declared is None:
         return TypedQuantity(None, "", si, {})  # it is used in SI only
@@ -299,7 +298,7 @@ def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
 def _admitted(
     result: Calculation, cell: Cell, column: Column, uses: Mapping[str, Column], why: str
 ) -> Column:
-    """Return a column with NaN in the rows that have no finite value, which are refused.
+    """Return a column with NaN in the rows without a finite value, and refuse these rows.
 
     Raises
     ------
@@ -322,7 +321,7 @@ def _admitted(
 def _wrong_indices(
     cell: Cell, uses: Mapping[str, Column], rows: Iterable[int]
 ) -> Iterator[tuple[int, Refusal]]:
-    """Yield the rows in which a relation has no value because an index is no place of its array."""
+    """Yield the rows in which a relation has no value because an index is outside its array."""
     for relation in cell.relations:
         for row in rows if relation.items and uses else ():
             if error := wrong_index(relation, uses, row):
@@ -334,7 +333,7 @@ def _refuse(result: Calculation, refusals: Mapping[int, Refusal]) -> None:
 
 
 def _block(result: Calculation, block: Block) -> None:
-    """Evaluate a step or check a model's parameters; what can be checked is, even if a cell is pending."""
+    """Evaluate a step or check a model's parameters, as far as possible while a cell is pending."""
     cells = block.cells
     waiting = {n for n, cell in cells.items() if cell in result.pending} if result.pending else set()
     broken, typed, values = result.broken, result.typed, result.values
@@ -359,7 +358,7 @@ def _block(result: Calculation, block: Block) -> None:
 
 
 def _given(result: Calculation, cell: Cell) -> Column | Raw:
-    """Return the value of a cell as a step takes it: a column if it differs from row to row."""
+    """Return the value of a cell for a step: a column if it differs from row to row."""
     column = result.values.get(cell.name)
     if column is not None and column.is_row:
         return column
@@ -367,7 +366,7 @@ def _given(result: Calculation, cell: Cell) -> Column | Raw:
 
 
 def _rows_of(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or a model's own values, for all rows that have inputs."""
+    """Evaluate a step, or a model's own formulas, for all rows that have inputs."""
     for states in (result.pending, result.broken):
         if not states.isdisjoint(block.cells.values()):
             states.add(block)
@@ -383,7 +382,7 @@ def _rows_of(result: Calculation, block: Block) -> None:
 
 
 def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: set[str]) -> list[Fault]:
-    """Evaluate a step or make a model's shape; where inputs are waited for, check what can be checked."""
+    """Evaluate a step or create a model's shape; check what can be checked while inputs are pending."""
     try:
         if waiting:
             block.cls.from_quantities(raw, pending=waiting)
@@ -411,7 +410,7 @@ def _outputs(result: Calculation, block: Block) -> tuple[str, ...] | None:
 
 
 def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None) -> None:
-    """Evaluate a step; one that is deferred is checked as far as that takes no formula."""
+    """Evaluate a step; check a deferred step as far as possible without formulas."""
     try:
         evaluation = _prepared(result, block) or _evaluation(result, block, raw, wanted)
     except StepDeferred:
@@ -430,7 +429,7 @@ def _evaluation(
 ) -> Evaluation:
     """Return the evaluation of a step.
 
-    At the level of a design as it is kept or computed, at one of rows here.
+    At the level of the design it may be cached; at a level for rows it is computed here.
     """
     if result.levels is None:
         return memory.evaluation(block, raw, wanted)
@@ -441,10 +440,7 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that was prepared for this calculation.
-
-    None if there is none.
-    """
+    """Return the evaluation of a step that was prepared for this calculation, or None."""
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:
         raise StepDeferred
@@ -476,7 +472,7 @@ def _solid(result: Calculation, model: Block, measured: Measured) -> None:
 
 
 def _analysis(result: Calculation, node: SolidAnalysis, model: Block, kind: str, analysed: Analysed) -> None:
-    """Take the results of an analysis that a relation uses; it waits for its solid, and then for its job."""
+    """Use the results of an analysis that a relation needs; it waits for its solid, and then for its job."""
     wanted = result.graph.wanted(model.name, kind)
     if not wanted:
         return

@@ -1,4 +1,4 @@
-"""The values of a design in some rows, each as far as it is known, and the faults of it."""
+"""The values of a design in some rows, as far as they are known, and the faults of the design."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Measured = Callable[[CadModel], Measures | None]
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
 NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
 DEFERRED: Literal["deferred"] = "deferred"
-Prepared = Evaluation | Literal["deferred"]
+DocumentCalculation = Evaluation | Literal["deferred"]
 """The evaluation of a step that is shared with other designs, or that nobody waited for it."""
 
 
@@ -94,7 +94,7 @@ class Calculation:
     changed: Mapping[Reference, Column] = field(default_factory=dict)
     values: dict[str, Column] = field(default_factory=dict)
     typed: dict[str, TypedQuantity] = field(default_factory=dict)
-    prepared: dict[str, Prepared] = field(default_factory=dict)
+    prepared: dict[str, DocumentCalculation] = field(default_factory=dict)
     evaluations: dict[str, Evaluation] = field(default_factory=dict)
     steps: dict[str, StepRows] = field(default_factory=dict)
     shapes: dict[str, CadModel] = field(default_factory=dict)
@@ -110,7 +110,7 @@ class Calculation:
 
     @property
     def for_all(self) -> Refusal | None:
-        """Return the refusal of every row; None, if nothing is wrong with all of them."""
+        """Return the refusal of all rows; None if no fault concerns all of them."""
         return refusal_of(self.faults) if self.faults else None
 
     def value(self, reference: Reference) -> Value:
@@ -119,12 +119,12 @@ class Calculation:
         Raises
         ------
         KeyError, AttributeError, FaultyText
-            If it has none.
+            If the name has no value.
         """
         return self.used(reference).value
 
     def used(self, reference: Reference) -> Column:
-        """Return the value of a name as relations use it; raises as `value`."""
+        """Return the value of a name as relations use it; raises like `value`."""
         if reference in self.changed:
             return self.changed[reference]
         if cell := self.graph.cell(reference):
@@ -144,7 +144,7 @@ class Calculation:
             return Column(getattr(self.instance(reference.block), declared.attribute))
 
     def column(self, reference: Reference) -> Column:
-        """Return the value of a name in all rows; NaN while it waits, and where it does not exist."""
+        """Return the value of a name in all rows; NaN while it is pending or missing."""
         step = self.step(reference.block) if self.graph.cell(reference) is None else None
         try:
             if step is not None and reference not in self.changed and reference not in self.given:
@@ -154,7 +154,7 @@ class Calculation:
             return Column(np.nan)
 
     def taken(self, reference: Reference) -> Column:
-        """Return a parameter of a model as the model takes it; NaN where it has none."""
+        """Return the value of a parameter that the model uses; NaN if it has none."""
         if reference.block in self.steps:
             return self.steps[reference.block].column(reference.member)
         shape = self.shapes.get(reference.block)
@@ -163,7 +163,7 @@ class Calculation:
         return Column(getattr(shape, shape.inputs[reference.member].attribute))
 
     def step(self, name: str) -> StepRows | None:
-        """Return a step, or a model of which rows want the values, as its rows; None while it waits."""
+        """Return a step, or a model whose values are requested, as rows; None while it is pending."""
         if name in self.steps:
             return self.steps[name]
         evaluation = self.evaluations.get(name)
@@ -185,16 +185,13 @@ class Calculation:
         return reference.analysis is None and reference.member in block.cls.formulas
 
     def measure(self, reference: Reference) -> Value:
-        """Return a measure of a solid, or output of its analyses [SI], by its name.
+        """Return a measurement of a solid, or an output of its analyses [SI], by its name.
 
-        `throw.torsion.stiffness`.
+        An example is `throw.torsion.stiffness`. The value is a number, an array [row, column] for a table, or
+        an array for a list.
 
-        A number, a table as an array [row, column], or a list as an array.
-
-        Raises
-        ------
-        FaultyText
-            With code `no_value`, where an analysis has a reason instead, or a build lacks the measure.
+        Raises ------ FaultyText With code `no_value`, if an analysis has a reason instead of a value, or a
+        build lacks the measurement.
         """
         scale = unit(measured_unit(reference))
         if reference.analysis is None:
@@ -209,7 +206,7 @@ class Calculation:
         return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
-        """Return the outputs of an analysis that are used and calculated; empty while it is pending."""
+        """Return the calculated outputs of an analysis that are used; empty while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
     def _computed(self, reference: Reference, kind: str) -> object:
@@ -219,12 +216,12 @@ class Calculation:
         return result["value"]
 
     def instance(self, block: str) -> Template:
-        """Return the template of a step, or the model, with its values; of rows, that of the first.
+        """Return the template of a step, or the model, with its values; for rows, that of the first row.
 
         Raises
         ------
         KeyError
-            If it has none, because it waits or is refused.
+            If there is none, because it is pending or refused.
         """
         if block in self.steps:
             parts = self.steps[block].parts
@@ -242,7 +239,7 @@ class Calculation:
         ]
 
     def levels_used(self) -> dict[str, str | None]:
-        """Return the level at which each step was calculated; None of a step without levels."""
+        """Return the level at which each step was calculated; None for a step without levels."""
         used = {name: evaluation.level for name, evaluation in self.evaluations.items()}
         single = {name: level if isinstance(level, str) else None for name, level in used.items()}
         return single | {n: step.level for n, step in self.steps.items() if not step.block.is_model}

@@ -1,8 +1,8 @@
 """Values of many rows of a design, with their error bounds.
 
-The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
-axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not
-mistaken for a curve of 360 places.
+Rows run along the first axis, places along a curve along the last. A value that is equal for all rows has no
+row axis. So each column states whether its first axis counts rows, and 360 rows are not mistaken for a curve
+of 360 places.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Column:
 
     @property
     def rank(self) -> int:
-        """Number of axes that the value has in one row."""
+        """Return the number of axes of the value in one row."""
         return np.ndim(self.value) - self.is_row
 
     @property
@@ -58,20 +58,20 @@ class Column:
         return value.reshape(len(value), *(1,) * (rank - self.rank), *value.shape[1:])
 
     def spread(self, count: int) -> Array:
-        """Return the value of every row; a view, where one value serves all of them."""
+        """Return the value in every row; a view if one value serves all rows."""
         value = np.asarray(self.value, dtype=float)
         if self.is_row:
             return value
         return value[None] if count == 1 else np.broadcast_to(value, (count, *value.shape))
 
     def finite_rows(self) -> Mask:
-        """Return the rows in which the value is finite at all its places."""
+        """Return a mask of the rows in which the value is finite at all places."""
         finite: Mask = np.asarray(np.isfinite(self.value))
         whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
         return whole
 
     def unknown_rows(self, count: int) -> Mask:
-        """Return the rows in which the value is NaN at any of its places."""
+        """Return a mask of the rows in which the value is NaN at any place."""
         unknown = np.asarray(np.isnan(self.value))
         if not self.is_row:
             return np.full(count, unknown.any())
@@ -86,9 +86,9 @@ class Column:
 
 
 def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
-    """Return values that broadcast row by row, and whether any of them has rows.
+    """Return values that broadcast row by row, and whether any of them has a row axis.
 
-    Axes within a row broadcast from the last one, as they would in a design without rows.
+    Axes within a row broadcast from the last one, as in a design without rows.
     """
     rank = max((column.rank for column in columns.values()), default=0)
     values = {name: column.padded(rank) for name, column in columns.items()}
@@ -96,7 +96,7 @@ def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
 
 
 def stacked(items: Sequence[Column]) -> Column:
-    """Return a list of single values, of which some may differ from row to row, as one value of rank 1."""
+    """Return a list of single values, some of which may differ from row to row, as one value of rank 1."""
     if not any(item.is_row for item in items):
         return Column(np.array([item.value for item in items], dtype=float))
     values = np.broadcast_arrays(*(item.value for item in items))
@@ -110,7 +110,7 @@ UNEQUAL = (
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column of this number of rows from columns of parts of the rows; NaN in the others.
+    """Return one column for this number of rows, assembled from columns of parts; NaN in other rows.
 
     Raises
     ------
@@ -147,7 +147,7 @@ class RowEstimate:
 
     @classmethod
     def exact(cls, column: Column, axes: int = 0) -> RowEstimate:
-        """Return a value that is what it is."""
+        """Return an exact value."""
         return cls(Estimate(column.value, axes=axes), column.is_row)
 
     @property
@@ -157,17 +157,17 @@ class RowEstimate:
 
     @property
     def error(self) -> Column:
-        """Return the relative error; 0 if exact, NaN where it is not known."""
+        """Return the relative error; 0 if exact, NaN if unknown."""
         return Column(self.one.error, self.is_row_error)
 
     @property
     def has_rows(self) -> bool:
-        """Return whether anything of it differs from row to row."""
+        """Return whether any part of it differs from row to row."""
         return self.is_row or self.is_row_error
 
     @property
     def rank(self) -> int:
-        """Number of axes that the value has in a row beside those of a curve."""
+        """Return the number of axes of the value in a row, besides those of a curve."""
         return max(self.value.rank - self.one.axes, 0)
 
     def padded(self, rank: int) -> Estimate:
@@ -181,7 +181,7 @@ class RowEstimate:
         return Estimate(value.padded(rank + one.axes), error, axes, scale)
 
     def bounds(self) -> tuple[Column, Column]:
-        """Return both ends of the band; the value itself where its error is not known."""
+        """Return both ends of the band; the value itself if its error is unknown."""
         one = self.one
         error = np.nan_to_num(one.error, nan=0.0)
         scale = None if one.scale is None else np.nan_to_num(one.scale, nan=0.0)
@@ -190,9 +190,9 @@ class RowEstimate:
         return Column(low, self.has_rows), Column(high, self.has_rows)
 
     def missing(self, count: int) -> Mask:
-        """Return the rows that have no value at some place."""
+        """Return a mask of the rows that lack a value at some place."""
         return self.value.unknown_rows(count)
 
     def unknown(self, count: int) -> Mask:
-        """Return the rows whose error is not known at some point."""
+        """Return a mask of the rows whose error is unknown at some point."""
         return self.error.unknown_rows(count)

@@ -57,12 +57,12 @@ class ClimbResult:
 
     @property
     def undecided(self) -> list[str]:
-        """Return the criteria asked for that are still undecided."""
+        """Return the requested criteria that are still undecided."""
         return [j.name for j in self.criteria if j.verdict == "undecided" and j.name in self.asked]
 
     @property
     def error_unknown(self) -> list[str]:
-        """Return the criteria asked for that follow from values whose error is still unknown."""
+        """Return the requested criteria whose values still have an unknown error."""
         asked = [j for j in self.criteria if j.name in self.asked]
         return [j.name for j in asked if j.is_open and j.verdict != "undecided"]
 
@@ -79,7 +79,7 @@ class _Move:
 
     @property
     def gain(self) -> float:
-        """Return the error that it takes away, for its cost."""
+        """Return the removed error divided by its cost."""
         return (min(self.before, 1e6) - min(self.after, 1e6)) / max(self.seconds, 1e-6)
 
 
@@ -119,7 +119,7 @@ class Climb:
         return self.wanted is None or name in self.wanted
 
     def _next(self, open_now: Sequence[str], left: float) -> Stop | None:
-        """Make the best move, or say why there is none."""
+        """Make the best move, or note why there is none."""
         if not open_now:
             return "decided"
         moves = [move for move in self._moves(open_now) if (move.block.name, move.level) not in self._tried]
@@ -154,7 +154,7 @@ class Climb:
             yield _Move(block, finer.level, before, _largest(finer.error), seconds)
 
     def _note_levels(self, block: Block, reference: Reference) -> None:
-        """Say why levels are left out: another truth, an error that is not smaller or not stated."""
+        """Note why levels are skipped: another truth, or an error that is not smaller or not stated."""
         evaluation, measured = self.calculation.evaluations[block.name], accuracy(block.cls)
         if measured is None:
             return
@@ -185,7 +185,7 @@ class Climb:
         return estimated_seconds(block.cls, raw, level, None, self._needed(block, open_now))
 
     def _climb(self, move: _Move, open_now: Sequence[str]) -> Stop | None:
-        """Calculate a step at a finer level, and keep that where it answers with a smaller error."""
+        """Calculate a step at a finer level, and keep the result if its error is smaller."""
         name, level, start = move.block.name, move.level, time.perf_counter()
         self._tried.add((name, level))
         self.skipped.pop((name, level), None)
@@ -209,7 +209,7 @@ class Climb:
         return None
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
-        """Return the criteria of these names, judged again."""
+        """Return the criteria with these names, judged again."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
 
 

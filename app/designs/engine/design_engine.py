@@ -50,7 +50,7 @@ class DesignEngine:
 
     @property
     def varied(self) -> frozenset[Reference]:
-        """Return the places of which rows give the values."""
+        """Return the places whose values the rows provide."""
         return self.design.varied
 
     @property
@@ -73,30 +73,18 @@ class DesignEngine:
     ) -> DesignEngine:
         """Return a design whose places `varied` differ from row to row.
 
-        Parameters
-        ----------
-        document
-            The design.
-        catalogues
-            Its templates and models.
-        varied
-            Parameters, inputs of steps, parameters of models. A measure of a solid may be among them: then
-            the rows give it.
-        wanted
-            What will be asked for; where it is given, other parts of the design are not checked.
-        criteria
-            Those that will be judged, beside what is wanted.
-        measured
-            Measures of solids, and measures through which iterations run, that are known [SI].
-        pending
-            Whether values that wait for a solid are NaN instead of being refused.
-        set_aside
-            Varied places that a relation sets in the document: the rows replace it.
+        Parameters ---------- document The design. catalogues Its templates and models. varied Parameters,
+        inputs of steps, parameters of models. A measurement of a solid may be among them, if the rows provide
+        it. wanted The values that will be requested; if given, other parts of the design are not checked.
+        criteria The criteria that will be judged, besides the requested values. measured Known measurements
+        of solids, including those of iterations [SI]. pending Whether values that depend on a missing solid
+        are NaN instead of being refused. set_aside Varied places that a relation sets in the document: the
+        rows replace it.
 
         Raises
         ------
         InvalidInputs
-            With everything that is wrong with the design; else naming the places that cannot vary, with the
+            With all faults of the design, or naming the places that cannot vary, with the
             codes `unknown_name`, `not_a_number`, `follows_from`, `not_varied`, `no_relation`,
             `needs_solids` or `shape`.
         """
@@ -128,24 +116,14 @@ class DesignEngine:
         criteria: Collection[str] | None = None,
         chunk: int = MOST_ROWS,
     ) -> Table:
-        """Return the wanted values of all rows, and the verdicts of criteria.
+        """Return the requested values of all rows, and the verdicts of criteria.
 
-        Parameters
-        ----------
-        rows
-            A column for every varied place.
-        wanted
-            Parameters, inputs and outputs of steps, parameters of models, known measures.
-        levels
-            By step; a step that is not named has the level, or the tolerance, of the design, else the level
-            at which its template starts.
-        judge
-            Whether criteria are judged with all numbers; all criteria, unless some are named. An error is
-            carried through relations, at both ends, as in a design of its own.
-        criteria
-            Those whose verdicts are wanted.
-        chunk
-            The rows of one array call, at most; fewer where curves or a level ask for it (`rows_at_once`).
+        Parameters ---------- rows A column for every varied place. wanted Parameters, inputs and outputs of
+        steps, parameters of models, known measurements. levels Levels by step; an unnamed step uses the level
+        or tolerance of the design, else the starting level of its template. judge Whether criteria are judged
+        with all numbers; all criteria, unless some are named. Errors are propagated through relations at both
+        ends, as in a single design. criteria The criteria whose verdicts are requested. chunk The largest
+        number of rows in one array call; fewer if curves or a level require it (`rows_at_once`).
 
         Raises
         ------
@@ -178,9 +156,8 @@ class DesignEngine:
     ) -> dict[str, str | None]:
         """Return one level for each step: the cheapest whose stated error is within the tolerance.
 
-        It is so at a `share` of the rows that have values at all. A step of which the design names a level
-        keeps it, and one that states too few errors has the level at which it starts. None of a step without
-        levels.
+        This must hold for a `share` of the rows that have values. A step with a level in the design keeps it,
+        and a step that states too few errors uses its starting level. A step without levels has None.
         """
         raise_if(list(self.design.faults(wanted, {})))
         count, given = self.checked(rows)
@@ -196,11 +173,11 @@ class DesignEngine:
         criteria: Collection[str] = (),
         by_tables: bool = False,
     ) -> float:
-        """Estimate how long a call for this number of rows takes [s].
+        """Estimate the time of a call for this number of rows [s].
 
-        By the processor time of the last call of this kind, if it had some rows; before it by the tables of
-        errors, which is an order of magnitude, and knows no heat balance. `by_tables` takes these always:
-        equal questions have equal answers, in whatever process and after whatever calls.
+        It uses the processor time of the last similar call with enough rows. Before such a call it uses the
+        cost tables of the levels, which give an order of magnitude and ignore heat balances. `by_tables`
+        always uses the tables, so that equal questions give equal answers in any process.
         """
         asked, seconds = self._wanted(wanted, criteria), 0.0
         if not by_tables and (pace := self.design.pace(asked, levels)) is not None:
@@ -221,15 +198,15 @@ class DesignEngine:
         *,
         criteria: Collection[str] = (),
     ) -> int:
-        """Number of rows that one array call takes; at most `chunk`."""
+        """Return the number of rows in one array call, at most `chunk`."""
         return self.design.rows_at_once(self._wanted(wanted, criteria), levels, chunk)
 
     def criteria(self) -> list[str]:
-        """Return the criteria that a design of one row has: not those of outputs that its steps leave out."""
+        """Return the criteria of a design of one row, except those whose outputs are not computed."""
         return [name for name, one in subjects(self.graph).items() if one.is_due(self.graph)]
 
     def unit(self, reference: Reference) -> str:
-        """Return the declared unit of a place, an output or a measure; of a parameter the unit as written."""
+        """Return the declared unit of a place, an output or a measurement; for a parameter the typed unit."""
         if cell := self.graph.parameters.get(str(reference)):
             typed = None if cell.relations else read_any(cell.raw).unit
             return typed or self.graph.kinds[str(reference)].unit
@@ -238,14 +215,14 @@ class DesignEngine:
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit by which it is known what may be typed for a name."""
+        """Return the unit that decides which units a user may type for a name."""
         is_inside = str(reference) not in self.graph.parameters and is_member(self.graph, reference)
         return self.graph.accepted(reference) if is_inside else self.unit(reference)
 
     def nominal(self, reference: Reference) -> Value:
-        """Return the value [SI] of a name as the document has it.
+        """Return the value [SI] of a name in the document.
 
-        NaN where it has none, or waits for a solid.
+        It is NaN if there is none, or if it depends on a missing solid.
         """
         raise_if(list(self.design.faults([reference], {})))
         return self.written.nominal(Targets.of([reference]), {}).column(reference).value

@@ -1,4 +1,4 @@
-"""One level for all rows of a step: the cheapest whose stated error is small enough at enough of them."""
+"""Choose one level for all rows of a step: the cheapest whose stated error is small enough in most rows."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class LevelChoice:
     wanted: Targets
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
-        """Return the levels given, and those of steps for which the design has a tolerance and no level."""
+        """Return the given levels, and those of steps for which the design has a tolerance but no level."""
         chosen = dict(levels)
         for block in self.design.steps(self.wanted):
             if block.tolerance is not None and not (levels.get(block.name) or block.level):
@@ -52,9 +52,9 @@ class LevelChoice:
         return chosen
 
     def within(self, tolerance: float, share: float, starts: Levels) -> dict[str, str | None]:
-        """Return the level of each step, chosen after those from which it follows.
+        """Return the level of each step, chosen after the steps on which it depends.
 
-        `starts` are levels at which steps start whose rows would start at different ones.
+        `starts` are the starting levels of steps whose rows would start at different ones.
         """
         chosen = dict(starts)
         for block in self.design.steps(self.wanted):
@@ -96,7 +96,7 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """Return the cheapest level that serves, else the finest within the budget (`level_choice`)."""
+        """Return the cheapest sufficient level, or the finest within the budget (`level_choice`)."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
             if measured is None:
@@ -107,13 +107,13 @@ class LevelSearch:
         return next(best_first(self.block.cls, self.ladder, self.start, count))
 
     def _may_serve(self, measured: Accuracy, level: str) -> bool:
-        """Return whether a level is worth a calculation: a finer one, if it states small enough errors."""
+        """Return whether a level is worth calculating: a finer one must state small enough errors."""
         finer = level != self.start and self.ladder.index(level) > self._place
         return not finer or float(np.mean(self._expected(measured, level))) >= self.share
 
     @cached_property
     def _place(self) -> int:
-        """Return the place of the starting level on the ladder."""
+        """Return the position of the starting level on the ladder."""
         return self.ladder.index(self.start) if self.start in self.ladder else -1
 
     @cached_property
@@ -131,7 +131,7 @@ class LevelSearch:
 
     @cached_property
     def ladder(self) -> tuple[str, ...]:
-        """Return the levels that answer these rows, cheapest first."""
+        """Return the levels that can calculate these rows, cheapest first."""
         return next((part.template.ladder() for _, part in self._parts), (self.block.cls.default_level,))
 
     @cached_property
@@ -147,7 +147,7 @@ class LevelSearch:
         return self._share(steps, self.tolerance)
 
     def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
-        """Return the share of rows whose outputs all have a small error, or no value at the first level."""
+        """Return the share of rows whose outputs all have a small error or no value at the first level."""
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
             there = _joined(_has_value(step, name) for step in steps)
@@ -156,7 +156,7 @@ class LevelSearch:
         return float(np.mean(met))
 
     def _calculated(self, level: str | None) -> list[StepRows]:
-        """Return the step in each chunk of rows; without parts where it waits, or is refused."""
+        """Return the step in each chunk of rows; without chunks if it is pending or refused."""
         nothing = StepRows(self.block, 1, has_rows=False)
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
@@ -179,7 +179,7 @@ def _has_value(step: StepRows, output: str) -> Mask:
 
 
 def _expected(measured: Accuracy, step: StepRows, level: str, output: str) -> Array:
-    """Return the errors that another level states for where the rows lie; infinite, where it states none."""
+    """Return the errors that another level states at the rows; infinite if it states none."""
     errors = np.full(step.count, np.inf)
     for part in step.parts:
         errors[part.rows] = measured.expected(part.template, level, [output])[output]

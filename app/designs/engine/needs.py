@@ -32,7 +32,7 @@ class Needs:
     waiting: set[Reference] = field(default_factory=set)
 
     def outputs(self, block: Block) -> tuple[str, ...]:
-        """Return the formulas of a block that are used, in the order in which they are declared."""
+        """Return the used formulas of a block, in declaration order."""
         used = self.members.get(block.name, set())
         return tuple(name for name in block.cls.formulas if name in used)
 
@@ -43,9 +43,9 @@ def needs(
     measured: Collection[Reference],
     inside: Iterable[Reference] = (),
 ) -> Needs:
-    """Return all nodes on which some values depend, except those that lie behind `known` values.
+    """Return all nodes on which some values depend, except those behind `known` values.
 
-    Of inputs `inside` steps the steps are needed too, with what they take these inputs for.
+    For inputs `inside` steps the steps themselves are needed too.
     """
     result, seen = Needs(), set[Reference]()
     left = [*wanted, *(before for reference in inside for before in _of_member(graph, reference, result))]
@@ -61,7 +61,7 @@ def needs(
 def _before(
     graph: Graph, reference: Reference, measured: Collection[Reference], result: Needs
 ) -> Iterator[Reference]:
-    """Yield the values that are used for one value, which is noted as needed."""
+    """Yield the values used by one value, and mark it as needed."""
     if cell := graph.cell(reference):
         result.cells.add(cell)
         if reference not in measured:
@@ -75,14 +75,14 @@ def _before(
 
 
 def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Reference]:
-    """Return the values that are used for an input or output of a block, which is noted as needed."""
+    """Return the values used by an input or output of a block, and mark it as needed."""
     block = graph.blocks[reference.block]
     result.members.setdefault(block.name, set()).add(reference.member)
     return [cell.reference for cell in block.cells.values()]
 
 
 def is_member(graph: Graph, reference: Reference) -> bool:
-    """Return whether a name means an input or output of a step or model, not a measure of a solid."""
+    """Return whether a name refers to an input or output of a step or model, not to a measurement."""
     block = graph.blocks.get(reference.block)
     if block is None or reference.analysis is not None:
         return False
@@ -99,7 +99,7 @@ class MovingNodes:
         return node in self.because
 
     def chain(self, node: Node) -> list[Node]:
-        """Return the path from the varied cell to a node that follows from it."""
+        """Return the path from the varied cell to a dependent node."""
         nodes = [node]
         while before := self.because[nodes[-1]]:
             nodes.append(before)
@@ -107,7 +107,7 @@ class MovingNodes:
 
 
 def varying(graph: Graph, varied: Collection[Reference]) -> MovingNodes:
-    """Return all nodes that follow from varied places."""
+    """Return all nodes that depend on varied places."""
     because: dict[Node, Node | None] = {}
     for node in graph.order:
         if source := next((source for source in graph.sources.get(node, ()) if source in because), None):
@@ -118,12 +118,12 @@ def varying(graph: Graph, varied: Collection[Reference]) -> MovingNodes:
 
 
 def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
-    """Return whether a cell is a varied place, or uses one, such as a measure that rows give."""
+    """Return whether a cell is a varied place, or uses one, such as a measurement that rows provide."""
     return any(reference in varied for reference in (cell.reference, *cell.uses.values()))
 
 
 def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: MovingNodes) -> list[Fault]:
-    """Return a fault for each measure of a solid that differs from row to row; it names the chain."""
+    """Return a fault for each measurement of a solid that differs from row to row, with its chain."""
     solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
     return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]
 

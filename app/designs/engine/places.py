@@ -22,7 +22,7 @@ from templates.core.units.units import Value
 
 
 def with_places(document: Document, graph: Graph, varied: Collection[Reference]) -> Document:
-    """Return the document with a literal at every varied place that has its default or a relation.
+    """Return the document with a literal at every varied place that has a default or a relation.
 
     Only its shape matters: the rows give its values.
     """
@@ -63,7 +63,7 @@ def _declared(graph: Graph, reference: Reference) -> Input | None:
 def place_faults(
     graph: Graph, varied: Collection[Reference], set_aside: Collection[Reference] = ()
 ) -> Iterator[Fault]:
-    """Yield the faults of the places that are to vary, and of those whose relations are set aside."""
+    """Yield the faults of the places that shall vary, and of those whose relations are overridden."""
     for reference in set_aside:
         cell = graph.cell(reference)
         if reference not in varied:
@@ -82,13 +82,13 @@ def place_faults(
         if cell is None and _declared(graph, reference) is None:
             yield unknown_name(name, _places(graph), "place")
         elif isinstance(_declared(graph, reference), Choice):
-            yield Fault(name, "not_a_number", f"{name} is a word; only quantities can vary")
+            yield Fault(name, "not_a_number", f"{name} is not a quantity; only quantities can vary")
         elif cell and cell.relations and reference not in set_aside:
             yield Fault(name, "follows_from", _followed(cell))
 
 
 def _followed(cell: Cell) -> str:
-    """Return the places to vary instead of a relation."""
+    """Return the places that can vary instead of a relation."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
     instead = f"; vary {', '.join(sorted(cell.uses))} instead, or write a value there" if cell.uses else ""
     return f"{cell.name} follows from others ({text.strip()}){instead}"
@@ -145,7 +145,7 @@ class Ranks:
         return own + (0 if block in self.moving else self._points(block))
 
     def _points(self, block: Block) -> int:
-        """Return the number of axes of the points of a step that is one for all rows."""
+        """Return the number of axes of the points of a step that are equal for all rows."""
         inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
         return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
 
@@ -181,7 +181,11 @@ def checked_rows(
     count = next((len(array) for array in arrays.values() if array.ndim), 1)
     for reference, array in arrays.items():
         if reference in varied and array.ndim - 1 not in _ranks(graph, reference):
-            faults.append(Fault(str(reference), "shape", f"rows of this place have no shape {array.shape}"))
+            faults.append(
+                Fault(
+                    str(reference), "shape", f"values of this parameter cannot have the shape {array.shape}"
+                )
+            )
         elif array.ndim and len(array) != count:
             detail = f"all columns have one length, but this one has {len(array)} rows, another {count}"
             faults.append(Fault(str(reference), "shape", detail))

@@ -24,7 +24,7 @@ class Refusal:
 
 
 def refusal_of(faults: Sequence[Fault]) -> Refusal:
-    """Return one refusal of all that is wrong, at the place of the first."""
+    """Return one refusal for several faults, located at the first one."""
     first, *others = faults
     details = [first.detail, *(f"{fault.name}: {fault.detail}" for fault in others)]
     return Refusal(first.name, first.code, "; ".join(details))
@@ -36,7 +36,7 @@ def refusal_of_text(place: str, error: FaultyText) -> Refusal:
 
 
 def masked(step: str, template: Template, rows: Indices) -> dict[int, Refusal]:
-    """Return the rows whose points are masked, each with the words of the first mask that covers it."""
+    """Return the rows with masked points, each with the message of its first mask."""
     refusals: dict[int, Refusal] = {}
     for mask in template.ledger.masks:
         if not mask.explains and mask.where.any():
@@ -46,7 +46,7 @@ def masked(step: str, template: Template, rows: Indices) -> dict[int, Refusal]:
 
 
 def _refusal(step: str, template: Template, mask: Mask) -> Refusal:
-    """Return a mask in the form of the fault that a point has when it stands alone."""
+    """Return a mask in the form of the fault that a single point would have."""
     attribute, *others = mask.names
     name = template.declarations[attribute].name
     code = BROKEN
@@ -68,7 +68,7 @@ def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collect
 
 
 def _beneath(cls: type[Template], fault: Fault) -> frozenset[str]:
-    """Return the attributes that a fault follows from; none, where that is not known."""
+    """Return the attributes on which a fault depends; none if they are unknown."""
     declared = {**cls.formulas, **cls.inputs}
     if not all(name in declared for name in fault.names):
         return frozenset()

@@ -1,8 +1,8 @@
-"""Relations for many rows at once, each row by itself: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
+"""Relations for many rows at once, evaluated row by row: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
 
-Where no value differs from row to row, a relation is calculated as its text says. A relation hands on the
-tolerance of a value, or of that plus a constant. Other results of toleranced values lie in an interval too,
-but no part is made to that interval: a tolerance analysis reports it, and drawings and STEP files leave it
+Where no value differs from row to row, a relation is calculated once. A relation that is a value, or a value
+plus a constant, passes on the tolerance of that value. Other results of toleranced values also have an
+interval, but no part is made to it: a tolerance analysis reports it, and drawings and STEP files leave it
 out.
 """
 
@@ -16,6 +16,7 @@ import numpy as np
 from app.designs.engine.columns import Column, aligned, stacked
 from app.designs.network import Cell, Graph
 from templates.core.errors import FaultyText
+from templates.core.units.evaluation import LISTWISE, check_ranks, listwise
 from templates.core.units.items import item_of
 from templates.core.units.lists import ITEM, LIST
 from templates.core.units.nodes import Apply, Constant, Item, Name, Node, Operation, Word
@@ -23,7 +24,6 @@ from templates.core.units.operations import OPERATORS
 from templates.core.units.quantity import TypedQuantity
 from templates.core.units.relation import Relation
 from templates.core.units.tolerance import Tolerance
-from templates.core.units.walking import LISTWISE, check_ranks, listwise
 
 MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
 MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
@@ -32,12 +32,12 @@ _ADD, _SUBTRACT = OPERATORS["add"], OPERATORS["subtract"]
 
 
 def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
-    """Return the value of a relation in all rows; NaN where an index is no place of its array.
+    """Return the value of a relation in all rows; NaN where an index is outside its array.
 
     Raises
     ------
     FaultyText
-        With code `shape`, where curves of different lengths meet; `index`, if no row has a value.
+        With code `shape` if curves have different lengths, or `index` if no row has a value.
     """
     if not any(column.is_row for column in uses.values()):
         return Column(relation.value({name: column.value for name, column in uses.items()}))
@@ -58,7 +58,7 @@ def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:
-    """Return why a row has no value, if that is because of an index."""
+    """Return why a row has no value, if an index is the cause."""
     alone = {name: np.asarray(c.value)[row] if c.is_row else c.value for name, c in uses.items()}
     try:
         for item in relation.items:
@@ -85,12 +85,12 @@ def _item(item: Item, uses: Mapping[str, Column]) -> Column:
 
 
 def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
-    """Return the value of a tree in all rows, from the columns of its names and of items by their text.
+    """Return the value of a tree in all rows, from the columns of its names and items.
 
     Raises
     ------
     FaultyText
-        With code `shape`, where a single value stands in place of a list, or a list in place of one.
+        With code `shape`, if a single value occurs in place of a list or vice versa.
     """
     match node:
         case Constant(value=value):
@@ -117,7 +117,7 @@ def _applied(operation: Operation, parts: list[Column]) -> Column:
 
 
 def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
-    """Return the number of axes of a tree in one row, from those of its names and of items by their text."""
+    """Return the number of axes of a tree in one row, from those of its names and items."""
     match node:
         case Constant() | Word():
             return 0
@@ -134,10 +134,10 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
 
 
 def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, TypedQuantity]) -> Tolerance | None:
-    """Return the tolerance that a cell has by its relation; None if it has none.
+    """Return the tolerance that a cell gets from its relation; None if it has none.
 
-    `typed` are the values of cells as they were read. A zone of ISO 286 is that of its own nominal size:
-    where a constant is added, the limits stay and the zone goes.
+    `typed` are the values of cells as they were read. A zone of ISO 286 belongs to its nominal size: if a
+    constant is added, the limits stay and the zone is dropped.
     """
     is_moved = False
     while cell.relations:
@@ -154,10 +154,7 @@ def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, TypedQuantity]) -
 
 
 def _term(tree: Node) -> tuple[str, bool] | None:
-    """Return the only name of a relation, and whether a constant is added to it.
-
-    None of any other relation.
-    """
+    """Return the only name of a relation, and whether a constant is added to it; None for other relations."""
     match tree:
         case Name(name=name):
             return name, False
@@ -176,7 +173,7 @@ def _is_constant(tree: Node) -> bool:
 
 
 def limit_values(values: int) -> None:
-    """Refuse more values in one place than a design takes.
+    """Refuse more values in one place than a design may have.
 
     Raises
     ------
@@ -189,7 +186,7 @@ def limit_values(values: int) -> None:
 
 
 def limit_operations(operations: int) -> None:
-    """Refuse relations that calculate more, all together, than a design does.
+    """Refuse relations with more operations in total than a design may have.
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Targets:
 
     @classmethod
     def of(cls, references: Iterable[Reference], judged: Iterable[Subject] = ()) -> Targets:
-        """Return values, and those that criteria name."""
+        """Return the requested values, and those that criteria name."""
         subjects = [subject for subject in judged if subject.block is None or not subject.block.is_model]
         subjects += [other for one in subjects for _, other in one.instead]
         used = [(one, r) for one in subjects for r in one.references.values()]
@@ -69,7 +69,7 @@ class RowDesign:
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Targets) -> Needs:
-        """Return the cells on which some values depend; kept for the next call."""
+        """Return the cells on which some values depend; cached for the next call."""
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
                 self._needs.clear()
@@ -88,7 +88,7 @@ class RowDesign:
         return [block for block in blocks if block.name in due and not block.is_model]
 
     def faults(self, wanted: Collection[Reference], levels: Levels) -> Iterator[Fault]:
-        """Yield the faults of the wanted names and of levels."""
+        """Yield the faults of requested names and of levels."""
         unknown = [str(r) for r in wanted if r not in self.varied and self.graph.node(r) is None]
         yield from unknown_names(unknown, self.graph.names(), "name")
         for reference in wanted:
@@ -109,7 +109,7 @@ class RowDesign:
         return block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
 
     def constants(self, wanted: Targets, levels: Levels) -> Calculation:
-        """Calculate what all rows share; kept for the next call."""
+        """Calculate the values that all rows share; cached for the next call."""
         pinned = self._pinned(wanted, levels)
         key = wanted, pinned
         if key not in self._prepared:
@@ -152,16 +152,16 @@ class RowDesign:
         self._paces[wanted, self._pinned(wanted, levels)] = seconds
 
     def pace(self, wanted: Targets, levels: Levels) -> float | None:
-        """Return the processor time of a row in the last call of this kind [s]; None before there was one."""
+        """Return the processor time of a row in the last similar call [s]; None before the first call."""
         return self._paces.get((wanted, self._pinned(wanted, levels)))
 
     def _pinned(self, wanted: Targets, levels: Levels) -> frozenset[tuple[str, str | None]]:
-        """Return the levels of the steps that are calculated, as far as they are given."""
+        """Return the given levels of the steps that are calculated."""
         due = self.needs(wanted).members
         return frozenset((name, levels.get(name) or self.graph.blocks[name].level) for name in due)
 
     def settled(self, calculate: Callable[[Levels], T], levels: Levels) -> T:
-        """Return a result for which each step has one level: the finest at which any of its rows starts."""
+        """Return a result with one level for each step: the finest at which any of its rows starts."""
         pinned = dict(levels)
         with np.errstate(all="ignore"):
             while True:
@@ -172,17 +172,17 @@ class RowDesign:
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
     def nominal(self, wanted: Targets, levels: Levels) -> Calculation:
-        """Return the design as it was written, of which nothing varies."""
+        """Return the design as written, without varied values."""
         with np.errstate(all="ignore"):
             return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 
     def rows_at_once(self, wanted: Targets, levels: Levels, chunk: int = MOST_ROWS) -> int:
-        """Number of rows that one array call takes."""
+        """Return the number of rows in one array call."""
         values = sum(self.sizes(wanted).values())
         return max(1, min([chunk, MOST_VALUES // max(values, 1), *self._most_points(wanted, levels)]))
 
     def sizes(self, wanted: Targets) -> Mapping[str, int]:
-        """Number of values that each cell and output has in one row, as the design was written."""
+        """Return the number of values of each cell and output in one row, in the design as written."""
         if wanted not in self._sizes:
             cheapest = {block.name: next(iter(block.cls.levels), None) for block in self.steps(wanted)}
             nominal, needed = self.nominal(wanted, cheapest), self.needs(wanted).members.items()
@@ -201,7 +201,7 @@ class RowDesign:
         return {}
 
     def _most_points(self, wanted: Targets, levels: Levels) -> Iterator[int]:
-        """Number of points that the levels of the steps take at once."""
+        """Return the largest number of points that the levels of the steps allow at once."""
         for block in self.steps(wanted):
             level = levels.get(block.name) or block.level or block.cls.default_level
             if block in self.moving and level in block.cls.most_points:

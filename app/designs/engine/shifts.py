@@ -1,9 +1,9 @@
-"""Propagate errors of steps to later values: each uncertain output is shifted to both ends.
+"""Propagate errors of steps to later values: shift each uncertain output to both ends of its band.
 
-The error of a step leaves out that of its inputs. So the engine recalculates everything that depends on an
-uncertain output, with that output at the lower and at the upper end of its band, in all rows at once. It
-names what it cannot recalculate quickly (solids, expensive steps), and states no error for the values that
-depend on it. Which outputs a value follows from is the same in all rows; how uncertain they are is not.
+The error of a step does not include the errors of its inputs. So the engine recalculates everything that
+depends on an uncertain output, with that output at the lower and at the upper end of its band, in all rows at
+once. It names what it cannot recalculate quickly (solids, expensive steps), and states no error for the
+values that depend on it. All rows share the same dependencies; the errors differ from row to row.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Origins:
         return Origins(self.carried | other.carried, self.stopped | other.stopped)
 
     def without(self) -> Origins:
-        """Return the same, behind something through which no error is carried."""
+        """Return the same errors after a barrier through which no error is propagated."""
         return Origins(stopped=self.carried | self.stopped)
 
 
@@ -97,14 +97,11 @@ class Shifts:
         return self.by_error(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:
-        """Return the origins of a value for those who use it.
-
-        The error of its own step, and those beneath it.
-        """
+        """Return the origins of a value for its users: the error of its own step, and those upstream."""
         return self.by_error(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
-        """Return the rows in which the error of any output is not known, or not carried on."""
+        """Return the rows in which the error of any output is unknown, or not propagated."""
         count = self.calculation.count
         unknown = np.full(count, bool(upstream.stopped))
         for origin in upstream.unknown:
@@ -115,14 +112,14 @@ class Shifts:
     def shifts(
         self, references: Mapping[str, Reference], upstream: Upstream
     ) -> tuple[list[Shifted], Upstream]:
-        """Return values of names with each uncertain origin at either end; origins left out are stopped."""
+        """Return values of names with each uncertain origin at either end; omitted origins are blocked."""
         carried = [origin for origin in sorted(upstream.uncertain, key=str) if self._is_carried(origin)]
         shifts = [self._shift(origin, references) for origin in carried]
         left_out = upstream.uncertain.difference(carried)
         return shifts, replace(upstream, stopped=upstream.stopped | left_out)
 
     def _shift(self, origin: Reference, references: Mapping[str, Reference]) -> Shifted:
-        """Return values of names at both ends; the origin keeps its value, its band is counted elsewhere."""
+        """Return values of names at both ends; the origin keeps its value: its band counts elsewhere."""
         low, high = self._ends[origin]
         return self._at(low, origin, references), self._at(high, origin, references)
 
@@ -135,7 +132,7 @@ class Shifts:
         }
 
     def by_error(self, origins: Origins) -> Upstream:
-        """Return origins by what is known of their errors; those that are exact are left out."""
+        """Return origins grouped by the knowledge of their errors; exact ones are left out."""
         if origins == NONE:
             return NOTHING
         kinds = {origin: self._kinds(origin) for origin in origins.carried | origins.stopped}
@@ -146,7 +143,7 @@ class Shifts:
         return Upstream(uncertain, unknown, frozenset(one for one in origins.stopped if kinds[one]))
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """Return the indices of an output in an `Upstream`; with rows it may have several."""
+        """Return the indices of an output in an `Upstream`; with rows there may be several."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()
@@ -167,10 +164,7 @@ class Shifts:
 
     @cached_property
     def _is_carried_on(self) -> bool:
-        """Return whether any relation uses what is calculated or measured.
-
-        What is written in a cell is exact.
-        """
+        """Return whether any relation uses a calculated or measured value; typed values are exact."""
         graph = self.calculation.graph
         return any(graph.cell(used) is None for cell in graph.cells() for used in cell.uses.values())
 
@@ -201,7 +195,7 @@ class Shifts:
         return Origins(frozenset({reference})) if self.calculation.is_output(reference) else NONE
 
     def _of_block(self, block: Block, member: str) -> Origins:
-        """Return the origins of an input or output of a block: the cells on which it depends here."""
+        """Return the origins of an input or output of a block: the cells on which it depends."""
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         try:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
@@ -213,14 +207,11 @@ class Shifts:
         return origins.without() if origins != NONE and self._is_expensive(block) else origins
 
     def _is_expensive(self, block: Block) -> bool:
-        """Return whether a step takes too long to be calculated again and again.
-
-        By its estimate, not by a clock.
-        """
+        """Return whether a step takes too long to be recalculated repeatedly, by its estimate."""
         return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
 
     def _estimated_seconds(self, block: Block) -> float:
-        """Estimate how long a step takes for a single row [s], as a design of its own."""
+        """Estimate the time of a step for a single row [s], as a separate design."""
         raw = {name: self._first(cell) for name, cell in block.cells.items()}
         level, evaluation = self._levels[block.name], self.calculation.evaluations.get(block.name)
         outputs = list(evaluation.outputs) if evaluation else self.calculation.graph.computed(block)
@@ -239,7 +230,7 @@ class Shifts:
         return TypedQuantity(None, cell.declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _is_carried(self, origin: Reference) -> bool:
-        """Return whether what follows from an output is calculated at both ends; it is done here, once."""
+        """Return whether the values that depend on an output are recalculated at both ends; do so once."""
         if origin in self._ends:
             return True
         seconds = 2 * self._following_seconds(origin)
@@ -253,7 +244,7 @@ class Shifts:
         return True
 
     def _following_seconds(self, origin: Reference) -> float:
-        """Estimate how long all that follows from an output takes for a single row [s]."""
+        """Estimate the time of all steps that depend on an output for a single row [s]."""
         nodes = following(self.calculation, {origin})
         steps = (node for node in nodes if isinstance(node, Block) and node.name in self._levels)
         relations = self.calculation.operations * PER_OPERATION

@@ -1,11 +1,11 @@
-"""One step, or one model, over many rows: array calls of its template, and which rows it refuses.
+"""Evaluate one step or model over many rows by array calls, and report the rows that it refuses.
 
-In an array call, a template masks the points that it would refuse alone. This module refuses those rows, with
-the message of the mask. If a template refuses a whole array, the rows are halved until the faulty ones are
-found. A refused row has no value in any output of the step, as in a design of one row.
+In an array call, a template masks the points that it would refuse as single points. This module refuses those
+rows, with the message of the mask. If a template refuses a whole array, the rows are bisected until the
+faulty ones are found. A refused row has no value in any output of the step.
 
-A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
-change of a design recomputes only what depends on it.
+A step whose inputs are equal in all rows is evaluated once, and its latest evaluations are cached: a change
+of a design recomputes only the steps that depend on it.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class StepRows:
 
     @classmethod
     def of(cls, block: Block, evaluation: Evaluation) -> StepRows:
-        """Return a step of which nothing differs from row to row."""
+        """Return a step without varied values."""
         part = Part(_ONE_ROW, evaluation.template, evaluation.outputs, evaluation.error)
         level = evaluation.level if isinstance(evaluation.level, str) else None
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
@@ -106,12 +106,12 @@ class StepRows:
         return refused
 
     def column(self, name: str) -> Column:
-        """Return the values [SI] of an input or output; NaN where there is none.
+        """Return the values [SI] of an input or output; NaN where missing.
 
         Raises
         ------
         InvalidInputs
-            If its curve has another length in some rows.
+            If its curve has different lengths in some rows.
         """
         if name not in self._columns:
             values = [(part.rows, self._value(part, name)) for part in self.parts]
@@ -122,7 +122,7 @@ class StepRows:
         return self._columns[name]
 
     def error(self, output: str) -> Column:
-        """Return the relative errors of an output; NaN where none is stated."""
+        """Return the relative errors of an output; NaN where unknown."""
         return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
 
     def absence(self, output: str) -> str | None:
@@ -141,7 +141,7 @@ class StepRows:
         return None
 
     def _joined(self, columns: list[tuple[Indices, Column]]) -> Column:
-        """Return one column of all parts, without the rows that are refused."""
+        """Return one column of all parts, without refused rows."""
         if not columns:
             return Column(np.nan)
         if len(columns) == 1 and columns[0][0].size == self.count:
@@ -183,9 +183,9 @@ def step_rows(
     level: str | None = None,
     started: str | None = None,
 ) -> StepRows:
-    """Evaluate a step for `count` rows; rows in which an input has no value are left out.
+    """Evaluate a step for `count` rows; rows with a missing input are left out.
 
-    Without a `level` it is the one at which the first rows start, or at which those before `started`.
+    Without a `level` it uses the starting level of the first rows, or the level `started` of earlier rows.
 
     Raises
     ------
@@ -204,10 +204,7 @@ def step_rows(
 
 
 def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iterator[Indices]:
-    """Yield rows that go into one array call.
-
-    Those of equal inputs where an input is one value for all points.
-    """
+    """Yield groups of rows for one array call; rows share those inputs that must be equal for all points."""
     if not rows.size:
         return
     shared = [
@@ -277,9 +274,9 @@ class _Evaluator:
         return step.level
 
     def _input(self, name: str, rows: Indices) -> Raw:
-        """Return an input as its template takes it.
+        """Return an input in the form that its template needs.
 
-        Of a single row as a single value, so that it speaks of it.
+        For a single row it is a single value, so that messages refer to it.
         """
         value = self.given[name]
         if not isinstance(value, Column):
@@ -293,7 +290,7 @@ class _Evaluator:
         return TypedQuantity(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
-        """Number of places that the other curves have along the same axis."""
+        """Return the number of places of the other curves along the same axis."""
         lengths = [1]
         for name, value in self.given.items():
             other = self.step.block.cls.inputs[name]
@@ -308,10 +305,7 @@ Evaluations = Sequence[tuple[Part, EvaluatedValues]]
 
 
 def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowEstimate | Absent:
-    """Return the value of an input or output of a step with its error.
-
-    Why there is none, if no row has one.
-    """
+    """Return the value of an input or output of a step with its error, or the reason if no row has one."""
     estimates = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
     present = [(part, one) for part, one in estimates if isinstance(one, Estimate)]
     if not present:
@@ -355,14 +349,14 @@ class Memory:
         self._cache = cache
 
     def evaluation(self, block: Block, raw: Mapping[str, Raw], wanted: tuple[str, ...] | None) -> Evaluation:
-        """Return the evaluation of a step, kept or computed.
+        """Return the evaluation of a step, from the cache or computed.
 
         Raises
         ------
         InvalidInputs
-            Where the template refuses.
+            If the template refuses the inputs.
         StepDeferred
-            The caller does not wait for an expensive step.
+            If the caller does not wait for an expensive step.
         """
         key = (block.cls, block.level, block.tolerance, wanted, fingerprint(raw))
         kept: _StepState | None = self._cache.get(key)

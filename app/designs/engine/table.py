@@ -1,4 +1,4 @@
-"""The results of many rows of a design: columns, errors, levels, and why rows have no values."""
+"""The results of many rows of a design: columns, errors, levels, and the reasons of rows without values."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class Table:
 
     @classmethod
     def of(cls, count: int, wanted: Iterable[Reference]) -> Table:
-        """Return a table to which chunks are added; of no rows it has its columns already."""
+        """Return a table to which chunks are added; without rows its columns are complete."""
         return cls(count) if count else cls(0, {reference: np.empty(0) for reference in wanted})
 
     def add(self, start: int, rows: Calculation, wanted: Iterable[Reference]) -> None:
-        """Take over a chunk that begins at a row."""
+        """Add a chunk that begins at a row."""
         chunk = slice(start, start + rows.count)
         for reference in wanted:
             column = rows.column(reference)

@@ -47,7 +47,7 @@ COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
 
 def judged(calculation: Calculation) -> list[Judgement]:
-    """Return every criterion of a design, worst first; what waits for a solid or a step is not checked."""
+    """Return every criterion of a design, worst first; those that wait for a value are not checked."""
     return worst_first(Verdicts(calculation).all())
 
 
@@ -76,7 +76,7 @@ class JudgedColumn:
     is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column of this number of rows, of which these are a chunk; the rest is that of `whole`."""
+        """Return a column for this number of rows, of which this is a chunk; other rows come from `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)
@@ -135,7 +135,7 @@ class Verdicts:
         return list(self._subjects)
 
     def subject(self, name: str) -> Subject:
-        """Return a criterion by its name, and where it is declared."""
+        """Return a criterion by name, and the place of its declaration."""
         return self._subjects[name]
 
     def references(self, name: str) -> Mapping[str, Reference]:
@@ -143,7 +143,7 @@ class Verdicts:
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """Return the outputs of steps whose errors, known or not, make the band of a criterion."""
+        """Return the outputs of steps whose errors, known or not, widen the band of a criterion."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
@@ -176,7 +176,7 @@ class Verdicts:
         return Shifts(self.calculation, self._estimate)
 
     def _of_template(self, block: Block, subject: Subject) -> Iterator[Judgement]:
-        """Yield a criterion of a step's template, unless the step leaves out outputs that it needs."""
+        """Yield the criteria of a step's template, unless the step does not compute the required outputs."""
         criterion, evaluated = subject.criterion, self._evaluated(block.name)
         if evaluated is None:
             absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
@@ -189,7 +189,7 @@ class Verdicts:
         yield _named(judgement, block, subject.demand)
 
     def _instead(self, block: Block, evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None:
-        """Return the judgement where a side has no value, with the errors from upstream."""
+        """Return the judgement of the alternative comparison if a side has no value, with upstream errors."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
             return None
@@ -216,7 +216,7 @@ class Verdicts:
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
         """Return the limits whose relations have no value yet.
 
-        A row of the library does not stand in for them.
+        A library row does not replace them.
         """
         related = (block.related[name] for name in criterion.limits_by_name if name in block.related)
         waiting = [cell for cell in related if cell.name not in self.calculation.values]
@@ -226,7 +226,7 @@ class Verdicts:
         }
 
     def _of_design(self, subject: Subject, demand: Demand) -> Judgement:
-        """Return a criterion that the design writes itself."""
+        """Return a criterion declared in the design."""
         values = {name: self._estimate(reference) for name, reference in demand.uses.items()}
         estimates = {name: one for name, one in values.items() if isinstance(one, RowEstimate)}
         absent = {name: one for name, one in values.items() if isinstance(one, Absent)}
@@ -237,7 +237,7 @@ class Verdicts:
         return self._judged(subject, estimates, along, more, None)
 
     def _stated_by(self, demand: Demand) -> dict[str, str | None]:
-        """Return level and truth, where an output of a step is judged alone."""
+        """Return level and truth, if an output of a step is judged directly."""
         subject = demand.criterion.subject if demand.criterion else None
         reference = demand.uses[subject] if subject else None
         evaluated = self._evaluated(reference.block) if reference and reference.output else None
@@ -260,7 +260,7 @@ class Verdicts:
         more: Mapping[str, str | None],
         instead: Instead | None,
     ) -> Judgement:
-        """Return a criterion all of whose names have values."""
+        """Return a judged criterion, all of whose names have values."""
         criterion = subject.criterion
         try:
             sides = self._sides(subject, estimates)
@@ -280,12 +280,12 @@ class Verdicts:
         return _explained(result, sides)
 
     def _sides(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> _Sides:
-        """Return the values that a criterion names, with the errors that reach them from upstream.
+        """Return the values that a criterion names, with their upstream errors.
 
         Raises
         ------
         FaultyText
-            If that takes too many operations.
+            If that needs too many operations.
         """
         criterion = subject.criterion
         references = {name: one for name, one in subject.references.items() if name in estimates}
@@ -303,7 +303,7 @@ class Verdicts:
         return _Sides(fitted, shifts, unknown, self._is_known(estimates, upstream, rank))
 
     def _is_known(self, estimates: Mapping[str, RowEstimate], upstream: Upstream, rank: int) -> Truth:
-        """Return where the errors of all that is upstream are known, beside the values."""
+        """Return where the errors of all upstream values are known."""
         if not (upstream.unknown or upstream.stopped):
             return True
         certain = ~self._shifts.unknown(upstream)
@@ -313,7 +313,7 @@ class Verdicts:
         return certain.reshape(-1, *(1,) * (rank + axes))
 
     def _estimate(self, reference: Reference) -> RowEstimate | Absent:
-        """Return the value of a name with the error of its own step, or why there is none."""
+        """Return the value of a name with the error of its own step, or the reason why it is missing."""
         if reference not in self._estimates:
             self._estimates[reference] = self._estimated(reference)
         return self._estimates[reference]
@@ -332,7 +332,7 @@ class Verdicts:
             return Absent((), f"{reference} waits for a solid or for its calculation")
 
     def _inside(self, reference: Reference) -> RowEstimate | Absent:
-        """Return an input or output of a step as the step was evaluated with it."""
+        """Return an input or output of a step as used in its evaluation."""
         step, parts = self.calculation.step(reference.block), self._parts(reference.block)
         if step is None or not parts:
             return Absent((), f"{reference.block} waits for its calculation")
@@ -342,12 +342,12 @@ class Verdicts:
         return Absent((), f"{reference} is not computed; name it in the outputs of the step")
 
     def _evaluated(self, step: str) -> EvaluatedValues | None:
-        """Return a step as its criteria see it; None of a model, and while it waits."""
+        """Return a step as its criteria see it; None for a model, and while it is pending."""
         parts = self._parts(step)
         return parts[0][1] if parts else None
 
     def _parts(self, name: str) -> Evaluations:
-        """Return the parts of a step as its criteria see them; none of a model, and while it waits."""
+        """Return the parts of a step as its criteria see them; none for a model, and while it is pending."""
         if name not in self._steps:
             step = self.calculation.step(name)
             self._steps[name] = []
@@ -367,7 +367,7 @@ class Verdicts:
     def _limits(self, block: Block) -> Mapping[str, GivenLimit]:
         """Return the limits of a step.
 
-        Those by relations as far as they have values, with these as source.
+        Limits set by relations are included once they have values, with the relation as their source.
         """
         if not block.related:
             return block.limits
@@ -377,7 +377,7 @@ class Verdicts:
         return {**block.limits, **given}
 
     def _of_rows(self, subject: Subject) -> dict[str, RowEstimate]:
-        """Return the values that a criterion names in rows, as far as there are any."""
+        """Return the values that a criterion names in the rows, as far as they exist."""
         block = subject.block
         if block is not None and block.is_model:
             return {}
@@ -423,7 +423,7 @@ class Verdicts:
         return codes, _column(subject.criterion, numbers)
 
     def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
-        """Return verdicts, those of another comparison where a value is missing."""
+        """Return verdicts; where a value is missing, those of the alternative comparison."""
         for missing, instead in subject.instead:
             if not instead.is_due(self.calculation.graph) or subject.block is None:
                 continue
@@ -438,7 +438,7 @@ class Verdicts:
     def _not_checked(
         self, criterion: Criterion, estimates: Mapping[str, RowEstimate]
     ) -> tuple[RowCodes, JudgedColumn]:
-        """Return no verdict in any row, with the value of a side that has a single one."""
+        """Return "not checked" for every row, with the value of a side that has a single one."""
         count = self.calculation.count
         nothing = np.full(count, np.nan)
         value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
@@ -447,7 +447,7 @@ class Verdicts:
         return np.full(count, NOT_CHECKED, dtype=np.int8), column
 
     def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
-        """Return the value of a side, where it is one for each row."""
+        """Return the value of a side, if it has one for each row."""
         count = self.calculation.count
         if side.names <= estimates.keys() and not any(estimates[n].value.rank for n in side.names):
             value = side_of(side, {name: estimates[name].padded(0) for name in side.names})
@@ -466,7 +466,7 @@ def _padded(
 
 
 def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
-    """Return the numbers of each row, as a report of a single design has them."""
+    """Return the numbers of each row, as in a report of a single design."""
     value, limit, low, high, *_, certain = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
@@ -478,14 +478,14 @@ def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:
-    """Return a judgement that names where upstream its error is lost."""
+    """Return a judgement that names the upstream place where its error is lost."""
     if sides.unknown and not result.error_known and result.margin is not None:
         return replace(result, reason=unknown_error(map(in_words, map(str, sides.unknown)), result.verdict))
     return result
 
 
 def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upstream: Upstream) -> int:
-    """Count the operations on single values that a criterion takes in one row, with its shifted sides."""
+    """Count the operations on single values that a criterion needs in one row, with its shifted sides."""
     points = spanned(estimate.value.places for estimate in estimates.values())
     limit_values(points)
     times = 1 + 2 * (len(estimates) + len(upstream.uncertain))
@@ -493,7 +493,7 @@ def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upst
 
 
 def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
-    """Return a criterion of a template by its name in the design, with what the design says of it."""
+    """Return a criterion of a template under its name in the design, with the design's changes."""
     written = demand.written if demand else None
     return replace(
         judgement,

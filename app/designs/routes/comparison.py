@@ -1,4 +1,4 @@
-"""`/designs/{id}/compare`: what differs between two revisions, of one design or of two."""
+"""`/designs/{id}/compare`: the differences between two revisions, of one design or of two."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/designs/{id}/decide`: levels climb only where a criterion is undecided."""
+"""`/designs/{id}/decide`: refine levels only where a criterion is undecided."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/designs`: create, list, change, delete, preview, map, copy, measure, explain."""
+"""`/designs`: create, list, change, delete, preview, auto-map, copy, measure and explain designs."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ async def answer_saved(
 
 
 def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """Return a design as an answer; the ETag is its revision."""
+    """Return a design as a response; the ETag is its revision."""
     return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})
 
 
@@ -147,7 +147,7 @@ async def create_design(
     prefer: Prefer = None,
     idempotency_key: IdempotencyKey = None,
 ) -> Response:
-    """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
+    """Create a design and build its models: 201 when they are ready, 202 while they are being built."""
     raw, note = document_of(body)
     create = services_of(request).designs.create
     return await _saved(request, prefer, idempotency_key, partial(create, raw, note))
@@ -164,7 +164,7 @@ def list_designs(
     archived: Archived = "false",
     template: UsedTemplate = None,
 ) -> DesignList:
-    """Designs, newest first: all, or those that fit every filter given."""
+    """Return designs, newest first: all, or those that match all filters."""
     tags = tuple(dict.fromkeys(map(key_of, tag)))
     wanted = DesignFilter(name, state, tags, archived, template)
     with database.read() as session:
@@ -181,7 +181,7 @@ def list_designs(
 
 @router.get("/{id}", response_model=Design, responses=refusals(404))
 def show_design(id: Id, designs: TheDesigns) -> Response:
-    """A design as of its newest revision; the ETag is that revision."""
+    """Return a design at its newest revision; the ETag is that revision."""
     return shown(designs.show(id))
 
 
@@ -194,7 +194,7 @@ async def change_design(
     prefer: Prefer = None,
     idempotency_key: IdempotencyKey = None,
 ) -> Response:
-    """A new revision; models are rebuilt only where one of their parameters changed.
+    """Create a new revision; models are rebuilt only if one of their parameters changed.
 
     A new name alone keeps all results: nothing is calculated.
     """
@@ -216,7 +216,7 @@ async def _saved(
 
 @router.delete("/{id}", status_code=204, responses=refusals(404, 409))
 def delete_design(id: Id, designs: TheDesigns) -> Response:
-    """Take a design from the lists; its revisions are kept."""
+    """Delete a design from the lists; its revisions are kept."""
     designs.delete(id)
     return Response(status_code=204)
 
@@ -258,10 +258,10 @@ async def map_design(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """Proposals for model parameters that are not set: relations to quantities of the same kind and role.
+    """Propose relations for unset model parameters, to quantities of the same kind and role.
 
-    A quantity fits if it is measured alike, is called as the parameter is, or as it is also known, and
-    belongs to the same part. Each proposal says why. With `apply` all are saved as a new revision.
+    A quantity fits if it has the same kind, a name of the parameter, and belongs to the same part. Each
+    proposal gives its reason. With `apply` all are saved as a new revision.
     """
     proposals, saved = await threads.run_within(
         seconds_waited(prefer), request, designs.auto_map, id, apply, if_match, once
@@ -282,7 +282,7 @@ async def copy_design(
     body: CopyIn | None = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new design with the newest document of this one."""
+    """Create a design with the newest document of this one."""
     saved = await threads.run_within(
         seconds_waited(prefer), request, designs.copy, id, body.name if body else None, once
     )
@@ -291,7 +291,7 @@ async def copy_design(
 
 @router.get("/{id}/measurements", responses=refusals(404))
 def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
-    """Measurements of the newest good models, with dimensions read back from the STEP files."""
+    """Return measurements of the newest valid models, with dimensions read back from the STEP files."""
     with database.read() as session:
         measured = views.measurements(session, id)
         return {name: model.in_units(units) for name, model in measured.items()}
@@ -309,11 +309,11 @@ async def explain_name(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """Where a model parameter or the verdict of a criterion comes from.
+    """Explain where a model parameter or the verdict of a criterion comes from.
 
-    Of a parameter: dimension ← relation ← output ← formula ← inputs. Of a criterion such as `film.film`:
-    verdict ← value ← formula ← inputs, and limit ← who gave it. `sensitivities` are local slopes to the
-    quantities as typed.
+    For a parameter: dimension ← relation ← output ← formula ← inputs. For a criterion such as `film.film`:
+    verdict ← value ← formula ← inputs, and limit ← its source. `sensitivities` are local slopes with respect
+    to the typed quantities.
     """
     asked = ExplanationQuestion(id, name, units)
     return await answered(explanations, asked, request, client, patience(prefer, explanations.steps.deadline))

@@ -1,4 +1,4 @@
-"""`/designs/{id}/events`: a design's revisions and regenerations as they happen (server-sent events)."""
+"""`/designs/{id}/events`: the stream of a design's new revisions and regenerations (server-sent events)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
 from app.api.event_streams import LastEvent, allowed, identity, listening
-from app.designs.repository import Standing, can_resume, standing
+from app.designs.repository import RegenerationState, can_resume, standing
 from app.designs.routes.designs import Id, show_design
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
@@ -25,9 +25,10 @@ NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current",
 async def watch_design(
     id: Id, database: TheDatabase, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:
-    """The state first, then `revision`, `regenerating`, `progress`, `current`, `failed` as they come.
+    """Stream the state first, then `revision`, `regenerating`, `progress`, `current` and `failed` events.
 
-    In place of the state, a client that comes back gets the events after its last one, if they are kept.
+    A client that reconnects gets the events after its last one instead of the state, if they are still
+    stored.
     """
     async with listening(jobs.events, f"design:{id}") as events:
         now = await run_in_threadpool(_start, database, id, last)
@@ -42,7 +43,7 @@ async def watch_design(
             yield ServerSentEvent(id=identity(event.number), event=name, data=event.message)
 
 
-def _start(database: Database, id: str, last: int | None) -> Standing | None:
-    """Return the state of a design; None if the reader can go on after its last event."""
+def _start(database: Database, id: str, last: int | None) -> RegenerationState | None:
+    """Return the state of a design; None if the reader can continue after its last event."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

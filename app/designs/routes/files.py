@@ -1,4 +1,4 @@
-"""`/designs/{id}/model…`: files of the newest good model, or of that of a revision."""
+"""`/designs/{id}/model…`: files of the newest valid model, or of the model of one revision."""
 
 from __future__ import annotations
 
@@ -102,15 +102,10 @@ class FileRequest:
     title_block: TitleBlock
 
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
-        """The file, of the kind that the path names or the client likes best, of the model that `find` finds.
+        """Return a file of the model that `find` finds, of the kind in the path or the preferred kind.
 
-        Raises
-        ------
-        NotFound
-            If there is no such kind, or no such model.
-        InvalidInputs
-            If the deflection is no length, or the kind has no facets; if the kind has no title block, or what
-            was typed contradicts the approval.
+        Raises ------ NotFound If there is no such kind, or no such model. InvalidInputs If the deflection is
+        not a length, the kind has no facets or no title block, or a typed text contradicts the approval.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE
@@ -131,7 +126,7 @@ class FileRequest:
     def _lookup(
         self, find: Callable[[Session], RevisionModelRow], wanted: str
     ) -> tuple[str, str, Stamp, File | None]:
-        """Return the key of the model's build, the kind of the stored file, its stamp, and an older file."""
+        """Return the key of the model's build, the stored kind, its stamp, and an older file."""
         with self.database.read() as session:
             model = find(session)
             kind = self._stored_kind(wanted)
@@ -141,13 +136,13 @@ class FileRequest:
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
-        """Return the kind of file that is stored for one that is wanted."""
+        """Return the stored kind of file for a requested one."""
         if self.deflection is not None:
             return with_deflection(wanted, self.deflection)
         return PRINTED.get(wanted, wanted)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
-        """Return None once a file is made, 202 if the client waits no longer, or why it cannot be made."""
+        """Return None once a file exists, 202 if the client stops waiting, or why it cannot be created."""
         job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
         if not await finished(self.jobs, job, prefer):
             return accepted(job)
@@ -155,7 +150,7 @@ class FileRequest:
         return problems.answer(problem) if problem and not has_older else None
 
     def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
-        """Return a file under its name, or 304; with its stamp, if it is of a kind that has one."""
+        """Return a file under its name, or 304; with its stamp, if its kind has one."""
         plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
         headers = {
             "Design-Revision": str(stamp.revision),
@@ -217,7 +212,7 @@ async def file_request(
     deflection: Deflection = None,
     build: BuildSeen = None,
 ) -> FileRequest:
-    """Return the same, with the options of a mesh and of a drawing."""
+    """Return the same request with the options of a mesh and of a drawing."""
     return replace(plain, deflection=deflection, title_block=title_block)
 
 
@@ -239,26 +234,23 @@ async def read_model_file(
     kind: Id | None = None,
     number: Number | None = None,
 ) -> Response:
-    """A file of a model, which names its design, model and revision.
+    """Return a file of a model, named after its design, model and revision.
 
-    Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
-    longer than the client waits. STEP files and drawings also say inside whose they are, and
-    drawings who signed them.
+    Other kinds than STEP are created at the first request. The answer waits for that, and is 202 if it takes
+    longer than the client waits. STEP files and drawings also contain the name of their design, and drawings
+    the signatures.
     """
     return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
-    """Return whether a drawing is one of an older program, which had no room for a stamp.
-
-    It is drawn again.
-    """
+    """Return whether a drawing comes from an older program without room for a stamp; it is drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 
 
 def _accepted(accept: str | None) -> str:
-    """Return the kind that the client likes best, of those it likes equally the first; STEP by default."""
+    """Return the kind that the client prefers, the first of several equal ones; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
     liked = [(weight, kinds[media]) for media, weight in accepted_weights(accept).items() if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]

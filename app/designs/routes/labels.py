@@ -19,18 +19,18 @@ Id = Annotated[str, Path(max_length=64)]
 
 @router.get("/designs/{id}/labels", responses=refusals(404))
 def show_labels(id: Id, labelling: TheLabelling) -> Labels:
-    """The tags of a design, and whether it is archived."""
+    """Return the tags of a design, and whether it is archived."""
     return labelling.labels(id)
 
 
 @router.post("/designs/{id}/labels", responses=refusals(404))
 def change_labels(id: Id, body: LabelsIn, labelling: TheLabelling) -> Labels:
-    """Add and remove tags, archive or fetch back; no revision is made, and nothing is calculated."""
+    """Add and remove tags, archive or restore a design; this creates no revision and calculates nothing."""
     return labelling.label(id, body)
 
 
 @router.get("/tags")
 def list_tags(database: TheDatabase) -> TagList:
-    """Every tag of the designs that are not archived, the most used first."""
+    """Return every tag of the designs that are not archived, the most used first."""
     with database.read() as session:
         return TagList(items=list(all_tags(session)))

@@ -1,4 +1,4 @@
-"""`/designs/{id}/revisions`: list, show, restore."""
+"""`/designs/{id}/revisions`: list, show and restore revisions."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ async def restore_revision(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new revision equal to an old one."""
+    """Create a revision equal to an old one."""
     note = body.note if body else None
     saved = await threads.run_within(
         seconds_waited(prefer), request, designs.restore, id, number, note, if_match, once
@@ -57,7 +57,7 @@ def list_revisions(
     cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
     steps: Annotated[bool, Query(description="with steps, models and results of each")] = True,
 ) -> RevisionList:
-    """The revisions of a design, newest first."""
+    """Return the revisions of a design, newest first."""
     with database.read() as session:
         repository.design(session, id)
         rows = repository.revisions(session, id, limit, cursor)
@@ -67,6 +67,6 @@ def list_revisions(
 
 @router.get("/{id}/revisions/{number}", responses=refusals(404))
 def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
-    """A revision: its inputs never change, its results are attached once."""
+    """Return a revision: its inputs never change, its results are attached once."""
     with database.read() as session:
         return views.revision(session, repository.lean(session, id, number))

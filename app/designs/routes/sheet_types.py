@@ -1,4 +1,4 @@
-"""Sheets of variants in HTTP: their media types, how a request names one, and how a route is found by it."""
+"""Sheets of variants in HTTP: media types, and how requests and routes choose one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`…/models/{name}/fields`: what can be painted on a crankshaft, as GLB and as a picture."""
+"""`…/models/{name}/fields`: fields that can be painted on a crankshaft, as GLB and as a picture."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ PAINTED: RouteOptions = {
 def list_solid_fields(
     id: Id, number: Number, name: Id, database: TheDatabase, catalogues: TheCatalogues
 ) -> schemas.SolidFieldList:
-    """The fields that can be painted on a model: the load use of its fillets, shapes of torsional modes.
+    """Return the fields that can be painted on a model: utilisation of fillets, torsional mode shapes.
 
-    A `fatigue_life` that takes its tensors from `unit_loads` of the model, and has the output `load_use`,
-    gives the first; a `forced_torsion` that takes stiffnesses from its `chain` gives the others.
+    A `fatigue_life` that uses the tensors of the model's `unit_loads`, and has the output `load_use`,
+    provides the first; a `forced_torsion` that uses the stiffnesses of its `chain` provides the others.
     """
     with database.read() as session:
         fields = fields_of(session, catalogues.models, id, number, name)
@@ -73,10 +73,10 @@ async def read_painted_solid(
     request: ThePlainFileRequest,
     catalogues: TheCatalogues,
 ) -> Response:
-    """A model with a field as the colours of its surface: a GLB file, or a picture.
+    """Return a model with a field as the colours of its surface: a GLB file, or a picture.
 
-    Where the field has no value the part is grey. The title of the field and the values of the first and
-    the last colour stand in the GLB file's root node, and in the list of fields.
+    Where the field has no value the part is grey. The GLB file's root node and the list of fields contain the
+    title of the field and the values of the first and the last colour.
     """
     database, store = request.database, request.store
     chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)

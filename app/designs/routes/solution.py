@@ -1,4 +1,4 @@
-"""`/designs/{id}/solve`: which value of one parameter or input gives a wanted output."""
+"""`/designs/{id}/solve`: find the value of one parameter or input that gives a wanted output."""
 
 from __future__ import annotations
 

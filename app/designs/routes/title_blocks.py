@@ -1,4 +1,4 @@
-"""Fields of a drawing's title block that a client types at a download; what an approval says stays."""
+"""Title-block fields that a client sets for one download; an approval's entries have priority."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from unicodedata import normalize
 from fastapi import Depends, Query
 
 from app.schemas.approval_steps import ORDER
-from cad.export import DRAWINGS
+from cad.export import DRAWINGS, VALIDATED
 from cad.stamp import Stamp
 from templates.core.errors import Fault, InvalidInputs
 
 LONGEST = 80  # letters; a field shows what has room in it
+STEP = ("step", VALIDATED)
+_ON_PARTS = {"drawing_number", "drawing_revision"}
+"""What a STEP file has of them: the number of its product, and the revision of that."""
 
 Typed = Annotated[str, Query(max_length=LONGEST)]
 
@@ -30,7 +33,7 @@ class TitleBlock:
     texts: dict[str, str]
 
     def on(self, stamp: Stamp, kind: str) -> Stamp:
-        """Return the stamp with these texts.
+        """Return the stamp with these texts added.
 
         Raises
         ------
@@ -38,9 +41,11 @@ class TitleBlock:
             If the kind of file has no title block, or a text contradicts the approval.
         """
         typed = {name: plain for name, text in self.texts.items() if (plain := _shown(text))}
-        if typed and kind not in DRAWINGS:
-            detail = f"only {', '.join(DRAWINGS)} have a title block; leave it out for {kind}"
-            raise InvalidInputs(Fault(name, "not_offered", detail) for name in typed)
+        offered = _ON_PARTS if kind in STEP else {*self.texts} if kind in DRAWINGS else set[str]()
+        if wrong := typed.keys() - offered:
+            drawings = ", ".join(DRAWINGS)
+            detail = f"{drawings} have a title block; a STEP file has drawing_number and drawing_revision"
+            raise InvalidInputs(Fault(n, "not_offered", f"{detail}; leave it out for {kind}") for n in wrong)
         if faults := [*_contradictions(typed, stamp)]:
             raise InvalidInputs(faults)
         return replace(
@@ -57,7 +62,7 @@ class TitleBlock:
 
 
 def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
-    """Return names and states that only an approval gives."""
+    """Return names and states that only an approval may set."""
     faults = []
     for field, name in _SIGNED.items():
         signed = getattr(stamp, field)
@@ -79,9 +84,9 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
 
 
 def _shown(text: str) -> str:
-    """Return a text as a drawing shows it, without room about it.
+    """Return a text as a drawing shows it, without surrounding blanks.
 
-    Signs that do not print are spaces there.
+    Unprintable characters become spaces.
     """
     return "".join(sign if sign.isprintable() else " " for sign in text).strip()
 
@@ -89,7 +94,7 @@ def _shown(text: str) -> str:
 def _letters(text: str) -> str:
     """Return the small Latin letters of a text.
 
-    A reader sees `released` in `Released.` and in `ｒeleased` too.
+    `Released.` and `ｒeleased` also look like `released` to a reader.
     """
     return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
 
@@ -104,7 +109,7 @@ def title_block(
     approved_by: Typed = "",
     document_status: Typed = "",
 ) -> TitleBlock:
-    """Return the texts of the request: fields of ISO 7200, of a drawing only."""
+    """Return the texts of the request: fields of ISO 7200; of a STEP file number and revision."""
     return TitleBlock(
         {
             "legal_owner": legal_owner,

@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants` as CSV and XLSX: the table of variants for a spreadsheet, and back."""
+"""`/designs/{id}/variants` as CSV and XLSX: write and read the table of variants."""
 
 from __future__ import annotations
 
@@ -35,23 +35,23 @@ def _described(kind: Kind) -> Responses:
 
 @router.get("/{id}/variants.csv", response_class=Response, responses=_described("csv"))
 def download_variants_as_csv(id: Id, designs: TheDesigns) -> Response:
-    """The variants of the newest revision as CSV: inputs, which `PUT` reads back, then results.
+    """Return the variants of the newest revision as CSV: inputs, which `PUT` reads back, then results.
 
-    Row 1 has the headings, row 2 the units. A relation stands in a column whose heading ends with ` =`,
-    without its sign. Columns whose headings begin with `results:` are ignored when the file is read.
+    Row 1 has the headings, row 2 the units. A relation is in a column whose heading ends with ` =`, without
+    its equals sign. Columns whose headings begin with `results:` are ignored when the file is read.
     """
     return _file(designs, id, "csv")
 
 
 @router.get("/{id}/variants.xlsx", response_class=Response, responses=_described("xlsx"))
 def download_variants_as_xlsx(id: Id, designs: TheDesigns) -> Response:
-    """The variants of the newest revision as XLSX: as CSV, with the numbers as numbers."""
+    """Return the variants of the newest revision as XLSX: like CSV, with the numbers as numbers."""
     return _file(designs, id, "xlsx")
 
 
 @by_type.get("/{id}/variants")
 def show_sheet(id: Id, designs: TheDesigns, request: Request) -> Response:
-    """The variants of the newest revision as CSV or XLSX."""
+    """Return the variants of the newest revision as CSV or XLSX."""
     return _file(designs, id, sheet_kind(request) or "csv")
 
 
@@ -66,7 +66,7 @@ async def replace_variants_by_sheet(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new revision with the variants of a sheet; every faulty cell is named by its address."""
+    """Create a revision with the variants of a sheet; every faulty cell is named by its address."""
     kind, content = sheet_kind(request) or "csv", await request.body()
     save = partial(save_sheet, designs, id, content, kind, if_match, once)
     saved = await threads.run_within(patience(prefer, math.inf), request, save)

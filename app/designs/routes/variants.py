@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants`: the table of a design's variants, their files one by one, and all in a ZIP."""
+"""`/designs/{id}/variants`: the table of a design's variants, and their files, singly or as a ZIP."""
 
 from __future__ import annotations
 
@@ -100,9 +100,9 @@ def show_variants(
     output: Outputs = [],  # noqa: B006 - FastAPI copies it
     units: Units = "si",
 ) -> VariantsOut:
-    """The variants of a design: what each overrides, its verdicts and models; the worst one governs.
+    """Return the variants of a design: their overrides, verdicts and models; the worst one governs.
 
-    The ETag is the revision, which `PUT` takes as If-Match.
+    The ETag is the revision, which `PUT` requires as If-Match.
     """
     out = variants_of(id, number, database, catalogues, output, units)
     response.headers["ETag"] = f'"{out.revision}"'
@@ -117,7 +117,7 @@ def variants_of(
     outputs: Sequence[str] = (),
     units: System = "si",
 ) -> VariantsOut:
-    """Return the variants of a revision, the newest if none is named, with some outputs of steps."""
+    """Return the variants of a revision, by default the newest, with selected outputs of steps."""
     with database.read() as session:
         return views.variants(session, id, number, catalogues, dict.fromkeys(outputs)).in_units(units)
 
@@ -139,10 +139,10 @@ async def replace_variants(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new revision with this table of variants; the same table makes none.
+    """Create a revision with this table of variants; an unchanged table creates none.
 
-    Solids are built once for each distinct set of parameters. A variant whose solid fails says why; the
-    others are not touched.
+    Solids are built once for each distinct set of parameters. A variant whose solid fails states the reason;
+    the others are not affected.
     """
     save = partial(replaced, designs, id, body.variants, body.note, if_match, once)
     saved = await threads.run_within(patience(prefer, math.inf), request, save)
@@ -150,7 +150,7 @@ async def replace_variants(
 
 
 async def answer_table(designs: Designs, jobs: Jobs, saved: SaveResult, prefer: str | None) -> Response:
-    """Return the table as it was saved: 200, or 202 while solids are built."""
+    """Return the saved table: 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
@@ -186,7 +186,7 @@ async def show_variant(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """One variant with its outputs, curves included; `base` is the design itself. Nothing is saved."""
+    """Return one variant with its outputs, curves included; `base` is the design itself."""
     wanted = WantedVariant(id, variant, tuple(dict.fromkeys(output)), number, units)
     return await answered(details, wanted, request, client, patience(prefer, details.steps.deadline))
 
@@ -207,9 +207,9 @@ async def read_variant_file(
     kind: Id | None = None,
     number: Number | None = None,
 ) -> Response:
-    """A file of a variant's model, which names its design, variant and revision.
+    """Return a file of a variant's model, named after its design, variant and revision.
 
-    Of the newest revision in which the variant has a finished solid, if none is named.
+    Without a revision, it comes from the newest one in which the variant has a finished solid.
     """
     return await request.answer(lambda session: variant_model(session, id, variant, name, number), kind)
 
@@ -240,7 +240,7 @@ async def read_variants_file(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> Response:
-    """The STEP files of all variants in a ZIP, each named by design, variant and revision.
+    """Return the STEP files of all variants in a ZIP, each named after its design, variant and revision.
 
     Equal files give equal bytes. Models that have no finished solid are left out, and named in the header
     `Variants-Missing`.
@@ -278,7 +278,7 @@ def _file(store: Artifacts, entry: Entry) -> bytes:
 
 
 def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
-    """Return a strong ETag: the ZIP is a pure function of these."""
+    """Return a strong ETag: the ZIP is a pure function of these values."""
     parts = (
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)

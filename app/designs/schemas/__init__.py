@@ -1,1 +1,1 @@
-"""Answers of the interface about designs, revisions and what is asked of them."""
+"""Answers of the interface about designs, their revisions and questions about them."""

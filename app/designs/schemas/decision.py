@@ -1,4 +1,4 @@
-"""Answers of `decide`: the criteria as far as they could be decided, and the work that this took."""
+"""Answers of `decide`: the decided criteria, and the work that this took."""
 
 from __future__ import annotations
 

@@ -7,7 +7,15 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from app.calculations.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
+from app.calculations.schemas.evaluations import (
+    Assumption,
+    CalculatedBy,
+    Error,
+    Level,
+    Output,
+    UsedInput,
+    WorkedFormula,
+)
 from app.identity.schemas.principals import Author
 from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
 from app.schemas.approval_steps import ApprovalState
@@ -142,6 +150,7 @@ class RevisionStep(Answer):
     level: Level = None
     error: dict[str, Error] = {}
     warnings: list[Warning] = []
+    assumed: list[Assumption] = Field([], description="defaults that make a part look safer, and stand")
     relations: dict[str, Given] = Field({}, description="inputs that are relations, as typed")
     state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
     pending: bool = Field(False, description="whether it waits; absent if it does not")

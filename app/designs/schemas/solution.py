@@ -1,4 +1,4 @@
-"""Answers of `solve` on a design: every value of an unknown that gives a target, with the curve between."""
+"""Answers of `solve` on a design: values of the unknown that reach the target, and the curve."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ class DesignRoot(Root):
     """A value of the unknown that gives the target, and what the criteria of the design say there."""
 
     verdicts: dict[str, Word] = Field(description="verdict of every criterion at this value, by its name")
+    error_unknown: list[str] = Field(
+        [], description="those that are met or not met by values whose error is unknown"
+    )
 
 
 class Target(Measured):
@@ -32,6 +35,12 @@ class DesignSolution(Answer):
     roots: list[DesignRoot] = Field(description="every crossing of the target within the bounds, ascending")
     touching: list[DesignRoot] = Field(description="extrema that just reach the target, ascending")
     jumps: list[Jump] = Field(description="where the output jumps across the target")
-    curve: TracedCurve
+    curve: TracedCurve = Field(description="the curve that was searched")
+    finer: list[TracedCurve] = Field(
+        [], description="the curve at the levels at which solutions were confirmed, where these are finer"
+    )
     warnings: list[Warning]
     levels: dict[str, str | None] = Field(description="the level of each step along the curve")
+    finer_levels: dict[str, str | None] = Field(
+        {}, description="those along the finer curve, if there is one"
+    )

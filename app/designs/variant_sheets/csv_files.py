@@ -27,7 +27,7 @@ def read_csv(content: bytes) -> Grid:
     Raises
     ------
     InvalidInputs
-        If it is too long, no UTF-8, or its quotes cannot be read.
+        If it is too long, not UTF-8, or its quotes cannot be parsed.
     """
     if len(content) > MOST_BYTES:
         raise _wrong("A1", "too_long", f"a CSV file has at most {MOST_BYTES // 10**6} MB")
@@ -41,7 +41,7 @@ def read_csv(content: bytes) -> Grid:
 
 
 def write_csv(rows: Sequence[Sequence[Value]]) -> bytes:
-    """Return rows as a CSV file; a text that a spreadsheet would take for a formula gets an apostrophe."""
+    """Return rows as a CSV file; a text that a spreadsheet would read as a formula gets an apostrophe."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerows([_escaped(cell) for cell in row] for row in rows)
@@ -70,7 +70,7 @@ def _rows(text: str, separator: str) -> list[list[str]]:
 
 
 def _meant(cell: str, separator: str) -> str:
-    """Return a cell without a leading apostrophe against formulas, its decimal comma a point."""
+    """Return a cell without the apostrophe against formulas, and with a decimal point."""
     plain = cell.strip()
     if plain.startswith("'") and plain.lstrip("'").startswith(DANGEROUS):
         return plain[1:]

@@ -23,7 +23,7 @@ class Grid:
     faults: tuple[Fault, ...] = ()
 
     def cell(self, row: int, column: int) -> str:
-        """Return the text of a cell, counted from 0; empty where the sheet has none."""
+        """Return the text of a cell, numbered from 0; empty if the sheet has none."""
         inside = 0 <= row < len(self.rows) and 0 <= column < len(self.rows[row])
         return self.rows[row][column] if inside else ""
 
@@ -34,7 +34,7 @@ class Grid:
 
 
 def grid_of(rows: Sequence[Sequence[str]], faults: Sequence[Fault] = ()) -> Grid:
-    """Return a grid of texts, trimmed, with every cell that is too long or lies too far out refused.
+    """Return a grid of trimmed texts; cells that are too long or outside the allowed area are refused.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def refuse(faults: Sequence[Fault]) -> None:
 
 
 def address(row: int, column: int) -> str:
-    """Return the address of a cell whose row and column are counted from 0: `address(3, 3)` is `D4`."""
+    """Return the address of a cell whose row and column are numbered from 0: `address(3, 3)` is `D4`."""
     letters, rest = "", column + 1
     while rest:
         rest, place = divmod(rest - 1, 26)
@@ -104,6 +104,6 @@ def column_of(letters: str) -> int:
 
 
 def cell_of(address: str) -> tuple[int, int] | None:
-    """Return row and column of an address, from 0: (3, 3) for `D4`; None of what is not an address."""
+    """Return row and column of an address, from 0: (3, 3) for `D4`; None if it is not an address."""
     match = _ADDRESS.fullmatch(address)
     return (int(match["row"]) - 1, column_of(match["column"])) if match else None

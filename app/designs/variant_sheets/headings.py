@@ -1,4 +1,4 @@
-"""Read a heading of a sheet, or the name of a row, as a person writes it: `Radial load`, `main 1`."""
+"""Read a heading of a sheet, or the name of a row, as people write it: `Radial load`, `main 1`."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from app.reference import Reference
 
 
 def place_named(heading: str, places: Collection[str]) -> str:
-    """Return the place that a heading names, by its whole name or in the words of its input.
+    """Return the place that a heading names, by its full name or the words of its input.
 
-    Else the heading.
-
-    `Radial load` is `film.radial_load` where no other step has an input of these words.
+    Otherwise it returns the heading. `Radial load` is `film.radial_load` if no other step has an input with
+    these words.
     """
     if heading in places:
         return heading

@@ -1,4 +1,4 @@
-"""Variants from the cells of a sheet: every faulty cell is named by its address, all at once."""
+"""Read variants from the cells of a sheet, and report all faulty cells by their addresses."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class SheetVariants:
     addresses: Mapping[tuple[str, str], str]  # of values by variant and place, of names by variant and ""
 
     def named(self, error: InvalidInputs) -> InvalidInputs:
-        """Return the faults of a save, those of variants named by the addresses of their cells."""
+        """Return the faults of a save, located at the addresses of the variants' cells."""
         return InvalidInputs(self._named(fault) for fault in error.faults)
 
     def without(self, faults: Iterable[Fault]) -> SheetVariants:
-        """Return the cells that have none of these faults; of a variant whose name has one, none is left."""
+        """Return the cells without these faults; a variant with a faulty name is removed."""
         wrong = {fault.name for fault in faults}
         variants = {
             name: {place: v for place, v in row.items() if self.addresses[name, place] not in wrong}
@@ -68,10 +68,9 @@ class SheetVariants:
 
 
 def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
-    """Return the cells of a sheet that can be read as variants, and the faults of all others.
+    """Return the variants in a sheet, and the faults of all cells that cannot be read.
 
-    A value that means what it meant before is kept as it was typed then. Rows without a name of their own are
-    left out.
+    A value whose meaning has not changed keeps its typed form. Rows without a unique name are left out.
 
     Raises
     ------
@@ -153,7 +152,7 @@ def _heading(text: str) -> tuple[str, str, bool]:
 
 
 def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fault]) -> str:
-    """Return the unit of a column, empty for none; a wrong one is added to the faults."""
+    """Return the unit of a column, empty if it has none; add a fault if it is wrong."""
     where = address(1, at) if below else address(0, at)
     text = below or named
     if text in ("", "-"):
@@ -168,7 +167,7 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
 
 
 def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> tuple[str, bool]:
-    """Return the name of the variant in a row, and whether it may have it; else the faults get one more."""
+    """Return the name of the variant in a row, and whether it is valid; otherwise add a fault."""
     before = len(faults)
     name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
@@ -214,5 +213,5 @@ def _given(text: str, column: Column, units: Units) -> Raw:
 
 
 def _kept(old: Raw, value: Raw) -> Raw:
-    """Return the value as it was typed before, if it means the same."""
+    """Return the previously typed value, if it means the same."""
     return old if old is not None and same(old, value) else value

@@ -38,7 +38,7 @@ def read_sheet(content: bytes, kind: Kind) -> Grid:
     Raises
     ------
     InvalidInputs
-        If the file is none of its kind, or too large.
+        If the file is not of its kind, or too large.
     """
     return read_csv(content) if kind == "csv" else read_xlsx(content)
 
@@ -46,7 +46,7 @@ def read_sheet(content: bytes, kind: Kind) -> Grid:
 def save_sheet(
     designs: Designs, id: str, content: bytes, kind: Kind, expected: str | None, once: Once
 ) -> SaveResult:
-    """Return a new revision whose variants are those of a sheet; a sheet that changes nothing makes none.
+    """Return a new revision with the variants of a sheet; an unchanged sheet creates none.
 
     Raises
     ------
@@ -74,11 +74,11 @@ def save_sheet(
 def _faults_of_save(
     designs: Designs, raw: JsonObject, sheet: SheetVariants, listed: Sequence[Fault]
 ) -> Iterator[Fault]:
-    """Yield the faults for which a save would refuse the remaining cells.
+    """Yield the faults that would make a save refuse the remaining cells.
 
-    A cell that cannot be linked keeps its variant from being calculated, and one value that is refused keeps
-    later steps from it. So what is refused is left out, and the rest is tried once more. In a row with cells
-    left out, only what is wrong with a cell by itself counts: the row as a whole may be right without them.
+    A cell that cannot be linked prevents the calculation of its variant, and a refused value prevents that of
+    later steps. So refused cells are removed, and the rest is tried once more. In a row with removed cells,
+    only faults of single cells count: the complete row may be valid.
     """
     incomplete = {cell[0] for fault in listed if (cell := cell_of(fault.name))}
     for _ in range(TRIES):

@@ -7,14 +7,24 @@ from app.designs.variant_sheets.reader import Units
 from app.designs.variants.table import places
 from app.reference import Reference
 from templates.core.errors import FaultyText
+from templates.core.language.intake import other_sizes
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation
 
 
 def units_of(network: Network) -> Units:
-    """Return units by place; None for a choice, and for a parameter that a relation sets."""
-    return {place: _unit(network, Reference.parse(place)) for place in places(network)}
+    """Return units by place; None for a choice, and for a parameter that a relation sets.
+
+    A radial clearance has a place beside the diametral one, which a save makes of it.
+    """
+    declared = {place: _unit(network, Reference.parse(place)) for place in places(network)}
+    sizes = (
+        (block.name, other, name)
+        for block in network.blocks.values()
+        for other, name in other_sizes(block.cls)
+    )
+    return declared | {f"{block}.{other}": declared[f"{block}.{name}"] for block, other, name in sizes}
 
 
 def _unit(network: Network, place: Reference) -> str | None:
@@ -25,7 +35,7 @@ def _unit(network: Network, place: Reference) -> str | None:
 
 
 def _typed_unit(cell: Cell) -> str | None:
-    """Return the unit that a parameter was typed in; a relation has none of its own."""
+    """Return the unit in which a parameter was typed; a relation has none."""
     if is_relation(cell.raw) or cell.relations:
         return None
     try:

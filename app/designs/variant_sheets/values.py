@@ -1,4 +1,4 @@
-"""A value of a variant as a cell: a number in the unit of its column, a relation without its sign, a text."""
+"""A value of a variant as a cell: a number in the column's unit, a relation without `=`, or a text."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Shape:
 
 
 def shape(raw: Raw) -> Shape:
-    """Return the cell of a value as typed."""
+    """Return the cell of a typed value."""
     if is_relation(raw):
         return Shape(str(raw).strip().removeprefix("=").strip(), is_relation=True)
     number = _number(raw)
@@ -43,7 +43,7 @@ def shape(raw: Raw) -> Shape:
 
 
 def _number(raw: Raw) -> tuple[float, str] | None:
-    """Number and unit of a plain quantity; None of any other value, such as one with a tolerance."""
+    """Return number and unit of a plain quantity; None for any other value, such as one with a tolerance."""
     if isinstance(raw, Mapping) and raw.keys() == {"value", "unit"} and isinstance(raw["unit"], str):
         bare = _number(raw["value"]) if not isinstance(raw["value"], str) else None
         return (bare[0], raw["unit"]) if bare else None
@@ -56,7 +56,7 @@ def _number(raw: Raw) -> tuple[float, str] | None:
 
 
 def same(one: Raw, other: Raw) -> bool:
-    """Return whether two values as typed mean the same, however they are written."""
+    """Return whether two typed values mean the same, however they are written."""
     if one == other:
         return True
     this, that = shape(one), shape(other)
@@ -75,12 +75,12 @@ def _same_unit(one: str, other: str) -> bool:
 
 
 def relation(text: str) -> str:
-    """Return the relation in a cell, which stands there without its sign.
+    """Return the relation in a cell, which is written without its equals sign.
 
     Raises
     ------
     FaultyText
-        If it has a sign, or is not a relation.
+        If it has an equals sign, or is not a relation.
     """
     if text.startswith("="):
         raise FaultyText("formula", f"write the relation without =: {text.lstrip('= ')[:60]}")
@@ -89,14 +89,14 @@ def relation(text: str) -> str:
 
 
 def given(text: str, column: str, declared: str | None) -> Raw:
-    """Return the value in a cell of a column whose unit is `column`, empty for none.
+    """Return the value in a cell of a column with unit `column`, which may be empty.
 
-    `declared` is the unit in which the place is declared; None for a choice, or where it is not known.
+    `declared` is the declared unit of the place; None for a choice, or if it is unknown.
 
     Raises
     ------
     FaultyText
-        If it is none, or has no unit, or one of another kind.
+        If it is not a value, or has no unit or a unit of another kind.
     """
     if text.startswith("="):
         raise FaultyText("formula", FORMULA)

@@ -1,4 +1,4 @@
-"""The table of variants as rows of a sheet: inputs that can be read back, then results that are not."""
+"""The table of variants as rows of a sheet: inputs, which can be read back, then results, which cannot."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SheetColumn:
 
 
 def sheet_columns(out: VariantsOut) -> list[SheetColumn]:
-    """Return the columns of a table of variants: names, what they override, results."""
+    """Return the columns of a table of variants: names, overrides, results."""
     names = list(out.variants)
     inputs = [column for about in out.columns for column in _of_place(out, about)]
     return [SheetColumn(FIRST, UNIT, names), *inputs, *_results(out, names)]
@@ -43,7 +43,7 @@ def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
 
 
 def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
-    """Yield a column for the values of a place, and one for its relations, if there are any."""
+    """Yield a column for the values of a place, and one for its relations if it has any."""
     raws = [overrides.get(about.place) for overrides in out.variants.values()]
     shapes = [None if raw is None else shape(raw) for raw in raws]
     if any(one and not one.is_relation for one in shapes):
@@ -95,7 +95,7 @@ def _cell(one: Shape | None, raw: object, unit: str) -> Value:
 
 
 def _results(out: VariantsOut, names: Sequence[str]) -> Iterable[SheetColumn]:
-    """Yield verdict and governing criterion of each variant, then verdict and use of each criterion."""
+    """Yield verdict and governing criterion of variants, then verdict and utilisation of criteria."""
     rows = {row.name: row for row in out.rows}
     results = [rows.get(name) for name in names]
     if any(row and row.problem for row in results):

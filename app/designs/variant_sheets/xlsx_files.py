@@ -1,7 +1,7 @@
 """XLSX files: the sheet named `variants`, else the first that is not hidden.
 
-The file is a zip archive of XML that a stranger made: the size of its parts is bounded before any is read,
-and a cell that holds a formula, a date or an error is refused by its address.
+The file is an untrusted zip archive of XML: the sizes of its parts are checked before any part is read. A
+cell that holds a formula, a date or an error is refused by its address.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class _Cell(Protocol):
 
     @property
     def value(self) -> object:
-        """Return a number, a text, a date; None where it is empty."""
+        """Return a number, a text or a date; None if the cell is empty."""
 
     @property
     def data_type(self) -> str:
@@ -65,9 +65,9 @@ def read_xlsx(content: bytes) -> Grid:
 
 
 def _check_size(content: bytes) -> None:
-    """Refuse what would unpack to more than any table of variants needs.
+    """Refuse a file that would unpack to more than any table of variants needs.
 
-    `zipfile` never unpacks more of a part than the archive says, so that what it says can be added up.
+    `zipfile` never unpacks more of a part than the archive states, so the stated sizes can be added up.
     """
     if len(content) > MOST_BYTES:
         raise _wrong("too_long", f"an XLSX file has at most {MOST_BYTES // 10**6} MB")
@@ -82,7 +82,7 @@ def _check_size(content: bytes) -> None:
 
 
 def _sheet(book: Workbook) -> Worksheet:
-    """Return the sheet to read; hidden ones are passed over."""
+    """Return the sheet to read; hidden sheets are skipped."""
     visible = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
     if not visible:
         raise _wrong("no_sheet", "the file has no visible sheet with cells")
@@ -91,7 +91,7 @@ def _sheet(book: Workbook) -> Worksheet:
 
 
 def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
-    """Return the texts of all cells; and the faults of those that hold no value."""
+    """Return the texts of all cells, and the faults of those without a value."""
     sheet.reset_dimensions()  # what the file says of its own size may be wrong
     rows: list[list[str]] = []
     faults: list[Fault] = []
@@ -108,10 +108,7 @@ def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
 
 
 def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
-    """Yield rows up to the last that is allowed.
-
-    Of those below, the first that has a value, which is refused.
-    """
+    """Yield rows up to the last allowed one, then the first row below it that has a value, to be refused."""
     for number, row in enumerate(rows):
         if number < LAST_ROW:
             yield row
@@ -141,7 +138,7 @@ def _text(value: object, kind: str) -> str:
 
 
 def number_text(number: float) -> str:
-    """Return a number with all its digits, as short as can be: `60`, `0.05`."""
+    """Return a number with all its digits, as short as possible: `60`, `0.05`."""
     if isinstance(number, float) and not math.isfinite(number):
         raise FaultyText("not_finite", "the value must be finite")
     whole = isinstance(number, int) or (number.is_integer() and abs(number) < 1e15)
@@ -149,7 +146,7 @@ def number_text(number: float) -> str:
 
 
 def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: str) -> bytes:
-    """Return rows as an XLSX file with frozen headings; `results` says which columns hold results."""
+    """Return rows as an XLSX file with frozen headings; `results` marks the columns with results."""
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 

@@ -1,4 +1,4 @@
-"""One step for several variants: an array call for all whose inputs have one form, and its rows."""
+"""Evaluate one step for several variants: one array call for all whose inputs have the same form."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.designs.engine.calculation import DEFERRED, Prepared
+from app.designs.engine.calculation import DEFERRED, DocumentCalculation
 from app.designs.engine.steps import memory
 from app.designs.network import Block, Graph
 from app.plain import Raw
@@ -39,12 +39,10 @@ class StepInputs:
         return self.graph.computed(self.block)
 
     def form(self) -> Hashable:
-        """Return the key that variants must have in common to share an array call.
+        """Return the key that variants must share to use one array call; None for a variant that is alone.
 
-        None for one that is alone.
-
-        It is the step, the names of the inputs, the shapes of curves, and the values of choices, tables and
-        of what is one value for all points.
+        The key has the step, the names of the inputs, the shapes of curves, and the values of choices, tables
+        and inputs that must be equal for all points.
         """
         parts = [(name, _form(self.block, name, raw)) for name, raw in sorted(self.raw.items())]
         if any(form is None for _, form in parts):
@@ -63,12 +61,12 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
     return shape if len(shape) == int(is_curve) else None
 
 
-def evaluations(asked: Sequence[StepInputs]) -> list[Prepared | None]:
+def evaluations(asked: Sequence[StepInputs]) -> list[DocumentCalculation | None]:
     """Return the evaluation of each variant, `DEFERRED` if no caller waits for it.
 
-    None where it has to be calculated alone.
+    It is None if the variant must be calculated alone.
     """
-    results: list[Prepared | None] = [None] * len(asked)
+    results: list[DocumentCalculation | None] = [None] * len(asked)
     groups: dict[Hashable, list[int]] = {}
     for place, one in enumerate(asked):
         if (form := one.form()) is not None:
@@ -91,8 +89,8 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
         yield places[start : start + size]
 
 
-def _shared(asked: Sequence[StepInputs]) -> Sequence[Prepared | None]:
-    """Return the rows of one array call; of a call that refuses, those of its halves."""
+def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]:
+    """Return the rows of one array call; if the call refuses, those of its halves."""
     if len(asked) < 2:
         return [None] * len(asked)  # alone it is calculated as it always is
     first = asked[0]
@@ -110,7 +108,7 @@ def _shared(asked: Sequence[StepInputs]) -> Sequence[Prepared | None]:
 
 
 def _stacked(asked: Sequence[StepInputs]) -> dict[str, Raw]:
-    """Return inputs for all rows: one value where all have the same, else an array with the row first."""
+    """Return inputs for all rows: one value if all are equal, else an array with the row first."""
     return {name: _column(asked, name) for name in asked[0].raw}
 
 
@@ -132,7 +130,7 @@ class _Rows:
     count: int
 
     def evaluation(self, row: int, asked: StepInputs) -> Evaluation | None:
-        """Return the evaluation of one row; None if it has to be calculated alone, because it is refused."""
+        """Return the evaluation of one row; None if it is refused and must be calculated alone."""
         try:
             template = self._template(row, asked)
             answers, errors = answers_at_level(template, list(self.whole.outputs))
@@ -142,9 +140,9 @@ class _Rows:
         return Evaluation(template, {}, answers, self.whole.level, errors, [], seconds)
 
     def _template(self, row: int, asked: StepInputs) -> Template:
-        """Return the template of one variant with what the array call has computed.
+        """Return the template of one variant with the values that the array call has computed.
 
-        What has no value in a row is left out: the template then finds out why.
+        Missing values of a row are left out: the template then determines the reason.
         """
         cls, level = asked.block.cls, self.whole.level
         template = cls.from_quantities(asked.raw)

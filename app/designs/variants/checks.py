@@ -1,4 +1,4 @@
-"""All variants of a design, calculated, and everything that is wrong with its table at once."""
+"""Calculate all variants of a design, and report everything that is wrong with its table at once."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def checked(document: Document, base: Calculation, available: Available) -> tupl
 
 
 def too_many_cells(document: Document) -> Iterator[Fault]:
-    """Yield a fault if there is more to calculate than a save does.
+    """Yield a fault if there is more to calculate than a save allows.
 
     Every variant has every value of the design.
     """
@@ -42,5 +42,5 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
 
 
 def row_faults(base: Calculation) -> list[Fault]:
-    """Return a fault for every step that has several rows of its own in a design with variants."""
+    """Return a fault for every step that has several points in a design with variants."""
     return [fault.within("variants") for fault in row_arrays(base)]

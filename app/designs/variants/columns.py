@@ -20,7 +20,7 @@ from templates.core.units.quantity import TypedQuantity, read, read_any
 def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
     """Return the columns of a stored document.
 
-    Its parameters first, then steps and models, each as declared.
+    Parameters come first, then steps and models, in declaration order.
     """
     if not plain.get("variants"):
         return []
@@ -44,9 +44,9 @@ def _column(place: str, graph: Graph) -> VariantColumn:
 
 
 def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -> str | None:
-    """Return the unit of a column: as declared, of a parameter as the design has typed it.
+    """Return the unit of a column: the declared one, or for a parameter the typed one.
 
-    None of a choice.
+    It is None for a choice.
     """
     if declared is not None:
         return None if isinstance(declared, Choice) else declared.meaning.unit
@@ -56,7 +56,7 @@ def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -
 
 
 def _nominal(cell: Cell | None) -> Shown | None:
-    """Return the design's own value, as typed; None where it is a relation, or not set."""
+    """Return the design's own value, as typed; None for a relation, or if it is not set."""
     if cell is None or cell.relations:
         return None
     if isinstance(cell.declared, Choice):

@@ -1,4 +1,4 @@
-"""One variant with every output of its steps, curves included, calculated when it is asked for.
+"""One variant with every output of its steps, curves included, calculated on request.
 
 A revision keeps the single outputs of its variants; the curves of 200 variants would fill the database.
 """
@@ -52,7 +52,7 @@ class WantedVariant:
 def detailed(
     wanted: WantedVariant, database: Database, catalogues: Catalogues
 ) -> Reply[WantedVariant, VariantDetail]:
-    """Return the variant, if its caller waits long enough.
+    """Return the variant, if the caller waits long enough.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def detailed(
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
-    """Return the document with one of its variants only."""
+    """Return the document with only one of its variants."""
     variants = {BASE: {}, **document.variants}
     if wanted.variant not in variants:
         there = f"there are {', '.join(variants)}"
@@ -104,7 +104,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
     """Yield every output of every step by its name in relations.
 
-    Null with its reason where the step waits.
+    The value is null with its reason while the step is pending.
     """
     for block in calculation.graph.blocks.values():
         if block.is_model:

@@ -1,4 +1,4 @@
-"""The models of variants whose files are served: each at its newest good revision, or at one revision."""
+"""Serve the models of variants: each at its newest valid revision, or at a given one."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Entry:
 def variant_model(
     session: Session, id: str, variant: str, model: str | None, number: int | None
 ) -> RevisionModelRow:
-    """Return the model of a variant to serve: of one revision, or the newest good one of the design.
+    """Return the model of a variant to serve: of one revision, or the newest valid one of the design.
 
     Raises
     ------
     NotFound
-        If there is none; the text says why.
+        If there is none; the message gives the reason.
     """
     row = _revision(session, id, number)
     names = sorted(row.document.get("variants", {}), key=natural)
@@ -53,7 +53,7 @@ def variant_model(
 
 
 def entries(session: Session, id: str, number: int | None) -> tuple[int, list[Entry], list[str]]:
-    """Return the revision, the STEP files of all its variants in their order, and the models that have none.
+    """Return the revision, the STEP files of all its variants in order, and the models without one.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def _revision(session: Session, id: str, number: int | None) -> RevisionRow:
 
 
 def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> str:
-    """Return the model that is meant: the one named, or the only one."""
+    """Return the requested model: the named one, or the only one."""
     names = list(row.document["models"])
     wanted = model or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
@@ -97,7 +97,7 @@ def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> 
 def _good(
     session: Session, row: RevisionRow, variant: str, model: str, number: int | None
 ) -> RevisionModelRow | None:
-    """Return the model of a variant if it is built: of one revision, or of the newest in which it is."""
+    """Return the model of a variant if it is built: of one revision, or of the newest with a solid."""
     name = dotted(variant, model)
     if number is None:
         return repository.newest_good(session, row.design_id, name, row.number)

@@ -23,7 +23,7 @@ NaturalKey = tuple[tuple[tuple[int, int, str], ...], str]
 
 
 def natural(name: str) -> NaturalKey:
-    """Return the key by which names are sorted as people count: main_2 before main_10."""
+    """Return a sort key for names in natural order: main_2 before main_10."""
     parts = (
         (0, int(part), "") if part[0].isdigit() else (1, 0, part.lower()) for part in _PART.findall(name)
     )

@@ -1,4 +1,4 @@
-"""The result of a variant, however it was calculated."""
+"""The result of a variant, whether it was calculated alone or with others."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def refused(name: str, faults: Sequence[Fault]) -> Outcome:
 
 
 def units_of(document: Document, places: Collection[str]) -> dict[str, str]:
-    """Return places with the units of parameters as the design has typed them; empty where it has none."""
+    """Return places with the typed units of the design's parameters; empty for other places."""
     return {place: _typed_unit(document.parameters.get(place)) for place in places}
 
 
@@ -40,7 +40,7 @@ def _typed_unit(raw: Raw) -> str:
 
 
 def outcome_of(name: str, places: Mapping[str, str], document: Document, calculation: Calculation) -> Outcome:
-    """Return a variant that was calculated as a design of its own."""
+    """Return the outcome of a variant that was calculated as a separate design."""
     if calculation.faults:
         return refused(name, calculation.faults)
     return Outcome(
@@ -59,7 +59,7 @@ def outcome_of(name: str, places: Mapping[str, str], document: Document, calcula
 
 
 def values(calculation: Calculation, places: Mapping[str, str]) -> dict[str, JsonObject]:
-    """Return overridden places as quantities; one that waits for a solid is left out."""
+    """Return overridden places as quantities, without pending ones."""
     shown = {place: _value(calculation, place, unit) for place, unit in places.items()}
     return {place: value for place, value in shown.items() if value is not None}
 

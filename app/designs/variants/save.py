@@ -1,4 +1,4 @@
-"""A table of variants saved as a revision of its design."""
+"""Save a table of variants as a revision of its design."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Table = Mapping[str, Mapping[str, Raw]]
 def replace_variants(
     designs: Designs, id: str, table: Table, note: str | None, expected: str | None, once: Once
 ) -> SaveResult:
-    """Return a new revision whose variants are those of a table; a table that changes nothing makes none.
+    """Return a new revision with the variants of a table; an unchanged table creates none.
 
     Raises
     ------
     StaleRevision
         If `expected` (an If-Match) is not the newest revision.
     InvalidInputs
-        With everything that is wrong with the table; nothing is saved then.
+        With all faults of the table; nothing is saved then.
     """
     with designs.database.read() as session:
         number, document, *_ = repository.newest(session, id)
@@ -33,7 +33,7 @@ def replace_variants(
 
 
 def patch_between(old: Table, new: Table) -> JsonObject:
-    """Return the merge patch that makes one table of another."""
+    """Return the merge patch that converts one table into another."""
     gone: JsonObject = {name: None for name in old if name not in new}
     kept = {
         name: {**{place: None for place in old.get(name, {}) if place not in values}, **values}

@@ -1,4 +1,4 @@
-"""The part of a regeneration that is about variants: one solid for each distinct set of parameters.
+"""Regenerate variants: build one solid for each distinct set of parameters.
 
 If a solid fails, only the variants that use it fail; the revision stays usable.
 """
@@ -12,7 +12,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.results import Outcome
-from app.designs.service import Prepared
+from app.designs.service import DocumentCalculation
 from app.designs.variants.outcome import outcome_of
 from app.jobs.service import JobContext
 from app.plain import JsonObject
@@ -35,7 +35,7 @@ MOST_CRASHES = 2  # of the process that builds one solid
 Describe = Callable[[Exception], JsonObject]
 """Turns an error into a problem (RFC 9457)."""
 
-Settle = Callable[[Prepared, JobContext], Calculation]
+Settle = Callable[[DocumentCalculation, JobContext], Calculation]
 """Completes the calculation of a design: builds, measures, iterates."""
 
 
@@ -63,7 +63,7 @@ class VariantSolids:
     _failed: dict[str, Exception] = field(default_factory=dict)  # by key of build: nothing is tried twice
 
     def settled(self, outcomes: Sequence[Outcome]) -> list[Outcome]:
-        """Return the variants with all their solids built, or with the reason why one is not."""
+        """Return the variants with all their solids built, or with the reason of a failure."""
         done: list[Outcome] = []
         for number, outcome in enumerate(outcomes):
             self.context.progress(number / len(outcomes), f"variant {outcome.name}")
@@ -81,7 +81,7 @@ class VariantSolids:
         return self._completed(outcome, outcome.document, outcome.calculation)
 
     def _failures(self, shapes: Mapping[str, CadModel]) -> Iterator[tuple[str, JsonObject]]:
-        """Build the solids whose parameters are known; why those that fail do."""
+        """Build the solids whose parameters are known; return the reasons of failures."""
         for name, shape in shapes.items():
             try:
                 with failures_named(name):
@@ -103,9 +103,9 @@ class VariantSolids:
                 return
 
     def _completed(self, outcome: Outcome, document: Document, calculation: Calculation) -> Outcome:
-        """Return a variant that is a design of its own, with everything that follows from its solids."""
+        """Return a variant that is a separate design, with all values that depend on its solids."""
         try:
-            complete = self.settle(Prepared(document, calculation), self.context)
+            complete = self.settle(DocumentCalculation(document, calculation), self.context)
         except FAILURES as error:
             return replace(outcome, problem=self.describe(error))
         return outcome_of(outcome.name, outcome.places, document, complete)

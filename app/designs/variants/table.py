@@ -19,9 +19,9 @@ Overrides = Mapping[str, Raw]
 
 
 def applied(document: Document, overrides: Overrides) -> Document:
-    """Return the document as one variant has it, without variants of its own.
+    """Return the document with the overrides of one variant applied, and without variants.
 
-    Nothing of the original changes.
+    The original is not changed.
     """
     parameters = dict(document.parameters)
     inside: dict[str, dict[str, Raw]] = {}
@@ -55,7 +55,7 @@ Cells = Mapping[tuple[str, str], Fault]
 
 
 def faulty_cells(document: Document, graph: Graph) -> Cells:
-    """Return faults: a reserved name, unknown places, and parameters of another kind than the design's."""
+    """Return faults: a reserved name, unknown places, and parameters of another kind than in the design."""
     faults: dict[tuple[str, str], Fault] = {}
     for name in RESERVED.keys() & document.variants.keys():
         faults[name, ""] = Fault(f"variants.{name}", "reserved", RESERVED[name])
@@ -74,7 +74,7 @@ def faulty_cells(document: Document, graph: Graph) -> Cells:
 
 
 def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | None:
-    """Return a fault if a parameter is given in a unit of another kind than that of the design."""
+    """Return a fault if a parameter has a unit of another kind than in the design."""
     cell, kind = graph.parameters.get(place), graph.kinds.get(place)
     if cell is None or kind is None or is_relation(value) or isinstance(value, list):
         return None

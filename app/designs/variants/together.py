@@ -1,9 +1,9 @@
-"""Variants calculated together: every step once for all of them, in array calls at one level.
+"""Calculate variants together: each step once for all of them, in array calls at one level.
 
 Cells are calculated variant by variant, as in designs of their own. At a step, those variants that give it
-the same inputs, of the same shapes and with the same choices, share one array call; each then has its row of
-the result, and goes on with it. A variant that an array call refuses or masks is calculated alone, so that
-the message refers to that variant.
+the same inputs, of the same shapes and with the same choices, share one array call; each then continues with
+its row of the result. A variant that an array call refuses or masks is calculated alone, so that the message
+refers to that variant.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class _Run:
         calculate_nodes(self.calculation, [node], available.measured, available.analysed)
 
     def stop(self) -> None:
-        """Calculate no more: all variants together ask for too much."""
+        """Stop calculating: all variants together exceed the limits."""
         self.at, self.left = None, iter(())
         self.calculation.faults.append(Fault("relations", "too_many_values", TOO_MUCH))
 
@@ -94,14 +94,14 @@ def together(document: Document, available: Available) -> list[Outcome]:
 
 
 def _limit(runs: Sequence[_Run]) -> None:
-    """Stop all variants once their relations together have calculated more than those of a design may."""
+    """Stop all variants once their relations together exceed the operations of one design."""
     if sum(run.calculation.operations for run in runs) > MOST_OPERATIONS:
         for run in runs:
             run.stop()
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """Return a variant before anything of it is calculated, or the faults of its network."""
+    """Return a variant before its calculation, or the faults of its network."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)
@@ -116,7 +116,7 @@ def _begun(document: Document, name: str, available: Available) -> _Run | Outcom
 
 
 def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
-    """Return the variants that are at the first step at which any is; the others wait, to be joined there."""
+    """Return the variants at the earliest step that any has reached; the others wait to join them there."""
     steps: dict[str, list[_Run]] = {}
     for run in runs:
         assert run.at is not None, "it waits at a step"
@@ -125,7 +125,7 @@ def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
 
 
 def _share(runs: Sequence[_Run]) -> None:
-    """Leave the evaluation of a step with each variant that can have it from an array call."""
+    """Give each variant its evaluation of a step from an array call, if possible."""
     asking = {run.name: asked for run in runs if (asked := _asking(run)) is not None}
     shared = evaluations(list(asking.values()))
     for name, evaluation in zip(asking, shared, strict=True):
@@ -135,7 +135,7 @@ def _share(runs: Sequence[_Run]) -> None:
 
 
 def _asking(run: _Run) -> StepInputs | None:
-    """Return the inputs of a step for one variant; None while an input waits for a solid, or is faulty."""
+    """Return the inputs of a step for one variant; None while an input is pending or faulty."""
     block, calculation = run.at, run.calculation
     assert block is not None, "it waits at a step"
     unknown = calculation.pending | calculation.broken

@@ -21,9 +21,8 @@ Judged = Mapping[str, Sequence[Judgement]]
 def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
     """Return every criterion of a design at its worst variant, worst first.
 
-    As it is where there are no variants.
-
-    Points are variants, the design itself one of them. A limit that is not verified for one is so for all.
+    Without variants it is unchanged. Points are variants, including the design itself. A limit that is
+    unverified for one variant is unverified for all.
     """
     if not variants:
         return list(base)
@@ -36,7 +35,7 @@ def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
 
 
 def _worst(judgements: Sequence[Judgement]) -> Judgement:
-    """Return the worst of one criterion over variants, and how many of each verdict there are."""
+    """Return the worst judgement of one criterion over variants, and the count of each verdict."""
     worst = worst_first(judgements)[0]
     counts = Counter(judgement.verdict for judgement in judgements)
     return replace(

@@ -33,7 +33,7 @@ def variants(
     catalogues: Catalogues,
     outputs: Collection[str] = (),
 ) -> VariantsOut:
-    """Return the variants of a design's revision, the newest if none is named; with those outputs.
+    """Return the variants of a design's revision, by default the newest, with these outputs.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; the first of those that are equal."""
+    """Return the worst variant of each criterion; the first of equal ones."""
     worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
@@ -165,5 +165,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant
 
 
 def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return worst first, as criteria are ordered."""
+    """Return a sort key, worst first, in the order of criteria."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

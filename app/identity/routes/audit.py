@@ -10,8 +10,8 @@ from app.api.dependencies import TheDatabase
 from app.http.access import needs
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import StrictRoute
-from app.identity import audit_rows, chain
-from app.identity.audit_rows import AuditFilter
+from app.identity import audit, chain
+from app.identity.audit import AuditFilter
 from app.identity.schemas.audit import AuditEntry, AuditHead, AuditList
 
 router = APIRouter(
@@ -37,15 +37,15 @@ def list_audit(
     principal: Who = None,
     action: Action = None,
 ) -> AuditList:
-    """Changes, newest first: all, or those that fit every filter given."""
+    """Return changes, newest first: all, or those that match all filters."""
     with database.read() as session:
-        rows = audit_rows.page(session, limit, cursor, AuditFilter(object, principal, action))
+        rows = audit.page(session, limit, cursor, AuditFilter(object, principal, action))
     return page(AuditList, rows, limit, AuditEntry.model_validate, lambda row: row.id)
 
 
 @router.get("/head", dependencies=[needs("admin")])
 def show_head(database: TheDatabase) -> AuditHead:
-    """The hash to note elsewhere: `crankwright audit verify --head HASH` asks for it later."""
+    """Return the hash to record elsewhere; `crankwright audit verify --head HASH` uses it later."""
     with database.read() as session:
         newest = chain.head(session)
     return AuditHead(seq=newest.seq, hash=newest.hash)

@@ -1,4 +1,4 @@
-"""`/me`, `/principals` and their keys: who may use the service, and the usage of each principal."""
+"""`/me`, `/principals` and their keys: the principals that may use the service, and their usage."""
 
 from __future__ import annotations
 
@@ -35,27 +35,27 @@ Id = Annotated[str, Path(max_length=64)]
 
 @router.get("/me")
 def show_me(identity: TheIdentity) -> Me:
-    """The principal of this request, with roles and usage; `local` on a service without keys."""
+    """Return the principal of this request, with roles and usage; `local` on a service without keys."""
     who = acting()
     return views.me(who, views.used(*identity.usage(who.id)))
 
 
 @router.get("/principals", dependencies=ADMIN)
 def list_principals(identity: TheIdentity, limit: Limit = 50, cursor: Cursor = None) -> PrincipalList:
-    """Everybody who may use the service, oldest first."""
+    """Return all principals that may use the service, oldest first."""
     rows = identity.page(limit + 1, cursor)
     return page(PrincipalList, rows, limit, show=views.principal, cursor=lambda row: row.id)
 
 
 @router.post("/principals", status_code=201, dependencies=ADMIN, responses=refusals(409))
 def add_principal(body: PrincipalIn, identity: TheIdentity) -> Principal:
-    """A new principal, beside the first one, which `crankwright keys add` makes."""
+    """Add a principal; `crankwright keys add` creates the first one."""
     return views.principal(identity.add_another(body.name, body.roles, body.kind))
 
 
 @router.get("/principals/{id}", dependencies=ADMIN, responses=refusals(404))
 def show_principal(id: Id, identity: TheIdentity) -> Principal:
-    """A principal."""
+    """Return a principal."""
     return views.principal(identity.find(id))
 
 
@@ -69,19 +69,22 @@ def change_principal(id: Id, body: PrincipalPatch, identity: TheIdentity) -> Pri
 
 @router.get("/principals/{id}/usage", responses=refusals(403, 404))
 def show_usage(id: Id, identity: TheIdentity) -> Usage:
-    """The usage and limits of a principal: one's own, or any for administrators."""
+    """Return the usage and limits of a principal: of oneself, or of any principal for administrators."""
     return views.used(*identity.usage(id))
 
 
 @router.get("/principals/{id}/keys", responses=refusals(403, 404))
 def list_keys(id: Id, identity: TheIdentity, limit: Limit = 50, cursor: Cursor = None) -> KeyList:
-    """The keys of a principal: one's own, or any for administrators."""
+    """Return the keys of a principal: of oneself, or of any principal for administrators."""
     return page_of(KeyList, identity.keys(id), limit, cursor, show=views.key)
 
 
 @router.post("/principals/{id}/keys", status_code=201, responses=refusals(403, 404))
 def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
-    """A new key, which only this answer has; for oneself no stronger and no longer valid than the present."""
+    """Create a key, which appears only in this answer.
+
+    Users cannot exceed the rights or life of their own key.
+    """
     days = body.expires_days
     expires = None if days is None else datetime.now(UTC) + timedelta(days=days)
     new, row = identity.add_key(id, body.name, body.scopes, expires)
@@ -90,5 +93,5 @@ def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
 
 @router.delete("/principals/{id}/keys/{prefix}", responses=refusals(403, 404))
 def revoke_key(id: Id, prefix: Id, identity: TheIdentity) -> Key:
-    """Revoke a key and the keys that it made, except the key of this request."""
+    """Revoke a key and the keys that it created, except the key of this request."""
     return views.key(identity.revoke(prefix, id)[0])

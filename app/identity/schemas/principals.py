@@ -1,4 +1,4 @@
-"""Principals, keys, limits and usage as the interface shows and takes them."""
+"""Principals, keys, limits and usage as the interface shows and accepts them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A manifest: which model of Creo, and which of its dimensions and parameters a relation may drive."""
+"""The manifest of a Creo model: its file, and the dimensions and parameters that relations may drive."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Driven(Bounded):
         if (self.dimension is None) == (self.parameter is None):
             raise ValueError("give either the dimension or the parameter of Creo")
         if not self.low <= self.value <= self.high:
-            raise ValueError(f"the value {self.value:g} is not from {self.low:g} to {self.high:g}")
+            raise ValueError(f"the value {self.value:g} is not between {self.low:g} and {self.high:g}")
         if self.check and self.unit not in MM:
             raise ValueError("only a length is read back from the solid")
         return self
@@ -112,7 +112,7 @@ def read(content: bytes) -> Manifest:
     Raises
     ------
     UnreadableModel
-        Naming all that is wrong.
+        Naming all faults.
     """
     if len(content) > LONGEST:
         raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")

@@ -1,7 +1,7 @@
 """One session with a running Creo through CREOSON: set values, regenerate, measure, export.
 
-CREOSON answers a POST of JSON, `{"sessionId", "command", "function", "data"}`, by `{"status": {"error",
-"message"}, "data"}`. Each step that Creo refuses is a failure of its own name. Nothing is saved in Creo.
+CREOSON answers a JSON POST, `{"sessionId", "command", "function", "data"}`, by `{"status": {"error",
+"message"}, "data"}`. Each step that Creo can refuse has its own kind of failure. Nothing is saved in Creo.
 
 References
 ----------
@@ -46,7 +46,7 @@ class Creoson:
 
 
 def unreachable(reason: str) -> ProgramMissing:
-    """Return the refusal where Creo does not answer, with what to do."""
+    """Return the refusal for an unreachable Creo, with a remedy."""
     return ProgramMissing(
         "creo_unreachable", f"Creo cannot be used: {reason}. Start Creo and CREOSON, then retry"
     )
@@ -64,12 +64,12 @@ class CreoSession:
     id: str = field(default="")
 
     def connect(self) -> None:
-        """Connect; raises ProgramMissing if CREOSON does not answer or Creo does not run."""
+        """Connect; raises ProgramMissing if CREOSON does not answer or Creo is not running."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
         self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
         if not self.id or running.get("running") is not True:
-            raise unreachable("CREOSON answers, and Creo does not run")
+            raise unreachable("CREOSON answers, but Creo is not running")
         if self.creoson.version is not None:
             data = {"version": self.creoson.version}
             self.ask("creo", "set_creo_version", data, "creo_unreachable")
@@ -84,7 +84,7 @@ class CreoSession:
         GeometryError
             If Creo refuses.
         ProgramMissing, DeadlineExceeded, JobCancelled
-            If it does not answer, not in time, or nobody waits any more.
+            If it does not answer, is too slow, or the job was cancelled.
         """
         request = {"sessionId": self.id, "command": command, "function": function, "data": data}
         answered = self._post(request, code, names).get("data") or {}
@@ -165,7 +165,9 @@ class CreoDrawing:
                     place.unlink(missing_ok=True)
         if name != wanted or len(step) > LARGEST_STEP or not step.lstrip()[:12] == b"ISO-10303-21":
             raise GeometryError(
-                "creo_export", f"what Creo exported, {name[:80]!r}, is not the STEP file", names
+                "creo_export",
+                f"the file that Creo exported, {name[:80]!r}, is not the requested STEP file",
+                names,
             )
         return step
 

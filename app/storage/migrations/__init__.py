@@ -1,4 +1,4 @@
-"""The history of the schema. A change of the tables adds a file to `versions`; a test compares the two."""
+"""The history of the schema. Every change of the tables adds a file to `versions`; a test compares both."""
 
 from pathlib import Path
 

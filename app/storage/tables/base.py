@@ -1,4 +1,4 @@
-"""Parts that all tables share: names of constraints, canonical JSON, and the column that holds it."""
+"""Parts that all tables share: names of constraints, canonical JSON, and the JSON column type."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Principals, the keys and sessions by which they sign in, and what they used."""
+"""Principals, their keys and sessions, and their usage."""
 
 from sqlalchemy import BigInteger, Double, ForeignKey, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column

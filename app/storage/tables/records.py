@@ -1,4 +1,4 @@
-"""Records of what clients did: the audit, and answers to requests that may be sent again."""
+"""Records of clients' actions: the audit, and stored answers to requests that may be repeated."""
 
 from sqlalchemy import BigInteger, Index, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column

@@ -1,4 +1,4 @@
-"""Studies and the chunks of rows that they have calculated."""
+"""Studies and their calculated chunks of rows."""
 
 from sqlalchemy import BigInteger, ForeignKey, ForeignKeyConstraint, Index
 from sqlalchemy.orm import Mapped, mapped_column

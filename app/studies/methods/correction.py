@@ -1,4 +1,4 @@
-"""A coarse level of a design, corrected by its ratios to a fine level at some places.
+"""A coarse level of a design, corrected by its ratios to a fine level at some points.
 
 The logarithm of the ratio is interpolated between the confirmed rows by ordinary kriging with a smooth
 covariance. Inverse-distance weights would keep the slope of the coarse level at a confirmed row. Kriging uses

@@ -1,6 +1,6 @@
-"""NSGA-II of pymoo, generation by generation: each follows from the one before, the seed and its number.
+"""NSGA-II of pymoo, one generation at a time: each depends on the previous one, the seed and its number.
 
-So a search that was interrupted goes on with the generation that it had not finished.
+So an interrupted search continues with its unfinished generation.
 
 References
 ----------

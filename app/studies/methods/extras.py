@@ -1,4 +1,4 @@
-"""Packages of the extra `study`, imported when a method needs them: together they take half a second."""
+"""Packages of the extra `study`, imported when a method needs them: the imports take half a second."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """One objective: explore at a coarse level, confirm at a fine one, correct, and repeat until both agree.
 
 After the first confirmation the search tightens each limit by the error band of the fine level, so that the
-confirmed optimum meets it fully. Feasible is not optimal: the ratios of a coarse level are right where they
-were taken, its slopes may be wrong. `trade` shows what each level would have chosen.
+confirmed optimum meets it fully. Feasible is not optimal: the ratios to the coarse level are exact at the
+confirmed rows, but slopes between them may be wrong.
 """
 
 from __future__ import annotations

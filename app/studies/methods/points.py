@@ -1,4 +1,4 @@
-"""The rows of a study; each chunk is computed independently, and a row does not depend on its chunk."""
+"""The rows of a study. Each chunk is computed independently, and a row does not depend on its chunk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Local optimisation by SciPy's SLSQP; one call of 1 + 2 n rows gives value and slopes.
+"""Local optimisation by SciPy's SLSQP; one array call of 1 + 2 n rows gives the value and its slopes.
 
 References
 ----------

@@ -1,7 +1,7 @@
 """The optimum of one objective at one level: a scan of the whole box, then a polish of its best points.
 
-Values of a list stay as the scan found them, so each promising combination is polished by itself. Nothing
-proves that the optimum is global.
+Values from a list stay as the scan found them, so each promising combination is polished by itself. The
+optimum is not proven to be global.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Stages of a search, stored so that an interrupted search does not repeat them.
+"""Stages of a search, stored so that an interrupted search does not repeat finished ones.
 
 A search is a pure function of its seed and of the answers it receives. A stage is a part of a search that
 returns a few arrays. A caller that stores these arrays and the requests of the stage can resume after it.

@@ -1,4 +1,4 @@
-"""`/studies`: begin one, look at it and its rows, choose a row, cancel or remove it."""
+"""`/studies`: begin a study, show it and its rows, choose a row, cancel or delete it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`POST /studies` with a file: the rows are a CSV or XLSX table, the rest is the query."""
+"""`POST /studies` with a file: the file holds the rows as CSV or XLSX, the query parameters the rest."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.approvals.schemas import ApprovalIn, CommentIn
 from app.web.design.page import design_page
-from app.web.revision.page import revision_page
+from app.web.revision.routes import revision_page
 from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go
@@ -39,8 +39,7 @@ async def sign(id: Id, number: Number, request: Request, services: ThePageServic
     """Take a step of the approval."""
     typed = await fields(request)
     said = {"step": typed.get("step", "")}
-    if typed.get("reason", "").strip():
-        said["reason"] = typed["reason"]
+    said |= {name: typed[name] for name in ("reason", "acknowledged") if typed.get(name, "").strip()}
     seen = f'"{typed.get("seen", "")}"'
 
     async def signed() -> None:

@@ -1,1 +1,1 @@
-"""The page of recorded changes."""
+"""The page of the audit: all recorded changes."""

@@ -1,4 +1,4 @@
-"""The route of the page of recorded changes."""
+"""The route of the page of the audit."""
 
 from __future__ import annotations
 

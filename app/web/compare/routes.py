@@ -1,14 +1,93 @@
-"""The route of the page that compares two revisions."""
+"""Two revisions side by side, of one design or of two, with pickers for both."""
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.web.compare.page import CompareForm, compare_page
+from app.designs.routes.comparison import compare_revisions
+from app.designs.routes.designs import list_designs
+from app.designs.schemas.designs import Design
 from app.web.shared.paths import Id, Text
-from app.web.shared.services import ThePageServices
+from app.web.shared.responses import show, units_of
+from app.web.shared.services import PageServices, Refused, ThePageServices
+
+MOST_NUMBERS = 100  # of revisions in a picker
+GROUPS = ("inputs", "outputs", "model_parameters", "measurements")
+TEXTS = ("parameters", "versions", "relations")
+MISSING = 404
+_ID = re.compile("[A-Za-z0-9_]{1,64}")
+
+
+@dataclass(frozen=True)
+class CompareForm:
+    """The texts of the form: numbers and a design, empty where nothing was chosen.
+
+    `of` is the design whose revisions the second picker offered; a number of another one means nothing.
+    """
+
+    revision: str
+    number: str
+    design: str
+    of: str
+
+    def numbers(self, id: str) -> tuple[int | None, int | None]:
+        """Return the revisions to compare; None where no number was chosen."""
+        return _number(self.revision), _number(self.number) if self._is_meant(id) else None
+
+    def _is_meant(self, id: str) -> bool:
+        return not self.of or self.of == (self.design or id)
+
+
+def _number(text: str) -> int | None:
+    is_number = text.isascii() and text.isdecimal() and 0 < len(text) <= 9 and int(text) > 0
+    return int(text) if is_number else None
+
+
+async def compare_page(request: Request, services: PageServices, id: str, asked: CompareForm) -> Response:
+    """Show the differences, and the forms to choose two other revisions."""
+    design = await services.run(services.designs.show, id)
+    other = await _other(services, design, asked.design)
+    if other is None:
+        raise Refused.because(MISSING, "the design to compare with does not exist; choose another one")
+    numbers = asked.numbers(id)
+    comparison = await services.run(
+        compare_revisions, id, services.database, *numbers, asked.design or None, units_of(request)
+    )
+    listed = (await services.run(list_designs, services.database, limit=200)).items
+    others = {item.id: item.name for item in listed} | {design.id: design.name, other.id: other.name}
+    groups = [(name, getattr(comparison, name)) for name in GROUPS]
+    texts = [(name, getattr(comparison, name)) for name in TEXTS]
+    return show(
+        request,
+        "compare/compare.html",
+        design=design,
+        other=other,
+        others=others,
+        comparison=comparison,
+        groups=groups,
+        texts=texts,
+        is_equal=not any([*(items for _, items in (*groups, *texts)), comparison.criteria]),
+        numbers_old=_numbers(design.revision, comparison.old.revision),
+        numbers_new=_numbers(other.revision, comparison.new.revision),
+    )
+
+
+async def _other(services: PageServices, design: Design, id: str) -> Design | None:
+    """Return the design on the other side; None if there is none of this id."""
+    if not id:
+        return design
+    return await services.find(services.designs.show, id) if _ID.fullmatch(id) else None
+
+
+def _numbers(newest: int, chosen: int) -> list[int]:
+    """Return the revisions that a picker offers, newest first, the chosen one among them."""
+    numbers = set(range(newest, max(0, newest - MOST_NUMBERS), -1)) | {chosen}
+    return sorted(numbers, reverse=True)
+
 
 router = APIRouter(include_in_schema=False)
 

@@ -1,1 +1,1 @@
-"""The page of a design at its newest revision, with the forms that change it."""
+"""The page of a design at its newest revision, with the forms that edit it."""

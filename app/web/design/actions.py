@@ -1,7 +1,8 @@
 """Actions of forms about designs: each calls a service, then shows the page with the result.
 
-Without a script in the browser these are all actions there are; with one, `design/design.js` saves by itself.
-`app.http.guard` refuses a form of another site: a browser would send it without asking anyone.
+Without scripts in the browser, these forms are the only way to act; with scripts, `design/design.js` saves
+changes directly. `app.http.guard` refuses forms of other sites, because a browser would send them without
+asking the user.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from app.reference import Reference
 from app.web.design.declarations import change_of
 from app.web.design.page import design_page
 from app.web.gallery.gallery import GALLERY
-from app.web.new_step.page import NewStep, address, beside, new_step, step_page, versioned
+from app.web.new_step.routes import NewStep, address, beside, new_step, step_page, versioned
 from app.web.shared.blocks import Refusal
 from app.web.shared.forms import Patch, fields, forms_only, inner, kept, patch_of
 from app.web.shared.paths import Id, Number

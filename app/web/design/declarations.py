@@ -1,4 +1,4 @@
-"""Forms for analyses of models and for iterations, and the change that a form requests."""
+"""Forms for analyses of models and for iterations, and the changes that they request."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
-"""The diagram of dependencies: blocks as boxes in columns, a line for each name that a relation uses.
+"""The diagram of dependencies: a box for each block, in columns, and a line for each name in a relation.
 
-A wire runs from the row of a value, at the right of its box, to the row of the relation that uses it, at the
-left of another. Where it passes a column, a lane is kept free for it, so that no wire runs behind a box. What
-runs backward (an iteration, or an input of a later block) passes below all boxes, dashed. Lengths in pixels.
+A wire runs from the row of a value, at the right edge of its box, to the row of the relation that uses it, at
+the left edge of another box. Each wire has a free lane in the columns that it crosses, so no wire runs behind
+a box. Backward wires (of an iteration, or from a later block) run dashed below all boxes. Lengths are in
+pixels.
 """
 
 from __future__ import annotations

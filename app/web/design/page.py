@@ -42,7 +42,7 @@ from app.web.design.sections import (
     steps_in_full,
     variants_start,
 )
-from app.web.model.page import finished_analyses
+from app.web.model.routes import finished_analyses
 from app.web.shared import sheet
 from app.web.shared.blocks import (
     ModelBlock,
@@ -71,7 +71,7 @@ from app.web.shared.places import names_json, values_of
 from app.web.shared.responses import show, units_of
 from app.web.shared.services import PageServices
 from app.web.study.page import studies_of
-from app.web.tolerances.page import toleranced
+from app.web.tolerances.routes import toleranced
 from app.web.variants.detail import chosen_variant
 from app.web.variants.table import RefusedTable, places_of, variants_table
 from app.web.verdict.banner import Banner, banner, opened, with_keys

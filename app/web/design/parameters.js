@@ -2,7 +2,7 @@
 import { isolated } from "../shared/isolated.js";
 import { quantityText, unit } from "../shared/numbers.js";
 
-const TO_DO = "set it, or map it to an output"; // as app/web/shared/parts.html says it
+const TO_DO = "set it, or link it to an output"; // as app/web/shared/parts.html says it
 
 export function showValues(form, block, { inputs }) {
   for (const [tail, quantity] of Object.entries(inputs ?? {})) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.web.design.page import design_page, step_section
-from app.web.revision.page import or_stored
+from app.web.revision.routes import or_stored
 from app.web.shared.paths import Id, Text
 from app.web.shared.responses import go
 from app.web.shared.services import ThePageServices

@@ -1,6 +1,7 @@
-"""The steps of a design on its page; steps that are rendered already are reused.
+"""The steps of a design on its page; unchanged steps are not rendered again.
 
-A step takes a page some milliseconds, and a design may have sixty. After a change most are as they were.
+Rendering a step takes some milliseconds, and a design may have sixty steps. Most of them stay the same after
+a change.
 """
 
 from __future__ import annotations

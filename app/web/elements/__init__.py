@@ -1,1 +1,1 @@
-"""Finite-element analyses as several pages show them."""
+"""Finite-element analyses on pages of models, designs and reports."""

@@ -1,4 +1,4 @@
-"""The sensitivities of an explanation as its page shows them: slope, elasticity and a bar for each place."""
+"""The sensitivities of an explanation as its page shows them: slopes, elasticities and bars."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The designs that the first page offers as a start."""
+"""The example designs on the first page."""

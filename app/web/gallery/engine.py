@@ -1,7 +1,7 @@
-"""Designs to start from: an in-line four and a V8, from the bore of their cylinders to verdicts.
+"""Example designs: an in-line four and a V8, from the bore of their cylinders to verdicts.
 
-Loads, a film in each bearing, shells, crankshaft, finite elements of its throws, torsion of the train, life
-of the shaft's fillets.
+Each calculates loads, the film in each bearing, shells, the crankshaft, finite elements of its throws,
+torsion of the train, and the life of the shaft's fillets.
 """
 
 from __future__ import annotations
@@ -12,42 +12,9 @@ from pydantic import JsonValue
 
 from app.web.gallery import train as gallery_train
 from app.web.gallery.train import THROWS, Train
+from templates.groups.petrol_engine import IN_LINE_FOUR
 
-FOUR: dict[str, JsonValue] = {
-    "speed": "4500 rpm",
-    "strokes": 4,
-    "crank_angle_step": "5 deg",
-    "firing_order": [1, 3, 4, 2],
-    "cylinder_positions": {"value": [47, 141, 235, 329], "unit": "mm"},
-    "stroke": "86 mm",
-    "rod_length": "145 mm",
-    "bore": "= bore",
-    "rod_mass": "0.6 kg",
-    "rod_centre": "42 mm",
-    "rod_inertia": "2200 kg*mm**2",
-    "piston_mass": "0.48 kg",
-    "gas_cycle": "four_stroke",
-    "suction_pressure": "0.9 bar",
-    "exhaust_pressure": "1.1 bar",
-    "compression_ratio": 10,
-    "compression_exponent": 1.32,
-    "expansion_exponent": 1.28,
-    "combustion_pressure": "60 bar",
-    "cutoff": 1.15,
-    "inlet_closes": "222 deg",
-    "exhaust_opens": "492 deg",
-    "crankcase_pressure": "1 bar",
-    "main_positions": {"value": [0, 94, 188, 282, 376], "unit": "mm"},
-    "web_positions": {"value": [22, 72, 116, 166, 210, 260, 304, 354], "unit": "mm"},
-    "web_unbalance": "12 kg*mm",
-    "counterweights": "16 kg*mm",
-    "support_stiffness": "500 kN/mm",
-    "journal_diameter": "55 mm",
-    "crankpin_diameter": "48 mm",
-    "crankpin_length": "32 mm",
-    "web_thickness": "18 mm",
-    "web_width": "80 mm",
-}
+FOUR: dict[str, JsonValue] = {**IN_LINE_FOUR, "crank_angle_step": "5 deg", "bore": "= bore"}
 V_EIGHT: dict[str, JsonValue] = {
     **FOUR,
     "firing_order": [1, 8, 4, 3, 6, 5, 7, 2],

@@ -1,4 +1,4 @@
-"""Designs to start from: worked examples, offered where their templates and models exist."""
+"""The example designs of the first page, shown if their templates and models exist."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Torsion and life of the gallery's engines: the train of inertias, and the crank throw beside the flywheel.
 
-Stiffness of the throws and stress tensors of their fillets are by finite elements of the crankshaft that the
-design itself draws, the inertia of the throws from its solid and from the masses on their pins. Nose,
-flywheel, clutch and damper are our own numbers, of usual size for such an engine.
+Stiffness of the throws and stress tensors of their fillets come from finite elements of the design's own
+crankshaft. The inertia of the throws comes from its solid and from the masses on its pins. The values of
+nose, flywheel, clutch and damper are our own, of usual size for such an engine.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The page of the designs that a changed file affects."""
+"""The page of the designs that a new version affects."""

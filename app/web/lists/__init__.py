@@ -1,1 +1,1 @@
-"""Controls for lists and tables in forms."""
+"""Form controls for lists and tables."""

@@ -1,6 +1,6 @@
-"""Map columns of a pasted table to fields: matched by name, shifted by an angle, one cycle each.
+"""Map columns of a pasted table to form fields: matched by name, shifted by an angle, cut to one cycle.
 
-`/tables`: the dialog of a page sends what was pasted and shows the result; nothing is stored.
+The dialog of a page sends a pasted table to `/tables` and shows the result; nothing is stored.
 """
 
 from __future__ import annotations
@@ -200,9 +200,7 @@ def _adjusted(
     place = next((n for n, o in enumerate(chosen) if o.field and _is_angle(fields[o.field])), None)
     if place is None:
         if pasted.offset.strip():
-            raise FaultyText(
-                "no_angle", "there is no column of crank angles to which the offset can be added"
-            )
+            raise FaultyText("no_angle", "no column holds crank angles for the angle offset")
         return columns, []
     note, is_repeated = _cycle(columns[place], taken)
     if is_repeated:

@@ -1,10 +1,9 @@
-"""Plotly's browser file, as its installed Python package holds it: served compressed, never copied.
+"""Serve Plotly's browser file from its installed Python package, compressed.
 
-Under the pages' Content-Security-Policy it may add no style element. It looks for two elements by their ids
-first, and adds none where it finds them: `plotly.js-style-global`, whose sheet it fills by calls (a linked
-sheet will do), and one for the maps that it bundles, which no page of ours shows. Pages with plots hold both.
-Colour bars set style attributes when they are drawn again, and so do raised exponents: `plots/plots.js` has
-a scale of its own, and axes write 1e-3.
+The pages' Content-Security-Policy does not let it add style elements. It adds none if it finds two elements
+by their ids: `plotly.js-style-global`, a sheet that it fills by calls (a linked sheet works), and one for its
+maps, which our pages do not use. Pages with plots contain both. Colour bars and raised exponents would set
+style attributes when they are redrawn, so `plots/plots.js` draws its own scale, and axes write 1e-3.
 """
 
 from __future__ import annotations

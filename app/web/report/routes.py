@@ -1,4 +1,4 @@
-"""The route that leads to a report."""
+"""The route that redirects to a report."""
 
 from __future__ import annotations
 

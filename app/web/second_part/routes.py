@@ -1,4 +1,4 @@
-"""The page that adds a bought part to a model of a design; it writes the manifest of the assembly.
+"""The page that adds a bought part to a model of a design, by writing the manifest of an assembly.
 
 The assembly is imported like any other model, and then replaces the model in the design.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import re
 from collections.abc import Mapping
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -16,8 +15,9 @@ from pydantic import JsonValue, TypeAdapter
 from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.schemas.designs import Design, DesignModel
 from app.solids.routes.models import list_models, show_model
-from app.web.model_import.routes import MISSED, begun_import
+from app.web.model_import.routes import FORM, imported_version
 from app.web.shared.design_answers import job_of
+from app.web.shared.file_form import MISSED
 from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id
 from app.web.shared.responses import go, show
@@ -29,7 +29,6 @@ GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
 _FIXED = "Fixed part "  # the title of an imported STEP file begins so
-_VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
 
@@ -39,14 +38,14 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 @router.get("/designs/{id}/models/{name}/beside")
 async def beside_form(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
-    """Show the form: which part, and where it stands."""
+    """Return the form that chooses the part and its position."""
     design = await services.run(services.designs.show, id)
     return await _form(request, services, design, name, {})
 
 
 @forms.post("/designs/{id}/models/{name}/beside")
 async def put_beside(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
-    """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
+    """Create the assembly and use it in the design; if this is refused, return the form with the reason."""
     typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
     design = await services.run(services.designs.show, id)
     try:
@@ -56,8 +55,7 @@ async def put_beside(request: Request, services: ThePageServices, id: Id, name: 
     except Refused as refused:
         if refused.status not in (*MISSED, _STALE):
             raise
-        said = "; ".join(refused.faults.values()) or refused.problem.detail
-        return await _form(request, services, design, name, typed, said, refused.status)
+        return await _form(request, services, design, name, typed, refused.sentence, refused.status)
     return go(f"/designs/{id}")
 
 
@@ -101,22 +99,22 @@ def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 async def _imported(
     services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
-    """Return the version of the model that a manifest becomes, as a design names it.
+    """Return the version of the model that a manifest creates, in the form that a design needs.
 
     Raises
     ------
     Refused
-        With the reason, if it is not taken, or not in time.
+        With the reason, if it is refused, or takes too long.
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
-    job = await begun_import(services, content, id, f"{id[:64] or 'assembly'}.json")
+    job = await FORM.begun(services, content, id, f"{id[:64] or 'assembly'}.json")
     for _ in range(round(PATIENCE / GLANCE)):
         work = await job_of(services, job)
         if work.problem is not None:
             raise Refused(work.problem)
-        if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
-            return {"id": version[1], "version": int(version[2])}
+        if work.state == "done" and (version := imported_version(work.result or "")):
+            return {"id": version[0], "version": version[1]}
         await asyncio.sleep(GLANCE)
     raise Refused.because(503, "the server is busy: the assembly has not been created; send the form again")
 

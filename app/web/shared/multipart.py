@@ -1,6 +1,6 @@
-"""The fields and files of a form that was sent as `multipart/form-data` (RFC 7578): how a browser uploads.
+"""Parse the fields and files of a form sent as `multipart/form-data` (RFC 7578), as browsers upload files.
 
-Our forms send one file each, so that the whole body, which the service bounds, is split at once.
+Our forms send one file each, and the service limits the body, so the whole body is split at once.
 """
 
 from __future__ import annotations
@@ -36,7 +36,10 @@ class Part:
 
 
 async def forms_with_files(request: Request) -> None:
-    """Let bodies through only if they are forms, with files or not; in a session those of its own pages."""
+    """Accept only bodies that are forms, with or without files.
+
+    Within a session, only forms of its own pages.
+    """
     check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
     if request.scope.get(FORM_TOKEN):
         parts = await parts_of(request)

@@ -1,4 +1,4 @@
-"""Parameters in the addresses of pages."""
+"""Query parameters of pages."""
 
 from __future__ import annotations
 

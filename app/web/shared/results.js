@@ -14,6 +14,7 @@ export function showResults(scope, answer) {
     showOutput(`${scope}.${name}`, quantity, answer.error?.[name], values);
   }
   showWarnings(scope, answer.warnings ?? []);
+  showAssumed(scope, answer.assumed ?? []);
 }
 
 function showFormula(name, row) {
@@ -64,6 +65,13 @@ const part = (className, textContent) => Object.assign(document.createElement("s
 export function showWarnings(scope, warnings) {
   const list = document.querySelector(`[data-warnings="${scope}"]`);
   list?.replaceChildren(...warnings.map(warning));
+}
+
+function showAssumed(scope, assumed) {
+  const line = document.querySelector(`[data-assumed="${scope}"]`);
+  if (!line) return;
+  line.hidden = assumed.length === 0;
+  line.textContent = `Assumed: ${assumed.map(({ detail }) => detail).join("; ")}.`;
 }
 
 export function warning({ name, detail }) {

@@ -1,8 +1,8 @@
 """The services, bound to the principal and client of a page request.
 
-A page is a route like those of the interface: the same gate lets the same roles in, the same services decide
-and act for the same principal, and their models are what the interface answers. An error is the problem that
-the interface would answer, `Refused`.
+A page is a route like those of the interface: the same checks admit the same roles, the same services act for
+the same principal, and both use the same models. An error is raised as `Refused`, with the problem that the
+interface would return.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Refused(Exception):
 
     @classmethod
     def because(cls, status: int, detail: str) -> Refused:
-        """Return a refusal of the pages themselves."""
+        """Return a refusal raised by the pages themselves."""
         title = HTTPStatus(status).phrase.capitalize()
         return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
 
@@ -69,6 +69,11 @@ class Refused(Exception):
     def faults(self) -> dict[str, str]:
         """Return the faults by the name of the input, with the other inputs that they concern."""
         return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
+
+    @property
+    def sentence(self) -> str:
+        """Return the reasons as one text."""
+        return "; ".join(self.faults.values()) or self.problem.detail
 
 
 def tag_of(revision: str) -> str:
@@ -164,12 +169,12 @@ class PageServices(Services):
         return await self.save(self.designs.change, id, change, noted_as, tag_of(revision), self.once)
 
     async def cancel(self, job: str) -> None:
-        """Cancel a job; one that has ended meanwhile is left as it is.
+        """Cancel a job; one that has already ended stays unchanged.
 
         Raises
         ------
         Refused
-            If there is no such job, or it is another's.
+            If there is no such job, or it belongs to another principal.
         """
         try:
             await self.run(self.jobs.cancel, job, self.client)
@@ -183,7 +188,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result | None:
-        """Return the result of a function, or None where there is nothing."""
+        """Return the result of a function, or None if it finds nothing."""
         try:
             return await self.run(function, *arguments, **options)
         except Refused as refused:

@@ -1,4 +1,4 @@
-"""The page that solves a design: which value of one parameter gives a wanted output, with the curve."""
+"""The page that solves a design: values of one parameter that give a wanted output, and the curve."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from urllib.parse import urlencode
 
 from fastapi import Request, Response
 
+from app.calculations.schemas.evaluations import TracedCurve
 from app.designs import questions
 from app.designs.schemas.designs import Design
 from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.designs.solution import SolveDesignIn
 from app.presentation import numbers
+from app.presentation.criteria import UNKNOWN, WORDS
 from app.presentation.input_text import value_of
 from app.web.shared.answers import AnswerOrJob, stored
 from app.web.shared.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
-from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
+from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, in_words, replied
 
 FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
 OPTIONAL = ("tolerance", "other", "other_value")
@@ -56,7 +58,7 @@ class SolveForm:
         return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
 
     def body(self) -> dict[str, object]:
-        """Return the question as the interface takes it."""
+        """Return the question as a request body."""
         typed = self.typed
         body: dict[str, object] = {
             "unknown": typed["unknown"],
@@ -68,13 +70,13 @@ class SolveForm:
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
 
     def wider(self) -> Wider | None:
-        """Return the same question between bounds farther apart, if they can be multiplied."""
+        """Return the same question with wider bounds, if they can be multiplied."""
         low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
         query = urlencode({**self.typed, "low": low, "high": high})
         return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
-        """Return the field of the design's form that takes the other value, and what it takes."""
+        """Return the field of the design's form for the other value, with that value."""
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
@@ -123,10 +125,27 @@ async def _solved(
 
 
 def _drawing(solution: DesignSolution) -> Drawing:
-    """Return the curve of an answer, with what gives the target."""
+    """Return the curve of an answer with the solutions marked."""
     target = solution.target
-    roots = [*solution.roots, *solution.touching]
-    return Drawing(solution.unknown, target.name, target.value, solution.curve, roots, solution.jumps)
+    return Drawing(
+        solution.unknown,
+        target.name,
+        target.value,
+        solution.curve,
+        solution.finer,
+        [*solution.roots, *solution.touching],
+        solution.jumps,
+        _level(solution.curve, solution.levels, solution.finer_levels),
+        [_level(curve, solution.finer_levels, solution.levels) for curve in solution.finer],
+    )
+
+
+def _level(curve: TracedCurve, levels: Mapping[str, str | None], others: Mapping[str, str | None]) -> str:
+    """Return the level of a curve, with those other steps whose level differs from the other curve."""
+    apart = {step: level for step, level in levels.items() if others and others.get(step) != level}
+    if len(apart) < 2 and curve.level in apart.values():
+        return in_words(curve.level)
+    return ", ".join(f"{step} {in_words(level)}" for step, level in apart.items()) or in_words(curve.level)
 
 
 def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
@@ -150,17 +169,25 @@ OPEN = ("not_met", "undecided")
 COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
+def _words(root: DesignRoot, name: str) -> str:
+    """Return the verdict of a criterion at a root in words, with any unknown error."""
+    words = WORDS[root.verdicts[name]]
+    return f"{words}; {UNKNOWN}" if name in root.error_unknown else words
+
+
 def _counted(root: DesignRoot) -> str:
-    """Return a sentence on how many of the other criteria are met, and how many not checked."""
+    """Return how many of the other criteria are met (with or without known errors) and not checked."""
     counts = Counter[str](root.verdicts.values())
-    return ", ".join(f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word])
+    unknown = sum(root.verdicts[name] == "met" for name in root.error_unknown)
+    words = [f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word]]
+    return ", ".join([*words, *([f"error unknown of {unknown} met"] if unknown else [])])
 
 
 @dataclass(frozen=True)
 class SavedRoot(ShownRoot):
     """A root of a design, and the field of the design's form that takes it."""
 
-    open: list[tuple[str, str]]  # criteria that are not met or undecided
+    open: list[tuple[str, str, str]]  # criteria that are not met or undecided, with verdict and its words
     rest: str  # how many are met, and not checked
     field: str
     note: str
@@ -172,13 +199,13 @@ def _control(name: str) -> str:
 
 
 def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
-    """Return every solution, with what saves it as a revision; none of several is preferred."""
+    """Return every solution with the data to save it as a revision."""
     control = _control(solution.unknown)
     target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
     return [
         SavedRoot(
             **vars(ShownRoot.of(root)),
-            open=sorted((n, v) for n, v in root.verdicts.items() if v in OPEN),
+            open=sorted((n, v, _words(root, n)) for n, v in root.verdicts.items() if v in OPEN),
             rest=_counted(root),
             field=control,
             note=f"solved for {target}",

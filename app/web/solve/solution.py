@@ -1,4 +1,4 @@
-"""Parts that the solve pages of a design and a template share: the answer, its curve and its roots."""
+"""Parts that the solve pages of a design and of a template share: the answer, its curve and its roots."""
 
 from __future__ import annotations
 
@@ -37,50 +37,73 @@ class ShownRoot:
             text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
             shown=numbers.in_line(root),
             rises={1: "rises", -1: "falls", 0: "touches"}[root.slope],
-            level=(root.level or "").replace("_", " ") + ("" if root.confirmed else " (not confirmed)"),
+            level=in_words(root.level) + ("" if root.confirmed else " (not confirmed)"),
             error="not stated" if root.error is None else f"± {numbers.percent(root.error)}",
         )
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A curve between two bounds, the value that is wanted, in the unit of the curve, and what gives it."""
+    """The curves between two bounds, the value that is wanted, in their unit, and what gives it."""
 
     unknown: str
     target: str
     wanted: float
     curve: TracedCurve
+    finer: Sequence[TracedCurve]
     roots: Sequence[Root]  # and extrema that touch
     jumps: Sequence[Jump]
+    level: str  # of the curve that was searched, in words; empty without levels
+    finer_levels: Sequence[str]
 
-    @property
-    def level(self) -> str:
-        """Return the level of all points, in words."""
-        return (self.curve.level or "").replace("_", " ")
+    def is_sparse(self, finer: TracedCurve) -> bool:
+        """Return whether a finer curve has fewer points than the one that was searched."""
+        return len(finer.x.value) < len(self.curve.x.value)
 
-    @property
-    def other_levels(self) -> str:
-        """Return the levels of the solutions in words; empty where all are that of the curve."""
-        levels = sorted({root.level for root in self.roots if root.level and root.confirmed})
-        return "" if levels in ([], [self.curve.level]) else ", ".join(levels).replace("_", " ")
+    def caption(self) -> str:
+        """Return the caption of the drawing."""
+        wanted = "the dashed line is the value wanted"
+        at = f", at level {self.level}" if self.level else ""
+        if not self.finer:
+            return f"{self.target} over {self.unknown}{at}; {wanted}."
+        confirmed = (
+            f"{'points' if self.is_sparse(curve) else 'the curve'} at level {level}"
+            for level, curve in zip(self.finer_levels, self.finer, strict=True)
+        )
+        return (
+            f"{self.target} over {self.unknown}: the curve at level {self.level} was searched, and "
+            f"{', '.join(confirmed)} confirmed the solutions; {wanted}."
+        )
 
     def svg(self) -> str:
         """Return the drawing as SVG."""
-        curve = self.curve
-        x = [float(value) for value in curve.x.value]
-        y = [None if value is None else float(value) for value in _list(curve.y.value)]
         words = Reference.parse(self.target).own_name.replace("_", " ")
         across = [root.value for root in self.roots]
-        at, of_roots = (
-            f", level {level}" if self.other_levels else "" for level in (self.level, self.other_levels)
-        )
+        ends = [self.curve.x.value[0], self.curve.x.value[-1]]
         series = [
-            Series(f"{words}{at}", x, y),
-            Series("wanted", [x[0], x[-1]], [self.wanted, self.wanted], dashed=True),
-            Series(f"solutions{of_roots}", across, [self.wanted] * len(across), marked=True, joined=False),
+            _series(f"level {self.level}" if self.finer else words, self.curve),
+            *(
+                _series(f"level {level}", curve, is_sparse=self.is_sparse(curve))
+                for level, curve in zip(self.finer_levels, self.finer, strict=True)
+            ),
+            Series("wanted", ends, [self.wanted, self.wanted], dashed=True),
+            Series("solutions", across, [self.wanted] * len(across), marked=True, joined=False),
         ]
-        axis = f"{self.unknown} [{numbers.unit(curve.x.unit)}]", f"{words} [{numbers.unit(curve.y.unit)}]"
+        x, y = self.curve.x, self.curve.y
+        axis = f"{self.unknown} [{numbers.unit(x.unit)}]", f"{words} [{numbers.unit(y.unit)}]"
         return svg(Chart(*axis, [*series, *_jumps(self.jumps)]))
+
+
+def in_words(level: str | None) -> str:
+    """Return a level as a page shows it."""
+    return (level or "").replace("_", " ")
+
+
+def _series(name: str, curve: TracedCurve, *, is_sparse: bool = False) -> Series:
+    """Return a curve as a line, or as points where it has few."""
+    x = [float(value) for value in curve.x.value]
+    y = [None if value is None else float(value) for value in _list(curve.y.value)]
+    return Series(name, x, y, marked=is_sparse, joined=not is_sparse)
 
 
 def _jumps(jumps: Sequence[Jump]) -> list[Series]:

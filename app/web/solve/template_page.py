@@ -1,4 +1,4 @@
-"""The page that solves a template: which values of one input give a wanted output, with the curve."""
+"""The page that solves a template: values of one input that give a wanted output, and the curve."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from app.web.shared.answers import AnswerOrJob, TemplateQuestion, calculated, st
 from app.web.shared.places import PlaceOption, suggested
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
-from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
-from app.web.template.page import inputs_of, typed_in
+from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, in_words, replied
+from app.web.template.routes import inputs_of, typed_in
 from templates.core.language import template as language
 from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit
@@ -52,7 +52,7 @@ class Question:
         return all(self.typed.values())
 
     def body(self, template: Template) -> dict[str, object]:
-        """Return the question as the interface takes it."""
+        """Return the question as a request body."""
         typed, (inputs, options) = self.typed, self._given(template)
         return {
             "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
@@ -80,7 +80,7 @@ class Question:
         return Question({**self.typed, "low": low, "high": high}, self.inputs)
 
     def address(self, **more: str) -> str:
-        """Return the query of this page that asks the same."""
+        """Return the query of this page for the same question."""
         marked = {f"{MARK}{name}": text for name, text in self.typed.items()}
         return urlencode({**self.inputs, **marked, **more})
 
@@ -134,7 +134,7 @@ def _seconds(cls: type[language.Template], body: SolveIn) -> float:
 
 
 def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:
-    """Yield the inputs that hold one quantity."""
+    """Yield the inputs with a single quantity."""
     for name, declared in properties(template.inputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "", present.get(name, ""))
@@ -160,4 +160,14 @@ def _drawing(question: Question, solution: Solution) -> Drawing | None:
     typed = read_beside(raw, scale.text) if scale.difference else read_any(raw)
     wanted = float(np.asarray(scale.from_si(typed.si)))
     roots = [*solution.roots, *solution.touching]
-    return Drawing(question.typed["unknown"], question.typed["output"], wanted, curve, roots, solution.jumps)
+    return Drawing(
+        question.typed["unknown"],
+        question.typed["output"],
+        wanted,
+        curve,
+        solution.finer,
+        roots,
+        solution.jumps,
+        in_words(curve.level),
+        [in_words(one.level) for one in solution.finer],
+    )

@@ -8,7 +8,7 @@ import { live } from "../shared/live.js";
 import { drawPictures, whenSeen } from "../plots/pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "../shared/results.js";
 import { optionOf, valueOf } from "../shared/typed.js";
-import { criteriaTable, followLinks } from "../verdict/verdict.js";
+import { drawnVerdict, followLinks } from "../verdict/verdict.js";
 
 const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
 const path = form.getAttribute("data-try");
@@ -48,9 +48,11 @@ function show({ payload }) {
   if (criteria) showCriteria(payload);
 }
 
-function showCriteria({ verdict, criteria: judged = [] }) {
+async function showCriteria({ verdict, criteria: judged = [] }) {
+  const drawn = judged.length ? await drawnVerdict({ verdict, criteria: judged }) : undefined;
+  if (drawn === null) return;
   headline.textContent = verdict?.headline ?? "";
-  criteria.replaceChildren(...(judged.length ? [criteriaTable(judged)] : []));
+  criteria.replaceChildren(...(drawn ? [drawn.querySelector(".scroll")] : []));
 }
 
 function refuse(error) {

@@ -1,4 +1,4 @@
-"""One variant of a design on its page: how it is judged, and its curves, drawn by the server."""
+"""One variant of a design on its page: its verdict, and its curves, drawn by the server."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ ChosenVariant.NONE = ChosenVariant("")
 async def chosen_variant(
     request: Request, services: PageServices, design: Design, steps: list[StepBlock]
 ) -> ChosenVariant:
-    """Return the variant that the address names; none if it names none."""
+    """Return the variant in the address, if any."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE

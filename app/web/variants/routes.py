@@ -1,7 +1,7 @@
-"""Actions of the forms of the table of variants: cells edited in place, a table pasted, a file uploaded.
+"""Actions of the forms of the table of variants: edited cells, a pasted table, an uploaded file.
 
-Each saves a sheet, as `PUT /designs/{id}/variants` does; where it is refused, the page shows the table as it
-was given, the message of each faulty cell beside it.
+Each saves a sheet, as `PUT /designs/{id}/variants` does. If the sheet is refused, the page shows the
+submitted table with a message beside each faulty cell.
 """
 
 from __future__ import annotations

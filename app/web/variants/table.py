@@ -1,4 +1,4 @@
-"""The table of variants on the page of a design: what each overrides, in fields, and how it is judged."""
+"""The table of variants on the page of a design: their overrides, in fields, and their verdicts."""
 
 from __future__ import annotations
 
@@ -277,6 +277,6 @@ def _governing(out: VariantsOut) -> str:
     if judged is None:
         return ""
     about = line(judged)
-    where = f"{about.step}: {about.title}" if about.step else about.title
+    place = f"{about.place}: " if about.place else ""
     used = f", {about.used} used" if about.used else ""
-    return f"{where} {about.compared}: {about.verdict_words}{used}".replace("  ", " ")
+    return f"{place}{about.sentence}{used}"

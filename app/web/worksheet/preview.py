@@ -1,4 +1,4 @@
-"""Preview how a worksheet that is not released would change a design; nothing is saved."""
+"""Preview how an unreleased worksheet would change a design; nothing is saved."""
 
 from __future__ import annotations
 
@@ -58,13 +58,12 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
     except Refused as refused:
         if refused.status not in REFUSED:
             raise
-        reason = "; ".join(refused.faults.values()) or refused.problem.detail
-        return DraftTrial(id, name, is_added, [], reason)
+        return DraftTrial(id, name, is_added, [], refused.sentence)
     return DraftTrial(design.name, name, is_added, list(_changes(preview)))
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
-    """Return the step that holds the worksheet, or a new name for one; and whether it is new."""
+    """Return the step that uses the worksheet, or a new name for one, and whether it is new."""
     using = next((name for name, step in design.steps.items() if step.template == sheet.id), None)
     if using is not None:
         return using, False

@@ -1,7 +1,6 @@
-"""The label of a program, by which jobs go only to machines that run the same program.
+"""The label of a program version: jobs go only to machines that run the same program.
 
-While a team upgrades, servers and machines of both versions share one scheduler and do not disturb each
-other.
+During an upgrade, servers and machines of both versions can share one scheduler.
 """
 
 from __future__ import annotations

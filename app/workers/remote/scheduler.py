@@ -1,6 +1,6 @@
 """The program of `crankwright scheduler`: Dask's scheduler without retries and web pages.
 
-It holds nothing that must survive it: the queue of jobs is in the database.
+It holds nothing that must survive a crash: the queue of jobs is in the database.
 """
 
 from __future__ import annotations

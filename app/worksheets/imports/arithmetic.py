@@ -59,7 +59,9 @@ class Arithmetic(Writer):
     def quotient(self, left: Term, right: Term) -> Term:
         """Return a quotient."""
         if right.is_vector and not self.is_vectorised:
-            raise Untranslatable("division by a vector", "vectorise it, or write it item by item")
+            raise Untranslatable(
+                "worksheets cannot divide by a vector", "vectorise it, or write it item by item"
+            )
         return binary(left, "/", right, PRODUCT)
 
     def power(self, base: Node, exponent: Node) -> Term:
@@ -70,7 +72,9 @@ class Arithmetic(Writer):
         under = self.value(base)
         if under.is_vector and not self.is_vectorised:
             if over.number != 2:
-                raise Untranslatable("power of a vector", "vectorise it, or write it item by item")
+                raise Untranslatable(
+                    "worksheets cannot raise a vector to a power", "vectorise it, or write it item by item"
+                )
             return reduced("sum", raised(under, over))
         if over.number is not None and not _is_plain(over.text):
             over = _fraction(exponent) or number(over.number)
@@ -85,7 +89,9 @@ class Arithmetic(Writer):
     def root(self, degree: list[Node], part: Term) -> Term:
         """Return a root of any degree."""
         if part.is_vector and not self.is_vectorised:
-            raise Untranslatable("root of a vector", "vectorise it, or write it item by item")
+            raise Untranslatable(
+                "worksheets cannot take the root of a vector", "vectorise it, or write it item by item"
+            )
         if not degree or degree[0].tag == "placeholder":
             return called("sqrt", part)
         by = self.value(degree[0])

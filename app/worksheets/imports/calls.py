@@ -27,7 +27,7 @@ class Calls(Writer):
             case FailedName(region):
                 raise Unnamed(key, region)
             case Value() | Range() | Written() | Choice():
-                raise Untranslatable("call of something that is not a function", "write a product with *")
+                raise Untranslatable("the called name is not a function", "write a product with *")
         if key in functions.REFUSED:
             raise Untranslatable(
                 functions.REFUSED[key], "write the formula by hand, or give its value as an input"
@@ -59,7 +59,7 @@ class Calls(Writer):
             if key == "mean" and parts[0].axis is None:
                 return parts[0]
             if any(part.axis is None for part in parts):
-                raise Untranslatable(f"{key} of something that is not a list", "give it a list")
+                raise Untranslatable(f"{key} needs a list", "give it a list")
             parts[0].shaped(*parts)
             return _filled(pattern, parts)
         if key in ("sum", "cnt"):
@@ -74,7 +74,7 @@ class Calls(Writer):
 
     def _count(self, key: str, part: Term) -> Term:
         if part.axis is None or part.is_row:
-            raise Untranslatable("size of a matrix", "write the number")
+            raise Untranslatable("the formula uses the size of a matrix", "write the number")
         count = part.axis.length
         return number(count + part.axis.start - 1 if key == "last" else count)
 
@@ -83,14 +83,16 @@ class Calls(Writer):
         across, up = (literal.quantity(part) or literal.term(part) for part in arguments[:2])
         at = self.quantity(arguments[2]) or self.term(arguments[2])
         if across.axis is None or up.axis is None or at.is_vector:
-            raise Untranslatable("interpolation in arguments that are not lists", "write a curve")
+            raise Untranslatable("the arguments of an interpolation must be lists", "write a curve")
         return called(self.sheet.curve(across, up), at)
 
     def _own(self, function: Function, arguments: list[Node]) -> Term:
         if len(arguments) != len(function.parameters):
-            raise Untranslatable("call with another number of arguments", "call it as it is defined")
+            raise Untranslatable(
+                "the call has a wrong number of arguments", "call it with the arguments of its definition"
+            )
         if self.depth >= MOST_INLINED:
-            raise Untranslatable("functions within functions", "give the steps names of their own")
+            raise Untranslatable("the function contains functions", "name each step")
         parts = [self.argument(part) for part in arguments]
         if not any(part.is_vector and not self.is_vectorised for part in parts):
             name = self.sheet.function(function, parts)

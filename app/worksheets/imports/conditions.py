@@ -1,4 +1,4 @@
-"""Conditions, and programs of Mathcad that are no more than cases: `if … then … else …`."""
+"""Conditions, and Mathcad programs that only distinguish cases: `if … then … else …`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Conditions(Writer):
     """Writes conditions and cases."""
 
     def value(self, node: Node) -> Term:
-        """Return a quantity; a condition counts 1 where it holds and 0 where not."""
+        """Return a quantity; a condition is 1 if it holds and 0 otherwise."""
         term = self.term(node)
         if not term.is_truth:
             return term
@@ -82,11 +82,11 @@ class Conditions(Writer):
             if place == len(parts) - 1:
                 return at.value(part)
             at.term(part)  # names a construct that is refused
-            raise Untranslatable("program of several values", "write one formula")
-        raise Untranslatable("program without a value", "write one formula")
+            raise Untranslatable("the program returns several values", "write one formula")
+        raise Untranslatable("the program returns no value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
-        """Return conditions one after another; the last is `else`, or there is no value."""
+        """Return successive conditions as one; the last is `else`, or there is no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
         while waiting:
@@ -100,9 +100,11 @@ class Conditions(Writer):
             elif part.tag == "else" and part.parts and not waiting:
                 return self._cases(branches, part.parts[0])
             else:
-                raise Untranslatable("program of several values", "write one formula with if … then … else …")
-        remedy = "say in Mathcad, or in the line, what holds otherwise"
-        raise Untranslatable("condition without otherwise", remedy)
+                raise Untranslatable(
+                    "the program returns several values", "write one formula with if … then … else …"
+                )
+        remedy = "add the otherwise case in Mathcad or in the line"
+        raise Untranslatable("the condition has no otherwise", remedy)
 
     def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Term:
         otherwise = self.value(last)

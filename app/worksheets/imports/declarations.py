@@ -60,10 +60,10 @@ class Declarations:
             result: Sort = checked(_parser().parse(text), self)[1]
         except FaultyText as error:
             raise Untranslatable(
-                f"formula that the language refuses ({error})", _remedy(error.code)
+                f"the worksheet language refuses the formula ({error})", _remedy(error.code)
             ) from None
         except lark.exceptions.LarkError:
-            raise Untranslatable("formula that cannot be read", "write it by hand") from None
+            raise Untranslatable("the formula cannot be read", "write it by hand") from None
         finally:
             self.bound = before
         return result
@@ -122,12 +122,12 @@ def _is_speed(text: str) -> bool:
 def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """Return the unit in which a value is declared.
 
-    The first wanted one that fits, else a usual one, else SI.
+    It is the first suitable requested unit, else a common one, else SI.
 
     Raises
     ------
     Untranslatable
-        What it measures has no unit with whole powers.
+        If its kind of quantity has no unit with whole powers.
     """
     if sort.kind.base == registry.Unit("radian") and not sort.kind.turned:
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")

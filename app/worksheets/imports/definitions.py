@@ -47,7 +47,7 @@ class Definitions(ListDefinitions):
             case _:
                 outcome.show("expression without a result")
         if outcome.original.failed and outcome.state != "shown":
-            raise Untranslatable("region in which Mathcad reports an error", "correct or remove it")
+            raise Untranslatable("Mathcad reports an error in this region", "correct or remove it")
 
     def fail(self, math: Node, number: str) -> None:
         """Note that the names which a region defines have no meaning."""
@@ -67,7 +67,7 @@ class Definitions(ListDefinitions):
             return "left == right"
 
     def finish(self) -> None:
-        """Write the functions that nothing calls, of plain numbers where that fits their units."""
+        """Write the functions that are never called, with plain numbers if that fits their units."""
         for function in self.functions:
             outcome = self.owners[function.region]
             if function.names or outcome.state != "unverified":
@@ -96,7 +96,9 @@ class Definitions(ListDefinitions):
             case "matrix":
                 self.several(outcome, target, value)
             case _:
-                raise Untranslatable("definition of something that is not a name", "give the result a name")
+                raise Untranslatable(
+                    "the left side of the definition is not a name", "give the result a name"
+                )
 
     def _single(self, outcome: Outcome, target: Node, value: Node) -> None:
         inner = without_result(value)
@@ -122,14 +124,14 @@ class Definitions(ListDefinitions):
         bound = next((part for part in target.parts if part.tag == "boundVars"), None)
         parameters = tuple(key_of(part) for part in bound.parts) if bound else ()
         if len(set(parameters)) != len(parameters) or not all(parameters):
-            raise Untranslatable("function without parameters", "write a formula")
+            raise Untranslatable("the function has no parameters", "write a formula")
         function = Function(key, parameters, without_result(value), dict(self.scope), outcome.original.number)
         self._refuse_if_hopeless(function)
         self.scope[key] = function
         self.functions.append(function)
 
     def _refuse_if_hopeless(self, function: Function) -> None:
-        """Name what a body has that no call can make good: a matrix, a loop, a name without meaning."""
+        """Refuse a body with a construct that no call can replace: a matrix, a loop, an undefined name."""
         inner: Scope = dict(function.scope)
         for key in function.parameters:
             inner[key] = Written(Term("1", axis=None))
@@ -177,14 +179,15 @@ class _Trial:
 _HOPELESS = frozenset({
     "integral", "derivative", "limit", "loop", "symbolic calculation", "text", "complex number",
     "try and catch",
-    "matrix", "matrix product", "matrix function", "solve block", "condition without otherwise", "spline",
+    "matrix", "matrix product", "matrix function", "solve block", "the condition has no otherwise", "spline",
     "file",
-    "random numbers", "statistical function", "item of a matrix", "column of a matrix", "row of a matrix",
+    "random numbers", "statistical function", "the formula uses an item of a matrix",
+    "the formula uses a column of a matrix", "the formula uses a row of a matrix",
 })  # fmt: skip
 
 
 def _own_names(math: Node) -> set[str]:
-    """Return the names to which a region itself gives a meaning: what it defines, parameters, local names."""
+    """Return the names that a region itself defines: definitions, parameters, local names."""
     own = (
         set(_defined(math.parts[0])) if math.tag in ("define", "globalDefine") and math.parts else set[str]()
     )

@@ -28,8 +28,8 @@ REFUSED = {
     "crossProduct": ("matrix product", "write its components"),
     "determinant": ("determinant", "write it out"),
     "transpose": ("matrix", "write its items as lists"),
-    "matcol": ("column of a matrix", "give the column as a list of its own"),
-    "matrow": ("row of a matrix", "give the row as a list of its own"),
+    "matcol": ("the formula uses a column of a matrix", "give the column as a list of its own"),
+    "matrow": ("the formula uses a row of a matrix", "give the row as a list of its own"),
     "product": ("product over an index", "write it out, or as exp(sum(log(x)))"),
     "symEval": ("symbolic calculation", "write its result as a formula"),
     "for": ("loop", "write the formula for a list"),
@@ -63,7 +63,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         if node.tag in ("parens", "eval", "apply") and node.parts:
             return self.applied(node) if node.tag == "apply" else self.term(node.parts[0])
         if node.tag.endswith("Control"):
-            raise Untranslatable("control with a script", "give its value as an input")
+            raise Untranslatable("the control runs a script", "give its value as an input")
         raise Untranslatable(f"construct {node.tag[:30]}", "write the formula by hand")
 
     def _real(self, node: Node) -> Term:
@@ -79,7 +79,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
-        """Return the term for which a name stands."""
+        """Return the term that a name refers to."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
             return self._unit(key)
@@ -103,7 +103,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return Term(f"{number(unit.number).text} {unit.unit}", POWER)
 
     def applied(self, node: Node) -> Term:
-        """Return an operator or a function, applied to what it takes."""
+        """Return an operator or a function applied to its arguments."""
         operator, parts = node.parts[0], list(node.parts[1:])
         sign = operator.tag
         if sign in REFUSED and sign not in ("transpose", "determinant"):
@@ -136,7 +136,7 @@ def _meant(key: str, meant: Meant) -> Term:
             raise Unnamed(key, region)
         case Choice():
             raise Untranslatable("text", "test the choice, as in law is walther")
-    raise Untranslatable("function as a value", "call it with its arguments")
+    raise Untranslatable("the formula uses a function as a value", "call the function with its arguments")
 
 
 def _constant(key: str) -> Term:
@@ -147,11 +147,11 @@ def _constant(key: str) -> Term:
 
 
 def _range(at: Expressions, node: Node) -> Term:
-    raise Untranslatable("range within a formula", "define the range by itself, above")
+    raise Untranslatable("the formula contains a range", "define the range separately, above")
 
 
 def _empty(at: Expressions, node: Node) -> Term:
-    raise Untranslatable("empty place", "fill it in Mathcad, or write the line")
+    raise Untranslatable("empty place", "fill the placeholder in Mathcad, or write the line")
 
 
 _WELL_KNOWN: Mapping[str, Term] = {"π": Term("pi", number=math.pi)}

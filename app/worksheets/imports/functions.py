@@ -55,7 +55,7 @@ REFUSED: Mapping[str, str] = {
     **dict.fromkeys(("rnd", "runif", "rnorm", "rweibull", "rt", "rexp"), "random numbers"),
     **dict.fromkeys(("READFILE", "READEXCEL", "READPRN", "READCSV", "WRITEPRN", "WRITEEXCEL"), "file"),
     **dict.fromkeys(("sort", "reverse", "match", "lookup", "vlookup", "hlookup", "vhlookup", "Rank", "mode",
-                     "median", "percentile", "histogram"), "sorting or looking up"),
+                     "median", "percentile", "histogram"), "worksheets cannot sort or look up values"),
     **dict.fromkeys(("pnorm", "qnorm", "dnorm", "cnorm", "pt", "qt", "dt", "Ftest", "kurt", "skew", "Spear",
                      "kendltau", "kendltau2", "contingtbl"), "statistical function"),
     **dict.fromkeys(("lspline", "cspline", "pspline", "interp"), "spline"),

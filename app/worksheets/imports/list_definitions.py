@@ -31,19 +31,19 @@ class ListDefinitions(Statements):
 
     def _numbers(self, node: Node) -> tuple[float, ...]:
         if len(node.parts) != 2:
-            raise Untranslatable("range without an end", "give its values as a list")
+            raise Untranslatable("the range has no end", "write its values as a list")
         first, last = node.parts
         ends = list(first.parts) if first.tag == "sequence" else [first]
         at = Expressions(self, self.scope)
         constants = [at.term(end).number for end in (*ends, last)]
         numbers = [n for n in constants if n is not None]
         if len(numbers) != len(constants):
-            raise Untranslatable("range with calculated ends", "give its values as a list")
+            raise Untranslatable("the ends of the range are calculated", "write its values as a list")
         start, end = numbers[0], numbers[-1]
         step = numbers[1] - start if len(numbers) == 3 else 1.0 if end >= start else -1.0
         count = int((end - start) / step + 1e-9) + 1 if step else 0
         if not 1 <= count <= MOST_ITEMS:
-            raise Untranslatable(f"range of more than {MOST_ITEMS} values", "give fewer values")
+            raise Untranslatable(f"the range has more than {MOST_ITEMS} values", "give fewer values")
         return tuple(start + n * step for n in range(count))
 
     def items_of(self, outcome: Outcome, target: Node, value: Node) -> None:
@@ -52,37 +52,37 @@ class ListDefinitions(Statements):
             self._one_item(outcome, target, value)
             return
         if len(target.parts) != 3 or target.parts[1].tag != "id" or target.parts[2].tag != "id":
-            raise Untranslatable("single items defined one by one", "write the list with all its items")
+            raise Untranslatable("the list is defined item by item", "write the list with all its items")
         key, along = key_of(target.parts[1]), self.scope.get(key_of(target.parts[2]))
         if isinstance(along, FailedName):
             raise Unnamed(key_of(target.parts[2]), along.region)
         if not isinstance(along, Range):
-            raise Untranslatable("single items defined one by one", "write the list with all its items")
+            raise Untranslatable("the list is defined item by item", "write the list with all its items")
         steps = {b - a for a, b in zip(along.axis.numbers, along.axis.numbers[1:], strict=False)}
         if steps - {1.0} or along.axis.start < self.origin:
-            raise Untranslatable("list with gaps", "write the list with all its items")
+            raise Untranslatable("the list has gaps", "write the list with all its items")
         if any(key_of(node) == key for node in value.all("id")):
             raise Untranslatable("recurrence", "write its closed form")
         term = self.expression(without_result(value))
         if term.is_vector:
-            raise Untranslatable("list of lists", "write each as a list of its own")
+            raise Untranslatable("list of lists", "write each of them as a separate list")
         if term.axis is None:
             term = listed((term,) * along.axis.length, along.axis)
         axis = replace(along.axis, numbers=())
         self.declare(outcome, key, replace(term, axis=axis, is_vector=True), self.asked(value))
 
     def _one_item(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Translate a new value for one item of a list, which makes another list."""
+        """Translate the assignment of one item of a list, which defines another list."""
         key = key_of(target.parts[1])
         whole = self.scope.get(key)
         if isinstance(whole, FailedName):
             raise Unnamed(key, whole.region)
         at = Expressions(self, self.scope).term(target.parts[2]).number
         if not isinstance(whole, Value) or whole.axis is None or at is None or whole.axis.length > 100:
-            raise Untranslatable("single items defined one by one", "write the list with all its items")
+            raise Untranslatable("the list is defined item by item", "write the list with all its items")
         place = int(at) - whole.axis.start
         if not 0 <= place < whole.axis.length:
-            raise Untranslatable("list that grows", "write the list with all its items")
+            raise Untranslatable("the list grows", "write the list with all its items")
         items = [Term(f"{whole.name}[{n}]") for n in range(1, whole.axis.length + 1)]
         items[place] = self.expression(without_result(value))
         self.declare(outcome, key, listed(tuple(items), whole.axis), self.asked(value))
@@ -92,14 +92,16 @@ class ListDefinitions(Statements):
         """Translate several names at once: of the items of a list, or of the columns of a combo box."""
         targets = target.parts
         if not all(part.tag == "id" for part in targets):
-            raise Untranslatable("items defined one by one", "write the list with all its items")
+            raise Untranslatable("the list is defined item by item", "write the list with all its items")
         inner = without_result(value)
         if inner.tag == "ComboBoxControl":
             self.choose(outcome, targets, inner)
             return
         term = self.expression(inner)
         if term.axis is None or term.axis.length != len(targets):
-            raise Untranslatable("names for the items of a list of another length", "define each by itself")
+            raise Untranslatable(
+                "the number of names differs from the length of the list", "define each name separately"
+            )
         if not term.text.isidentifier() and not term.text.startswith("["):
             term = self.declare(outcome, "items", term, self.asked(value)).term()
         for place, part in enumerate(targets, 1):
@@ -118,7 +120,7 @@ class ListDefinitions(Statements):
         holder = control.first("ComboBoxValues")
         cells = list(holder.parts) if holder else []
         if not 1 < rows <= 50 or columns != len(targets) or len(cells) != rows * columns or chosen >= rows:
-            raise Untranslatable("combo box without rows", "write a choice")
+            raise Untranslatable("the combo box has no rows", "write a choice")
         names = control.first("ComboBoxRowNames")
         given = [part.whole_text.strip() for part in names.parts] if names else []
         texts = [

@@ -1,8 +1,8 @@
 """The record of an import, kept with its worksheet: its regions, and which of them are unresolved now.
 
-A region that differs, is refused or is blocked forbids a release while all of its imported lines are
+A region that differs, is refused or is blocked prevents a release as long as all its imported lines are
 unchanged in the text. An author resolves the region by changing or removing one of these lines. Changes of
-blanks do not count.
+white space do not count.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Meanings of Mathcad's names at one position of a sheet: a position sees the definitions above it."""
+"""The meanings of Mathcad's names at one position of a sheet, from the definitions above it."""
 
 from __future__ import annotations
 

@@ -1,17 +1,13 @@
-"""Imports as jobs: the file is kept by its hash, read in a process of its own, and becomes a draft."""
+"""Import sheets as jobs: store the file by its hash, read it in a separate process, and make it a draft."""
 
 from __future__ import annotations
-
-from pathlib import PurePath
 
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.identity.usage import note_bytes
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.plain import JsonObject
+from app.jobs.uploads import last_name, queue_upload
 from app.storage.artifacts import Artifacts
-from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
 from app.workers.base import Limits
@@ -32,17 +28,19 @@ MOST_BYTES = 16 * 2**20
 
 
 class Imports:
-    """Queues imports, and is the handler of such jobs."""
+    """Queues imports, and is the handler of such jobs.
+
+    A failed import leaves nothing behind, and retention takes its file.
+    """
 
     def __init__(
         self,
-        database: Database,
         store: Artifacts,
         jobs: Jobs,
         catalogues: Catalogues,
         worksheets: Worksheets,
     ) -> None:
-        self.database, self.store, self.jobs = database, store, jobs
+        self.store, self.jobs = store, jobs
         self.catalogues, self.worksheets = catalogues, worksheets
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
@@ -63,27 +61,13 @@ class Imports:
                 "too_large" if content else "no_sheet", f"{what}: send one .mcdx, .xmcd or .xmcdz file"
             )
         require_free(id, self.catalogues)
-        name = PurePath(file.replace("\\", "/")).name
-        payload = {
-            "file": self.store.put(content),
-            "id": id,
-            "name": name,
-            "client": once.client,
-        }
 
-        def unit(session: Session) -> str:
-            if before := once.begin(session):
-                return str(before["job"])
+        def check(session: Session) -> None:
             if repository.versions(session, id):
                 raise IdTaken(id, "another worksheet")
-            job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
-            note_bytes(session, len(content))
-            once.keep(session, 202, {"job": job})
-            return job
 
-        job = self.database.write(unit)
-        self.jobs.wake()
-        return job
+        about = {"id": id, "name": last_name(file)}
+        return queue_upload(self.jobs, self.store, IMPORT, content, about, once, check)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Import the file of a job; its result is the worksheet.
@@ -91,7 +75,7 @@ class Imports:
         Raises
         ------
         JobFailed
-            The file is not taken, or the id is taken meanwhile.
+            If the file is refused, or the id is in use by now.
         """
         payload = job.payload
         id, sha, name = payload["id"], payload["file"], payload["name"]
@@ -108,6 +92,3 @@ class Imports:
             raise JobFailed(error) from error
         link = f"/api/v1/worksheets/{id}"
         return lambda session: link
-
-    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Do nothing: a failed import leaves nothing behind, and retention takes its file."""

@@ -1,4 +1,4 @@
-"""An expression of a worksheet while it is being written: its text, how tightly it binds, and its shape."""
+"""An expression of a worksheet under construction: its text, its precedence, and its shape."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Term:
     def __post_init__(self) -> None:
         if len(self.text) > LONGEST:
             remedy = "split it into formulas with names of their own, in Mathcad or in the worksheet"
-            raise Untranslatable("formula of more than 1,800 characters", remedy)
+            raise Untranslatable("the formula has more than 1,800 characters", remedy)
 
     def bound(self, least: int) -> str:
         """Return the text, in parentheses where it binds more loosely than its place needs."""
@@ -59,14 +59,14 @@ class Term:
             return self
         if len({axis.length for _, axis in lists}) > 1:
             remedy = "give both as many items, or write the formula for each item"
-            raise Untranslatable("lists of different lengths in one formula", remedy)
+            raise Untranslatable("the formula combines lists of different lengths", remedy)
         axis = next((axis for part, axis in lists if not part.is_vector), lists[0][1])
         is_vector, is_row = (all(getattr(p, name) for p, _ in lists) for name in ("is_vector", "is_row"))
         return replace(self, axis=axis, is_vector=is_vector, is_row=is_row)
 
 
 def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
-    """Return an operator between two expressions; sums and products go on from the left."""
+    """Return an operator between two expressions; sums and products are extended on the left."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
     return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
@@ -84,12 +84,12 @@ def negative(part: Term) -> Term:
 
 
 def called(name: str, *parts: Term) -> Term:
-    """Return a function of expressions, item by item where they are lists."""
+    """Return a function of expressions, applied item by item to lists."""
     return Term(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
 
 
 def reduced(name: str, part: Term) -> Term:
-    """Return a function that makes one value of a list."""
+    """Return a function that reduces a list to one value."""
     return Term(f"{name}({part.text})")
 
 

@@ -1,8 +1,7 @@
-"""XML as trees of plain nodes. There is no document type, so there are no entities: both are refused.
+"""Parse XML into trees of plain nodes; document types and entities are refused.
 
-The reader is the standard library's expat with handlers of its own. It keeps no namespaces: their prefixes
-are a writer's choice, and no sheet has two elements of one local name in one place that mean different
-things.
+The parser is the standard library's expat with our own handlers. It drops namespaces: their prefixes are the
+writer's choice, and in sheets the local name alone identifies an element.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ class Node:
 
     @property
     def text(self) -> str:
-        """Return the text that stands in this element itself."""
+        """Return the text of this element itself."""
         return "".join(piece for piece in self.pieces if isinstance(piece, str))
 
     @property
@@ -52,7 +51,7 @@ class Node:
             waiting.extend(reversed(node.parts))
 
     def outermost(self, tag: str, *closed: str) -> Iterator[Node]:
-        """Yield the elements of a name within this one, but for those within another, or within `closed`."""
+        """Yield the outermost elements of a name within this one, except those within `closed`."""
         waiting = list(reversed(self.parts))
         while waiting:
             node = waiting.pop()
@@ -125,10 +124,12 @@ class _Reader:
         self._open[-1].pieces.append(text)
 
     def _refuse_type(self, *_: object) -> None:
-        raise SheetNotRead("entities", f"{self._name} declares a document type, which no sheet does")
+        raise SheetNotRead("entities", f"{self._name} declares a document type, which no Mathcad sheet does")
 
     def _refuse_entity(self, *_: object) -> None:
-        raise SheetNotRead("entities", f"{self._name} declares an entity, which no sheet does")
+        raise SheetNotRead("entities", f"{self._name} declares an entity, which no Mathcad sheet does")
 
     def _refuse_reference(self, *_: object) -> int:
-        raise SheetNotRead("entities", f"{self._name} refers to another document, which no sheet does")
+        raise SheetNotRead(
+            "entities", f"{self._name} refers to another document, which no Mathcad sheet does"
+        )

@@ -1,9 +1,9 @@
-"""Units among names that carry no label, as in the sheets of Mathcad 11 to 15.
+"""Recognise units among unlabelled names, as in sheets of Mathcad 11 to 15.
 
-A name that nothing defines is a unit only if Mathcad has a unit of this name and if it stands where a unit
-does: as a factor of a product or quotient. A single letter needs more, since it is also how a quantity is
-called: a number stands before it, `3*m`, or does so elsewhere in the sheet. Every other name is refused as
-undefined: none is taken for a constant, so that `c` is never the speed of light.
+An undefined name is a unit only if Mathcad has a unit of this name and if the name is a factor of a product
+or quotient. A single letter may also name a quantity, so it counts as a unit only if a number stands before
+it, as in `3*m`, there or elsewhere in the sheet. Every other undefined name is refused. No name is read as a
+constant, so `c` is never the speed of light.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _Place = Literal["", "factor", "quantity"]
 
 
 def letters_of(regions: Iterable[Original]) -> frozenset[str]:
-    """Return the single letters that stand behind a number somewhere in a sheet, and so are units in it."""
+    """Return the single letters that follow a number somewhere in a sheet, and so are units."""
     units = set[str]()
     for region in regions:
         if region.math is not None:
@@ -59,7 +59,7 @@ def label_units(math: Node, defined: Collection[str], letters: Collection[str]) 
 
 
 def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place]]:
-    """Yield the names without a label, each with where it stands."""
+    """Yield the unlabelled names, each with its position."""
     waiting: list[tuple[Node, _Place]] = [(math, "")]
     while waiting:
         node, place = waiting.pop()
@@ -76,7 +76,7 @@ def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place
 
 
 def _is_quantity(node: Node, defined: Collection[str]) -> bool:
-    """Return whether a product is a number, or a list of such, times names that may all be units."""
+    """Return whether a product is a number, or a list of numbers, times names that may all be units."""
     leaves = list(_leaves(node))
     names = [leaf for leaf in leaves if leaf.tag == "id"]
     keys = [key_of(name) for name in names]

@@ -1,6 +1,6 @@
 """`/worksheets`: templates that an engineer writes as text, from the draft to the release.
 
-`app.calculations.routes.evaluate` uses the same word for the printed steps of one calculation.
+In `app.calculations.routes.evaluate`, `worksheet` means the printed steps of one calculation.
 """
 
 from __future__ import annotations

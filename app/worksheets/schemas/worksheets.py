@@ -1,7 +1,7 @@
-"""Worksheets: templates that an engineer writes as text, and what the service says of a text.
+"""Worksheets as the REST interface shows them: texts, states, and the results of a check.
 
-The code calls a user's text a sheet. `app.calculations.schemas.evaluations.Worksheet` means the printed steps
-of one calculation.
+In the code, a user's text is a `sheet`. `app.calculations.schemas.evaluations.Worksheet` means the printed
+steps of one calculation.
 """
 
 from __future__ import annotations

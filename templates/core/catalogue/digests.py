@@ -1,12 +1,12 @@
-"""The digest of a version: whether its code is still that of the release.
+"""The digest of a version, which shows whether its code is still the released code.
 
 A released version is a file that nobody edits. Its digest is the SHA-256 of the syntax tree without the
-module paths of imports; the imported names stay. A module that a released file imports may move to another
-folder, and the import line may follow it. The digest does not see docstrings, comments, layout and what
-`MARKS` names: they calculate nothing. It covers the files of groups, which give a template inputs, formulas
-or rules.
+module paths of imports; the imported names stay. So a module that a released file imports may move to another
+folder, and the import line may follow it. The digest ignores docstrings, comments, layout and the attributes
+in `MARKS`, because they do not affect results. It covers the files of groups, which give a template inputs,
+formulas or rules.
 
-A worksheet gives its own digest.
+A worksheet computes its own digest.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from typing import Any
 
 from templates.core.catalogue.modules import text_of
 from templates.core.language.origin import file_of
-from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # versions whose digests are kept, by the text of their files: every page quotes them

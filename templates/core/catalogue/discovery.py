@@ -1,4 +1,4 @@
-"""Find every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered."""
+"""Find every `<id>_v<version>.py` in a list of folders: one file adds a template, without registration."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Golden records of frozen versions: the digest of the code, some inputs and every result.
+"""Golden records of frozen versions: the digest of the code, some inputs, and every result.
 
-`crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
-exists is never overwritten: a change to a released version is a new version.
+`crankwright freeze` writes the record of a released version once; from then on a test compares the results
+with it. An existing record is never overwritten: a change to a released version makes a new version.
 """
 
 from __future__ import annotations

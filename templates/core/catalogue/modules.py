@@ -1,8 +1,8 @@
-"""Modules of files outside the packages of this program, each made from its bytes.
+"""Modules of files outside the packages of this program, each created from its bytes.
 
 The name of such a module holds a digest of the file's content. So an edited file makes a new module beside
-the old one: a calculation that runs keeps the code with which it began, and what another process returns is
-unpickled as what it was there.
+the old one: a running calculation keeps the code with which it began, and objects from another process are
+unpickled with that process's version of the code.
 """
 
 from __future__ import annotations

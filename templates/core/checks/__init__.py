@@ -1,1 +1,1 @@
-"""Checks of a template that somebody wrote: the faults of it, where, and what would be right."""
+"""Checks of a team's template: its faults, their places, and remedies."""

@@ -1,4 +1,4 @@
-"""Faults that show when a template calculates its example: refusals, dimensions, description, report."""
+"""Faults that appear when a template calculates its example: refusals, dimensions, description, report."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.language.dimensions import faults_by_part
 from templates.core.language.evaluate import evaluate
 from templates.core.language.origin import file_of
-from templates.core.language.parsing import lines_of
+from templates.core.language.syntax_trees import lines_of
 from templates.core.language.template import Template
 from templates.core.paper import report
 from templates.core.paper.schema import describe

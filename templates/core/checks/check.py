@@ -1,4 +1,4 @@
-"""Everything that is checked of a class, in an order in which one cause makes one fault."""
+"""All checks of a template class, in an order in which one cause gives one fault."""
 
 from __future__ import annotations
 

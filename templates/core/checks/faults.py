@@ -1,4 +1,4 @@
-"""Faults of a file of templates."""
+"""Faults of template files."""
 
 from __future__ import annotations
 

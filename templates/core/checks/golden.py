@@ -1,4 +1,4 @@
-"""A version against what was recorded of it: the results of its golden record, the digest of its release."""
+"""Compare a version with its records: the results of its golden record, and the digest of its release."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults that show in the text of a template before anything is calculated: docstring, attributes, loops."""
+"""Faults that appear in the text of a template before any calculation: docstring, attributes, loops."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from typing import Any
 from templates.core.checks.faults import FileFault
 from templates.core.errors import FaultyText
 from templates.core.language.body import Body
-from templates.core.language.parsing import lines_of, parse
 from templates.core.language.spec import Derived, Formula, Requirement, Shared
 from templates.core.language.syntax import lines_of_attributes, returned
+from templates.core.language.syntax_trees import lines_of, parse
 from templates.core.language.template import Template
 from templates.core.nearest import nearest
 

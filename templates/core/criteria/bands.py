@@ -1,8 +1,9 @@
 """The band of the true value around a value whose relative error is stated, and around an expression.
 
-A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). Several errors may
-contribute to one band; a contribution that is not known leaves the band as wide as the known ones make it,
-and the band is then not known.
+A stated error e means |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). `CONVENTION` is that
+sentence: every table of measured errors repeats it, and the scripts that measure use `relative_error`.
+Several errors may contribute to one band. If a contribution is unknown, the band includes only the known ones
+and is marked as unknown.
 """
 
 from __future__ import annotations
@@ -14,10 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Mask, Truth
+from templates.core.arrays import Array, Mask, Truth
 from templates.core.errors import FaultyText
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
+
+CONVENTION = "|answer - truth| <= error * |truth|"
+"""What every stated error says: of a curve with the largest |truth| along it, of others with what the table
+names under `relative_to`, such as 90° of an angle."""
 
 Bounds = tuple[Value, Value]
 """The least and the largest truth."""
@@ -66,6 +71,13 @@ class Estimate:
         known: Mask = ~np.isnan(spread(self.error, self.axes))
         return known
 
+    @property
+    def is_known_throughout(self) -> bool:
+        """Return whether the error is known at every point."""
+        if isinstance(self.error, float):
+            return not math.isnan(self.error)
+        return not np.isnan(self.error).any()
+
     def bounds(self) -> Bounds:
         """Return the band of the value; the value itself where its error is not known."""
         if self.is_exact or self.is_known is False:
@@ -90,6 +102,21 @@ class Estimate:
 def spread(value: Value, axes: int) -> Value:
     """Return the values of points as an array that goes with places along a curve."""
     return value[(..., *(None,) * axes)] if axes and isinstance(value, np.ndarray) else value
+
+
+def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Array:
+    """Return the error of a value by `CONVENTION`; 0 where both agree, infinite where the truth alone is 0.
+
+    Parameters
+    ----------
+    value, truth
+        Numbers, or arrays that broadcast together.
+    scale
+        What the error is relative to, where that is not the truth itself, such as 90° of an angle.
+    """
+    size = np.abs(truth) if scale is None else scale
+    with np.errstate(all="ignore"):
+        return np.asarray(np.where(value == truth, 0.0, np.abs(value - truth) / size))[()]
 
 
 def band(value: Value, error: Value) -> Bounds:

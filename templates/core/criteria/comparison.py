@@ -1,7 +1,7 @@
-"""Compare one side with the other, each in its band: a verdict for every point and place of a curve.
+"""Compare two sides, each in its band: a verdict for every point, and every place of a curve.
 
-The verdict follows from the values themselves, unless a band, as far as it is known, holds the limit. Whether
-every error behind it is known stands beside it: `met` with an error that is not known confirms nothing.
+The values themselves decide the verdict, unless a known band contains the limit. The verdict also states
+whether every error is known: `met` with an unknown error confirms nothing.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Criteria as they are declared: `minimum_film_thickness >= smallest_permissible_film`, words and sources.
 
 A criterion compares two sides by one `>=` or `<=`; each side is a relation (`templates.core.units.relation`),
-and both measure the same kind of quantity. A criterion may name *limits*: values that the calculation itself
-does not take and that its user gives.
+and both measure the same kind of quantity. A criterion may name *limits*: values that the user gives and the
+calculation itself does not use.
 """
 
 from __future__ import annotations

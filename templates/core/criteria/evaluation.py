@@ -108,7 +108,8 @@ def judge(
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
     if not estimates.keys() >= criterion.all_names:
-        parts = _missing(shown, estimates, absent or {}) | (instead.parts() if instead else {})
+        parts = _missing(shown, estimates, absent or {})
+        parts |= instead.parts() if instead else {}
     else:
         try:
             compared = compare(criterion, estimates, shifts, is_known=is_known)
@@ -132,13 +133,15 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
             si = side_of(side, estimates)
             if (isinstance(si, float) or not np.ndim(si)) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
-    why = tuple(absent[name] for name in criterion.names if name in absent and name not in estimates)
-    return {**parts, "error_known": not _unknown(criterion, estimates), **_lack(why)}
+    why = tuple([absent[name] for name in criterion.names if name in absent and name not in estimates])
+    parts["error_known"] = not _unknown(criterion, estimates)
+    parts |= _lack(why)
+    return parts
 
 
 def _unknown(criterion: Criterion, estimates: Mapping[str, Estimate]) -> list[str]:
     """Return the names whose own error is not known, at some point at least."""
-    return [n for n in criterion.names if n in estimates and not np.all(estimates[n].is_known)]
+    return [n for n in criterion.names if n in estimates and not estimates[n].is_known_throughout]
 
 
 @lru_cache(maxsize=1024)

@@ -1,15 +1,24 @@
-"""A criterion as judged: its verdict, and the numbers behind it at the worst point or place."""
+"""A criterion as judged: its verdict, the numbers behind it, and sentences about two values compared.
+
+Warnings of criteria and of rules are made here: they say what is the case, never what ought to be, so no
+sentence contradicts its own numbers.
+"""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
-from templates.core.criteria.sentences import Side, compared
+from templates.core.units.units import unit_symbol
 
+IS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not below"}
+DIGITS = 4  # of a number in a sentence, unless more are needed to tell two apart
+_MOST_DIGITS = 17
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 
 
@@ -87,18 +96,18 @@ class Judgement:
     @property
     def sides(self) -> tuple[str, str]:
         """Return the texts of value and limit."""
-        value, _, limit = self.require.partition(self.sign)
-        return value.strip(), limit.strip()
+        parts = _parts_of(self.require)
+        return parts.value, parts.limit
 
     @property
     def sign(self) -> str:
         """Return the sign between value and limit that is required."""
-        return ">=" if ">=" in self.require else "<="
+        return _parts_of(self.require).sign
 
     @property
     def has_fixed_limit(self) -> bool:
         """Return whether the limit is a number that stands in the criterion itself."""
-        return self.sides[1].removeprefix("-")[:1].isdigit()
+        return _is_number(_parts_of(self.require).limit)
 
     @property
     def misses(self) -> bool:
@@ -108,16 +117,63 @@ class Judgement:
 
 def sentence(judgement: Judgement) -> str:
     """Return a verdict as a sentence: `film 1.53 µm is below permissible film 2 µm: not met`."""
-    verdict = judgement.verdict.replace("_", " ")
-    verdict += f", {judgement.truth}" if is_model(judgement.truth) else ""
-    unknown = "" if judgement.error_known or judgement.verdict == "not_checked" else "; error unknown"
     value, limit = judgement.value, judgement.limit
-    left, right = map(_in_words, judgement.sides)
-    if value is None or limit is None:
-        return f"{left} {judgement.sign} {right}: {verdict}"
-    opposite = {">=": "<", "<=": ">"}[judgement.sign]
-    sign = opposite if judgement.misses else judgement.sign
-    return f"{compared(Side(left, value), sign, Side(right, limit), judgement.unit)}: {verdict}{unknown}"
+    return verdict_sentence(
+        judgement.require,
+        judgement.verdict,
+        None if value is None or limit is None else (value, limit, judgement.unit),
+        misses=judgement.misses,
+        error_known=judgement.error_known,
+        truth=judgement.truth,
+    )
+
+
+def verdict_sentence(
+    require: str,
+    verdict: str,
+    numbers: tuple[float, float, str] | None,
+    *,
+    misses: bool,
+    error_known: bool,
+    truth: str | None,
+) -> str:
+    """Return the sentence on what is required, with value, limit and their unit where there are any."""
+    parts = _parts_of(require)
+    words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
+    if numbers is None or not all(map(math.isfinite, numbers[:2])):
+        return f"{parts.written}: {words}"
+    value, limit, unit = numbers
+    actual = {">=": "<", "<=": ">"}[parts.sign] if misses else parts.sign
+    unknown = "" if error_known or verdict == "not_checked" else "; error unknown"
+    sides = Side(parts.value_words, value), Side(parts.limit_words, limit)
+    return f"{compared(sides[0], actual, sides[1], unit)}: {words}{unknown}"
+
+
+class _Parts(NamedTuple):
+    """A comparison that is required, taken apart.
+
+    `written` is the whole with its names in words; the words of each side stand before its number.
+    """
+
+    sign: str
+    value: str
+    limit: str
+    value_words: str
+    limit_words: str
+    written: str
+
+
+@lru_cache(maxsize=1024)  # criteria of worksheets and of designs come and go
+def _parts_of(require: str) -> _Parts:
+    sign = ">=" if ">=" in require else "<="
+    left, _, right = require.partition(sign)
+    value, limit = left.strip(), right.strip()
+    written = f"{_name(value)} {sign} {_name(limit)}"
+    return _Parts(sign, value, limit, _in_words(value), _in_words(limit), written)
+
+
+def _is_number(side: str) -> bool:
+    return side.removeprefix("-")[:1].isdigit()
 
 
 def is_model(truth: str | None) -> bool:
@@ -132,7 +188,41 @@ def not_judged(judgement: Judgement) -> str:
 
 def _in_words(text: str) -> str:
     """Return a side in words; a number stands for itself, and is shown as the value."""
-    if text.removeprefix("-")[:1].isdigit():
+    if _is_number(text):
         return ""
-    words = _NAME.sub(lambda name: name[1].replace("_", " "), text)
-    return words if _NAME.fullmatch(text) else f"{words} ="
+    return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="
+
+
+def _name(text: str) -> str:
+    """Return names in words, without the steps before them; a number stays as it is written."""
+    return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a comparison: its words, which may be empty, and its magnitude in the unit of both."""
+
+    words: str
+    magnitude: float
+
+
+def related(left: str, sign: str, right: str) -> str:
+    """Return a relation without numbers: `minimum film thickness is below permissible film`."""
+    return f"{left} {IS[sign]} {right}"
+
+
+def compared(left: Side, sign: str, right: Side, unit: str) -> str:
+    """Return a true comparison: `minimum film thickness 2.133 µm is below permissible film 3 µm`."""
+    printed, (one, other) = unit_symbol(unit), told_apart(left.magnitude, right.magnitude)
+    sides = f"{left.words} {one} {printed}", f"{right.words} {other} {printed}"
+    return f" {IS[sign]} ".join(side.strip() for side in sides)
+
+
+def told_apart(one: float, other: float) -> tuple[str, str]:
+    """Return two numbers in so many digits that they differ, unless they are equal."""
+    texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
+    digits = DIGITS
+    while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:
+        digits += 1
+        texts = (f"{one:.{digits}g}", f"{other:.{digits}g}")
+    return texts

@@ -1,8 +1,8 @@
-"""Limits that a user gives: by hand, or by a row of a library of materials and the like.
+"""Limits that a user types, or takes from a row of a library, such as materials.
 
-A criterion may declare limits that the calculation itself does not take. Whoever gives one by hand writes a
-quantity; `"bearing_material": "row id"` fills every limit that is declared `from` that library and for which
-the row has a value. A limit given by hand wins.
+A criterion may declare limits that the calculation itself does not use. A user types one as a quantity;
+`"bearing_material": "row id"` fills every limit that is declared `from` that library and for which the row
+has a value. A typed limit takes precedence.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The worst of several points and places: the worst verdict, and there the bound nearest to the limit."""
+"""The worst of several points and places: the worst verdict, and its value nearest to the limit."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = compared.codes
     if isinstance(codes, int):
-        return Worst((), codes, bool(np.all(compared.is_known)), *map(float, sides))
+        return Worst((), codes, bool(compared.is_known), *map(float, sides))
     whole = [np.broadcast_to(side, codes.shape) for side in sides]
     clearance = _clearance(criterion, whole)
     if codes.min() != NOT_CHECKED:  # points judged by something else have no numbers to report

@@ -1,1 +1,1 @@
-"""Declaring a template, reading its inputs, evaluating it, at every level."""
+"""Declare a template, read its inputs, and evaluate it at every level."""

@@ -1,4 +1,4 @@
-"""Admit results: a point is refused, points of an array are masked, or a warning is noted."""
+"""Check results: refuse a point, mask points of an array, or note a warning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The answers of an evaluation, and its inputs as they were used."""
+"""The answers of an evaluation, and the inputs that it used."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Answer:
     reasons: NDArray[np.object_] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class UsedInput:
     """One input as it was used: as typed, or its default."""
 

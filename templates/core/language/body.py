@@ -1,7 +1,7 @@
-"""A checked tree that calculates a formula for which there is no Python function.
+"""A checked tree that calculates a formula that has no Python function.
 
-A worksheet is text of a user, of which no Python is made. Its formulas, rules and defaults are bodies: they
-are called with a template as functions are, and say themselves what they use and how they are written.
+A worksheet is a user's text, which is never converted to Python. Its formulas, rules and defaults are bodies:
+they are called with a template like functions, and know which names they use and how they are printed.
 """
 
 from __future__ import annotations

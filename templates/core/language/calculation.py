@@ -1,4 +1,4 @@
-"""A record of one calculation: declarations, values by attribute, and what each follows from."""
+"""A record of one calculation: declarations, values by attribute, and the inputs behind each value."""
 
 from __future__ import annotations
 
@@ -37,6 +37,7 @@ class Calculation:
     withdrawn: ClassVar[str | None] = None
     sheet: ClassVar[Written | None] = None  # the worksheet that it was made from
     example: ClassVar[Mapping[str, Any]] = {}
+    assumptions: ClassVar[tuple[str, ...]] = ()  # of the model, that make a part look safer; each a sentence
     criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
     precision: ClassVar[float] = (
         1e-12  # relative, to which results of a released version are held; solvers: 1e-8

@@ -1,8 +1,8 @@
-"""One cause, one fault: which input a broken rule is reported at, and which rules one input breaks.
+"""One cause, one fault: find the input that broke a rule, and the rules that one input breaks.
 
-A rule names every input that it is about; of these only some can have broken it. While the rule runs again
-its comparisons are recorded, and those that do not hold say which. Several rules that one input can have
-broken make one fault, at that input.
+A rule names all inputs that it concerns, but only some of them can have broken it. The rule runs again with
+its comparisons recorded, and the false comparisons show which inputs broke it. Several rules that the same
+input may have broken give one fault, at that input.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """The comparisons of a rule, recorded while the rule runs.
 
-A rule reads the values of a template. Here it reads `Operand`s: values that also carry how they were
-calculated. Where two are compared the result is an `Outcome`: a truth that also carries both sides. So a
-report can say how close each compared value is to its limit. Nothing reads the source of the rule.
+A rule reads the values of a template. Here it reads `Operand`s: values that also carry their calculation.
+Comparing two of them gives an `Outcome`: a truth value that also carries both sides. So a report can state
+how close each compared value is to its limit, without parsing the source of the rule.
 
-Rules combine truths by `&`, `|` and `~`. Where Python itself needs a truth (`and`, `or`, `if`), it chooses
-what the rule returns, and only what the rule returns is recorded.
+Rules combine truth values by `&`, `|` and `~`. If a rule uses Python's `and`, `or` or `if`, only the returned
+comparison is recorded.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Sign = Literal["<", "<=", ">", ">="]
 Mask = NDArray[np.bool_]
 
 _SIGNS: dict[Any, Sign] = {np.less: "<", np.less_equal: "<=", np.greater: ">", np.greater_equal: ">="}
-_OPPOSITE: dict[Sign, Sign] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+OPPOSITE: dict[Sign, Sign] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 _OPERATORS: dict[Any, type[ast.operator]] = {
     np.add: ast.Add, np.subtract: ast.Sub, np.multiply: ast.Mult, np.true_divide: ast.Div, np.power: ast.Pow,
 }  # fmt: skip
@@ -115,7 +115,7 @@ class Comparison:
     @property
     def actual(self) -> Sign:
         """Return the sign that is true of the values: the opposite one where the comparison does not hold."""
-        return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else _OPPOSITE[self.sign]
+        return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else OPPOSITE[self.sign]
 
     @property
     def ordered(self) -> tuple[Operand, Operand]:
@@ -184,7 +184,7 @@ class Outcome(_RecordingValue):
     def negated(self) -> Outcome:
         """Return the opposite truth: `<` becomes `>=`, "all" becomes "any"."""
         value, one = np.logical_not(self.value), self.comparison
-        opposite = one and replace(one, sign=_OPPOSITE[one.sign], holds=value)
+        opposite = one and replace(one, sign=OPPOSITE[one.sign], holds=value)
         parts = tuple(part.negated() for part in self.parts)
         return Outcome(value, opposite, parts, not self.needs_all, self.equated)
 

@@ -1,4 +1,4 @@
-"""Solutions of a scan at the level requested: moved there by the slope of the scanned curve."""
+"""Recalculate the solutions of a scan at the requested level, shifted by the slope of the scanned curve."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ class Root:
     """A value of the unknown [its declared unit] that gives the target.
 
     `slope` is 1 where the output rises, −1 where it falls, 0 where it is flat or only touches the target.
-    `level` and `error` are those of the output there; the error is None where none is stated. One that is
-    not `confirmed` is a solution at the level of the scan only.
+    `output` [its declared unit], `level` and `error` are those of the output there; the error is None where
+    none is stated. One that is not `confirmed` is a solution at the level of the scan only.
     """
 
     value: float
+    output: float
     slope: int
     touches: bool
     level: str | None
@@ -44,7 +45,8 @@ def confirmed(
 
     One of the scan where that has none near, or after so many.
     """
-    most = CONFIRMED if requested.chooses or _is_finer(requested, scanned) else len(places)
+    is_other = requested.chooses or not requested.is_at_levels_of(scanned)
+    most = CONFIRMED if is_other else len(places)
     near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
     checked = [*near, *(None for _ in places[most:])]
     roots = [root or _unconfirmed(scanned, place) for root, place in zip(checked, places, strict=True)]
@@ -66,11 +68,6 @@ def _distinct(roots: list[Root], span: float) -> list[Root]:
     return kept
 
 
-def _is_finer(requested: SampledCurve, scanned: SampledCurve) -> bool:
-    """Return whether a level is requested that is not the scan's."""
-    return requested.level is not None and requested.level != scanned.level
-
-
 def _at_requested(
     requested: SampledCurve, scanned: SampledCurve, place: Place, bounds: tuple[float, float]
 ) -> Root | None:
@@ -79,9 +76,9 @@ def _at_requested(
         outputs = requested.outputs(np.array([place.x]))
     except InvalidInputs:
         return None
-    if outputs.level is None or outputs.level == scanned.level:
-        return _root(requested, place, place.x, outputs)
-    fixed = requested.at_level(outputs.level)
+    fixed = requested.at_level(outputs.level) if outputs.level else requested
+    if fixed.is_at_levels_of(scanned):
+        return _root(fixed, place, place.x, outputs)
     moved = None if place.touches else _polished(fixed, scanned, place, bounds, outputs)
     return moved and _root(fixed, place, *moved)
 
@@ -128,6 +125,7 @@ def _root(curve: SampledCurve, place: Place, x: float, outputs: Outputs) -> Root
     stated = np.nan if outputs.error is None else float(outputs.error[0])
     return Root(
         float(curve.x.scale.from_si(x)),
+        float(curve.y.scale.from_si(outputs.values[0])),
         place.slope,
         place.touches,
         outputs.level,

@@ -1,4 +1,4 @@
-"""Find where a sampled curve meets its target: crossings closed in to rounding, touches, and jumps."""
+"""Find where a sampled curve meets its target: crossings located to rounding, touching points, and jumps."""
 
 from __future__ import annotations
 

@@ -1,18 +1,18 @@
 """Declarations of a template: givens, choices, curves, derived givens, formulas and requirements.
 
-Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
-the formula on paper; its bounds make the check, the schema and the message.
+Each is declared once. Its words give the API name, the label and the line in the report; its symbol gives the
+formula on paper; its bounds give the check, the schema and the message.
 
-There are two kinds of bounds. The *domain* is where a quantity means anything: outside it a value is
-refused. The *published* range is where the source claims its formula: outside it the answer carries a
-warning that names the limit.
+There are two kinds of bounds. The *domain* is the range in which a quantity has a meaning: a value outside it
+is refused. The *published* range is the range for which the source states its formula: outside it the answer
+carries a warning that names the limit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, TypeVar, Unpack
+from typing import Any, TypeVar, Unpack, overload
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.meaning import Bounds, Keywords, Meaning, meaning
@@ -95,9 +95,15 @@ def curve(
     )  # fmt: skip
 
 
-def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
+def choice(
+    *options: str,
+    words: str,
+    default: str | None = None,
+    name: str | None = None,
+    assumed: str | None = None,
+) -> Any:
     """Declare an input that is one of the named options."""
-    return Choice(meaning("1", words, name=name), options, default)
+    return Choice(meaning("1", words, name=name, assumed=assumed), options, default)
 
 
 def formula(
@@ -132,9 +138,18 @@ def text(words: str, **keywords: Unpack[Keywords]) -> Callable[[Callable[[T], An
     return lambda function: Text(function, _meaning("1", words, **keywords), None)
 
 
-def shared(function: Callable[[Any], T]) -> Shared[T]:
-    """Declare an intermediate result that several formulas use."""
-    return Shared(function)
+@overload
+def shared(function: Callable[[Any], T]) -> Shared[T]: ...
+@overload
+def shared(*, unit: str) -> Callable[[Callable[[Any], T]], Shared[T]]: ...
+def shared(
+    function: Callable[[Any], T] | None = None, *, unit: str = ""
+) -> Shared[T] | Callable[[Callable[[Any], T]], Shared[T]]:
+    """Declare an intermediate result that several formulas use.
+
+    With a `unit`, sentences on rules that compare it print it in that unit.
+    """
+    return Shared(function) if function is not None else lambda declared: Shared(declared, unit)
 
 
 def require(

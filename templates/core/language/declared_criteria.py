@@ -1,4 +1,4 @@
-"""The criteria that a template declares, checked when its class is made."""
+"""The criteria that a template declares, checked when its class is created."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Checks the dimensions of a template's formulas, by evaluating each on Pint quantities.
+"""Check the dimensions of a template's formulas by evaluating each on Pint quantities.
 
-For tests: a wrong dimension fails the build, and no Pint object exists in the hot path. Every formula is
-tried by itself, at the template's example. Physics functions marked by `units(...)` are checked at that
-border and run on magnitudes; all others, being dimensionally pure, run on the quantities themselves. Angles
-have no dimension here, so a lost 2π is not seen: literature tests see it.
+Tests use this module: a wrong dimension fails the build, and no Pint object exists in the hot path. Every
+formula is evaluated by itself, at the template's example. Physics functions marked by `units(...)` are
+checked at that boundary and run on magnitudes; all others are dimensionally pure and run on the quantities.
+Angles have no dimension here, so a missing 2π goes unnoticed; literature tests detect it.
 """
 
 from __future__ import annotations
@@ -95,6 +95,9 @@ class _Record:
 
 def _quantity(template: Template, name: str) -> Any:
     declared, value = template.declarations.get(name), getattr(template, name)
+    between = template.intermediates.get(name)
+    if between is not None and between.unit:
+        return registry.Quantity(value, unit(between.unit).base)
     if declared is None or isinstance(declared, (Choice, Table)) or isinstance(value, str):
         return value
     return registry.Quantity(value, declared.meaning.scale.base)

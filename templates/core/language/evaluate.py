@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, reduce
 from typing import Any
@@ -17,6 +18,7 @@ from templates.core.criteria.limits import GivenLimit
 from templates.core.language import tolerances
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer, UsedInput
+from templates.core.language.calculation import Calculation
 from templates.core.language.criteria import EvaluatedValues, judged, warned
 from templates.core.language.intake import remarks
 from templates.core.language.ledger import Notice
@@ -27,6 +29,21 @@ from templates.core.language.spec import Choice, Derived, Formula, Given, Input,
 from templates.core.language.template import Template
 from templates.core.language.unmet import unmet
 from templates.core.units.quantity import TypedQuantity, Unit
+
+_AMOUNT = re.compile(r"-?[0-9][0-9.e+-]* ?[A-Za-z]*")
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """What an answer takes for granted, and what makes a part look safer.
+
+    Of the model, as its `assumptions` say, of a default that declares `assumed=`, and of a limit that the
+    template states itself. `name` is the input or criterion, empty for the model. Nothing is wrong with it,
+    so it is no warning.
+    """
+
+    name: str
+    detail: str
 
 
 @dataclass(frozen=True)
@@ -110,7 +127,7 @@ def _judged(
     )
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class _Part:
     """The answers at one level, or of all levels joined."""
 
@@ -354,3 +371,57 @@ def _noticed(rungs: list[Rung]) -> list[Notice]:
     """Return the warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
     return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))
+
+
+def assumed(
+    template: Calculation, outputs: Collection[str], criteria: Iterable[Judgement] = ()
+) -> list[Assumption]:
+    """Return what the named outputs of a template, and its criteria as judged, take for granted."""
+    cls, typed = type(template), template.ledger.typed
+    own = [Assumption("", detail) for detail in cls.assumptions]
+    given = frozenset(name for name in typed if isinstance(cls.inputs.get(name), Derived))
+    stated = _defaults(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
+    defaults = [one for one in stated if one.name not in typed]
+    return [*own, *defaults, *_limits(cls, list(criteria))]
+
+
+@lru_cache(maxsize=1024)
+def _defaults(
+    cls: type[Calculation], outputs: frozenset[str], given: frozenset[str]
+) -> tuple[Assumption, ...]:
+    """Return the assumptions of inputs on which outputs depend where these derived inputs are given."""
+    declared = {name: one.meaning.assumed for name, one in cls.inputs.items()}
+    if not any(declared.values()):
+        return ()
+    reached = set(_beneath(cls, outputs, given))
+    return tuple(
+        Assumption(name, detail)
+        for name, detail in declared.items()
+        if detail and (cls.inputs[name].attribute in reached or getattr(cls.inputs[name], "optional", False))
+    )
+
+
+def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[str]) -> Iterator[str]:
+    """Yield the attributes that outputs follow from; nothing lies beneath an input that was given."""
+    waiting = [cls.formulas[name].attribute for name in outputs]
+    seen = set(waiting)
+    while waiting:
+        yield (attribute := waiting.pop())
+        node = cls.declarations.get(attribute) or cls.intermediates.get(attribute)
+        if isinstance(node, Derived) and node.name in given:
+            continue
+        uses = {*getattr(node, "uses", ()), *getattr(node, "uses_as_given", ())} - seen
+        seen |= uses
+        waiting += uses
+
+
+def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> Iterator[Assumption]:
+    """Yield the limits that a template states itself for values whose user has given no limit."""
+    declared = {one.name: one.require for one in cls.declared_criteria}
+    open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
+    judged = {one.sides[0] for one in criteria if one.verdict != "not_checked" and not one.has_fixed_limit}
+    for one in criteria:
+        value, limit = one.sides
+        is_default = _AMOUNT.fullmatch(limit) is not None and declared.get(one.name) == one.require
+        if is_default and one.verdict != "not_checked" and value in open_values - judged:
+            yield Assumption(one.name, f"the limit of {value.replace('_', ' ')} is {limit}, a default")

@@ -1,4 +1,4 @@
-"""Read typed inputs as the SI values of a template; all faults are collected before any is reported."""
+"""Read typed inputs as the SI values of a template, and collect all faults before reporting them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
-from templates.core.language.violations import violation
+from templates.core.language.violations import relations, stated_case, violation
 from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
@@ -53,12 +53,12 @@ def _in_declared_sizes(
     A radial clearance is half the diametral one. Where both are given they must agree.
     """
     faults: list[Fault] = []
-    for other, name in _sizes(cls):
+    for other, name in other_sizes(cls):
         if other not in raw:
             continue
         raw = dict(raw)
         given, declared = raw.pop(other), cls.inputs[name]
-        factor = 2.0 if name.startswith("diametral") else 0.5
+        factor = factor_of(name)
         try:
             typed = scaled(read(given, declared.meaning.accepted), factor)
             same = read(raw[name], declared.meaning.accepted) if name in raw else typed
@@ -73,10 +73,15 @@ def _in_declared_sizes(
     return raw, faults
 
 
-def _sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
+def other_sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
     """Return the radial name of each diametral input that has none, and the other way round."""
     pairs = ((name, _DIAMETRAL.sub(_opposite, name)) for name in cls.inputs)
     return tuple((other, name) for name, other in pairs if other != name and other not in cls.inputs)
+
+
+def factor_of(name: str) -> float:
+    """Return by how much a size, radial or diametral, is larger than the other one."""
+    return 2.0 if name.startswith("diametral") else 0.5
 
 
 _DIAMETRAL = re.compile(r"\A(?:diametral|radial)(?=_clearance)")
@@ -170,23 +175,22 @@ class PlainText(NamedTuple):
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
     """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
-    typed: dict[str, TypedQuantity | str] = {}
-    values = left_out.values.copy()
-    missing: set[str] = set()
-    for name, declared in cls.inputs.items():
-        given = raw.get(name)
-        if given is None:
-            if name in left_out.needed:
-                return None
-            if declared.attribute in left_out.missing:
-                missing.add(declared.attribute)
-        elif type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
+    if not left_out.needed <= raw.keys():
+        return None
+    inputs, typed = cls.inputs, dict[str, TypedQuantity | str]()
+    values, missing = left_out.values.copy(), left_out.missing.copy()
+    for name, given in raw.items():
+        declared = inputs.get(name)
+        if declared is None:
+            return None
+        if type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
         elif isinstance(given, TypedQuantity) and (value := _plain_value(declared, given)) is not None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
-    return Plain(typed, values, missing) if len(typed) == len(raw) else None
+        missing.discard(declared.attribute)
+    return Plain(typed, values, missing)
 
 
 class LeftOut(NamedTuple):
@@ -336,6 +340,8 @@ def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
 def check_shapes(self: Calculation) -> None:
     """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
 
+    A list of one value is as good as a number only for a curve that may be constant.
+
     Raises
     ------
     InvalidInputs
@@ -346,14 +352,16 @@ def check_shapes(self: Calculation) -> None:
         return
     curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
     points = {n: v.shape[:-1] if n in curves else v.shape for n, v in arrays.items()}
-    together = [{n: shape for n, shape in points.items() if shape}]
     for along in dict.fromkeys(curve.along for curve in curves.values()):
-        together.append({n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along})
-    for shapes in together:
-        try:
-            np.broadcast_shapes(*shapes.values())
-        except ValueError:
-            raise InvalidInputs(_of_different_shapes(self, shapes)) from None
+        own = {n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along}
+        whole = {n: length for n, length in own.items() if length != (1,) or not curves[n].constant}
+        if len(set(whole.values())) > 1:
+            raise InvalidInputs(_of_different_shapes(self, own))
+    shapes = {n: shape for n, shape in points.items() if shape}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        raise InvalidInputs(_of_different_shapes(self, shapes)) from None
 
 
 def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:
@@ -407,7 +415,8 @@ def _violation(self: Calculation, rule: Requirement) -> Fault:
     """Return the fault of a rule that does not hold."""
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
-    return Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
+    case = stated_case(self, rule) or values
+    return Fault(name, BROKEN, f"{case}; required: {rule.sentence}; {rule.remedy}", tuple(also))
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
@@ -415,7 +424,13 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
-    return [Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}")]
+    required = f"required: {rule.sentence}; {rule.remedy}"
+    cases = relations(self, rule)
+    points = np.logical_or.reduce(
+        [np.broadcast_to(where, holds.shape) for where, _ in cases] or [holds & False]
+    )
+    masks = [Mask(names, np.broadcast_to(where, holds.shape), f"{text}; {required}") for where, text in cases]
+    return [*masks, *([Mask(names, ~holds & ~points, required)] if (~holds & ~points).any() else [])]
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:

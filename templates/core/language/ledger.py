@@ -1,4 +1,4 @@
-"""Notes taken while a template is made and evaluated: warnings, and points that mean nothing."""
+"""Notes taken while a template is created and evaluated: warnings, and points without a valid value."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Choose the level of fidelity: the cheapest whose stated errors are within a tolerance.
+"""Choose the level of fidelity: the cheapest level with stated errors within a tolerance.
 
-One level serves all points of a request: a level that changes from point to point makes steps in a curve, and
-false optima. `per_point` takes the cheapest at each point instead.
+One level serves all points of a request: if the level changed from point to point, curves would have steps
+and false optima. `per_point` chooses the cheapest level for each point instead.
 
-Where no level is known to be within the tolerance, the finest level answers whose stated cost is within the
-budget: whoever gives a tolerance wants the best that is to be had, not the cheapest.
+If no level is known to be within the tolerance, the finest level whose stated cost is within the budget is
+chosen: a user who gives a tolerance wants the most accurate answer, not the cheapest.
 """
 
 from __future__ import annotations

@@ -1,20 +1,23 @@
-"""Levels of fidelity: how wrong each is and what it costs, as measured; which is the cheapest that will do.
+"""Levels of fidelity: their measured errors and costs, and the choice of the cheapest sufficient level.
 
 A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against a converged solution, on a
-grid over two of the template's quantities. The table lies outside the frozen file, so that a version may gain
-a better one.
+script in `benchmarks/` measured: for every level and output the error against a converged solution, on a grid
+over two of the template's quantities. The table is not part of the frozen file, so that a version may get a
+better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
-measured. Two levels may follow two conventions, and then their errors say nothing of each other
-(`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
-(`absolute_error`).
+measured. Two levels may follow different conventions; then their errors cannot be compared
+(`next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
+value: `templates.core.criteria.bands.CONVENTION`, which the file repeats.
 
-A level may state the error of each answer itself, from what it has computed (`Template.own_error`); the table
-then says under `own` what error to expect before.
+A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
+error under `own`.
 
 Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
-them under `cases`, and `Template.measured_case` says which case its inputs are.
+them under `cases`, and `Template.measured_case` says which case its inputs are. Where an error varies much
+within a cell, `powers` has by case, level and output exponents of attributes of the template: the error is
+that of the cell times those powers, within the range of each attribute that `within` has by case. The
+attributes follow from the inputs alone, and are the same at all levels.
 """
 
 from __future__ import annotations
@@ -23,7 +26,8 @@ import json
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +37,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.origin import file_of
-from templates.core.language.spec import Profile, Text
+from templates.core.language.spec import Text
 from templates.core.language.template import Template
 
 SINGLE = "only"  # how the table of a template without levels calls its one
@@ -124,6 +128,8 @@ class Accuracy:
         measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
+        if measured and "powers" in self.content:
+            estimates = {name: e * self._power(template, level, name) for name, e in estimates.items()}
         errors: dict[str, Any] = estimates
         if len(estimates) < len(names):
             none = np.zeros(template.shape_of_points())[()]
@@ -131,6 +137,14 @@ class Accuracy:
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
         return {name: error + self._added(there, name) for name, error in errors.items()}
+
+    def _power(self, template: Template, level: str, output: str) -> Any:
+        """Return by what the powers of attributes multiply an error; NaN out of the range of one of them."""
+        case = template.measured_case()
+        exponents = self.content["powers"].get(case, {}).get(level, {}).get(output, {})
+        within = self.content.get("within", {}).get(case, {})
+        factors = (_within(getattr(template, name), within.get(name)) ** e for name, e in exponents.items())
+        return prod(factors)
 
     def _added(self, template: Template, output: str) -> float:
         """Return what the conditions that hold add to the error of an output."""
@@ -170,6 +184,13 @@ def _same_at_all_levels(template: Template, output: str) -> bool:
     if isinstance(formula, Text):
         return False
     return "level" not in template.ancestors(formula.attribute)
+
+
+def _within(value: Any, limits: tuple[float, float] | None) -> Any:
+    """Return a value; NaN outside of limits."""
+    if limits is None:
+        return value
+    return np.where((value >= limits[0]) & (value <= limits[1]), value, np.nan)[()]
 
 
 def _looked_up(table: Array, cell: Any) -> Any:
@@ -226,45 +247,6 @@ def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Arra
         level: {output: np.array(table, dtype=float) for output, table in outputs.items()}
         for level, outputs in levels.items()
     }
-
-
-def truth_of(cls: type[Template], level: str, output: str) -> str | None:
-    """Return the name of the truth of an output's error at a level; None if no error is stated there."""
-    measured = accuracy(cls)
-    return measured.truth(level, output) if measured else None
-
-
-def absolute_error(template: Template, output: str, error: Any) -> Any:
-    """Return the estimated error of an output in its SI unit, from the `error` stated.
-
-    NaN where that says nothing.
-
-    Of a profile it is the same at all its places. See `relative_to` for what errors are relative to.
-    """
-    formula = template.formulas[output]
-    size = np.abs(getattr(template, formula.attribute))
-    if not isinstance(formula, Profile):
-        return error * relative_to(template, output)
-    axes = tuple(range(-formula.axes, 0))
-    return np.broadcast_to(
-        np.asarray(error)[(..., *(None,) * formula.axes)] * size.max(axes, keepdims=True), size.shape
-    )
-
-
-def relative_to(template: Template, output: str) -> Any:
-    """Return the reference [SI] of the error of an output that is not a profile.
-
-    Itself, or what the table names.
-
-    The table's `relative_to` has by output a size [SI] (of an angle, 90°), or a list of outputs, the largest
-    of which counts, or null for a size that is not an output.
-    """
-    measured = accuracy(type(template))
-    others = measured.content.get("relative_to", {}).get(output, [output]) if measured else [output]
-    if not isinstance(others, list):
-        return np.nan if others is None else float(others)
-    sizes = [np.abs(getattr(template, template.formulas[name].attribute)) for name in others]
-    return reduce(np.fmax, sizes)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The meaning of a number: its words, unit, symbol, bounds and source; each declared once."""
+"""The meaning of a number: words, unit, symbol, bounds and source, each declared once."""
 
 from __future__ import annotations
 
@@ -73,7 +73,8 @@ class Meaning:
     `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
     outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
     published range bounds this formula too, though it does not use them. `absent` says why a result may be
-    NaN without being a fault. `per_level` narrows domain and published range at single levels of fidelity.
+    NaN without being a fault. `assumed` is what an input's default takes for granted, where that makes a part
+    look safer. `per_level` narrows domain and published range at single levels of fidelity.
     `read_as` is degC for a temperature that is declared in K, which else may be a difference as well.
     """
 
@@ -89,6 +90,7 @@ class Meaning:
     integer: bool = False
     assumes: tuple[str, ...] = ()
     absent: str | None = None
+    assumed: str | None = None
     per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
     read_as: str | None = None
 
@@ -200,6 +202,8 @@ class Keywords(TypedDict, total=False):
     """Attributes whose published range bounds this formula too, though it does not use them."""
     absent: str | None
     """Why a result may be missing without being a fault."""
+    assumed: str | None
+    """What the default of an input takes for granted, where that makes a part look safer."""
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None
     """Domain and published range at single levels of fidelity."""
 
@@ -221,6 +225,7 @@ def meaning(
     integer: bool = False,
     assumes: tuple[str, ...] = (),
     absent: str | None = None,
+    assumed: str | None = None,
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None = None,
 ) -> Meaning:
     """Return the keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
@@ -237,5 +242,6 @@ def meaning(
         integer=integer,
         assumes=assumes,
         absent=absent,
+        assumed=assumed,
         per_level=per_level or {},
     )

@@ -1,7 +1,7 @@
-"""The single SI values of an evaluated template as JSON, and a template that has them without calculating.
+"""Store the single SI values of an evaluated template as JSON, and restore the template without calculating.
 
-Whoever keeps a record beside an answer can write the formulas of that answer again, in any system of units.
-Arrays are left out: they have no numbers on paper.
+With such a record, the formulas of an answer can be printed again in any system of units. Arrays are left
+out, because their numbers are not printed.
 """
 
 from __future__ import annotations

@@ -1,14 +1,16 @@
-"""Every value of an unknown that gives a wanted output, with the curve between the bounds that shows them."""
+"""Every value of an unknown that gives a wanted output, and the curve between the bounds."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
-from templates.core.errors import Unreachable
+from templates.core.errors import InvalidInputs, Unreachable
 from templates.core.language.confirmation import POLISHES, Root, confirmed
 from templates.core.language.crossings import Crossings, Leap, meetings
 from templates.core.language.ledger import Notice
@@ -16,6 +18,7 @@ from templates.core.language.scan import SampledCurve, Samples
 
 NAMED = 10  # solutions that a warning names
 AT_BOUND = 1e-9  # of the width of the search: nearer to a bound a solution lies on it
+BESIDE = 12  # samples of the scan, from a solution to those drawn of a level that takes few points
 MISSED = 1e-6  # relative miss of a solution beyond which a warning says so
 
 
@@ -33,7 +36,7 @@ class Jump:
 
 @dataclass(frozen=True)
 class TracedCurve:
-    """The output over the unknown: even samples between the bounds at one level, in the declared units.
+    """The output over the unknown: samples between the bounds at one level, in the declared units.
 
     NaN where there is no value; `reasons` says why, None where there is one.
     """
@@ -49,7 +52,8 @@ class Roots:
     """All values of an unknown that give a target.
 
     `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
-    `lowest` is the first of them that the level requested confirms.
+    `lowest` is the first of them that the level requested confirms. `curve` is the one that was searched;
+    `finer` are those that solutions were confirmed on, where these are at other levels.
     """
 
     lowest: Root
@@ -57,6 +61,7 @@ class Roots:
     touching: list[Root]
     jumps: list[Jump]
     curve: TracedCurve
+    finer: list[TracedCurve]
     warnings: list[Notice]
 
 
@@ -86,6 +91,7 @@ def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, 
         [root for root in roots if root.touches],
         [_jump(scanned, leap) for leap in met.leaps],
         _traced(scanned, even),
+        list(_finer(requested, scanned, even, roots)),
         [*_warnings(scanned, samples, met, roots, lowest), *_at_bounds(scanned, roots, bounds)],
     )
 
@@ -129,15 +135,51 @@ def _jump(curve: SampledCurve, leap: Leap) -> Jump:
     return Jump(float(curve.x.scale.from_si(leap.x)), *sides)
 
 
-def _traced(curve: SampledCurve, even: Samples) -> TracedCurve:
-    """Return the samples of the scan in declared units."""
+def _traced(curve: SampledCurve, samples: Samples) -> TracedCurve:
+    """Return samples in declared units."""
     x, y = curve.x.scale, curve.y.scale
     return TracedCurve(
-        np.asarray(x.from_si(even.x)),
-        np.asarray(y.from_si(even.miss + curve.wanted)),
-        even.reasons,
+        np.asarray(x.from_si(samples.x)),
+        np.asarray(y.from_si(samples.miss + curve.wanted)),
+        samples.reasons,
         curve.level,
     )
+
+
+def _finer(
+    requested: SampledCurve, scanned: SampledCurve, even: Samples, roots: Sequence[Root]
+) -> Iterator[TracedCurve]:
+    """Yield the curve of each level that solutions were confirmed at, but for that of the scan.
+
+    A level that takes few points at once has a sample to both sides of each solution.
+    """
+    confirmed_at = dict.fromkeys(root.level for root in roots if root.confirmed)
+    curves = (requested.at_level(level) if level else requested for level in confirmed_at)
+    for curve in curves:
+        if not curve.is_at_levels_of(scanned):
+            own = [root for root in roots if root.confirmed and root.level == curve.level]
+            yield _traced(curve, _confirming(curve, even, own))
+
+
+def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Samples:
+    """Return the samples of a finer curve: those of the scan, or a few about its solutions, and these.
+
+    Those that the level refuses are left out.
+    """
+    x = np.asarray(curve.x.scale.to_si(np.array([root.value for root in roots])))
+    output = np.asarray(curve.y.scale.to_si(np.array([root.output for root in roots])))
+    samples = Samples(x, output - curve.wanted, np.full(x.size, None, dtype=object))
+    wanted = even.x if curve.rows >= even.x.size else even.x[_beside(even.x, x)]
+    for start in range(0, wanted.size, curve.rows):
+        with suppress(InvalidInputs):
+            samples = samples.joined(curve.sample(wanted[start : start + curve.rows]))
+    return samples
+
+
+def _beside(even: Array, places: Array) -> NDArray[np.intp]:
+    """Return the samples that lie so many to both sides of some places."""
+    nearest = np.searchsorted(even, places)
+    return np.unique(np.clip(np.concatenate([nearest - BESIDE, nearest + BESIDE]), 0, even.size - 1))
 
 
 def _not_monotone(curve: SampledCurve, residual: Array) -> list[Notice]:

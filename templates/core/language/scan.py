@@ -1,8 +1,8 @@
-"""The target of `solve` as a curve over the unknown: sampled in array calls, finer where something happens.
+"""Sample the target of `solve` over the unknown: array calls, refined where the curve needs it.
 
 257 samples between the bounds, all at one level of fidelity, show where the output crosses the target, comes
-near it, or ends. Intervals that do so are divided again and again, so that a jump is not a crossing,
-two solutions close together are separated, and the end of the reachable range is located.
+near it, or ends. Such intervals are divided repeatedly, so that a jump is not mistaken for a crossing, two
+solutions close together are separated, and the end of the reachable range is located.
 """
 
 from __future__ import annotations
@@ -121,6 +121,10 @@ class SampledCurve(ABC):
     def chooses(self) -> bool:
         """Return whether a tolerance chooses the level at each sample."""
 
+    @abstractmethod
+    def is_at_levels_of(self, other: Self) -> bool:
+        """Return whether another curve of the same output is calculated at the same levels."""
+
     @property
     def rows(self) -> int:
         """Number of samples that one call takes."""
@@ -213,6 +217,10 @@ class TargetCurve(SampledCurve):
     def at_level(self, level: str) -> TargetCurve:
         """Return the same curve, all of it at one level."""
         return replace(self, fidelity={"level": level})
+
+    def is_at_levels_of(self, other: Self) -> bool:
+        """Return whether another curve of the same output is calculated at the same level."""
+        return self.level == other.level
 
     def evaluation(self, values: Any) -> Evaluation:
         """Return the output at values of the unknown [SI]."""

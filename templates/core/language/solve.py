@@ -1,8 +1,8 @@
-"""Find the inputs that give a wanted output: scan between bounds, then close in on every crossing.
+"""Find the inputs that give a wanted output: scan between bounds, then refine every crossing.
 
-The scan is a few array calls at one level of fidelity, so a formula that is not monotone, or jumps, is seen
-and said. Every solution between the bounds is returned, with the curve that shows them. A solution is
-calculated again at the level requested, where that is another than the scan's.
+The scan is a few array calls at one level of fidelity, so a formula that jumps or is not monotone is detected
+and reported. Every solution between the bounds is returned, together with the curve. If the requested level
+differs from the scan's, each solution is recalculated at the requested level.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ class Solution:
     """The lowest value of the unknown that gives the target [its declared unit], and the evaluation there.
 
     `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
-    jumps and curve have the output in `target_unit`.
+    jumps and curves have the output in `target_unit`. `finer` are the curves of the levels that solutions
+    were confirmed at, where these are not that of `curve`.
     """
 
     unknown: float
@@ -41,6 +42,7 @@ class Solution:
     touching: list[Root]
     jumps: list[Jump]
     curve: TracedCurve
+    finer: list[TracedCurve]
     target_unit: str
 
 
@@ -80,6 +82,7 @@ def solve(
         roots.touching,
         roots.jumps,
         roots.curve,
+        roots.finer,
         formula.meaning.unit,
     )
 

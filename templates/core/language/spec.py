@@ -1,6 +1,6 @@
 """Classes of a template's declarations: givens, choices, curves, formulas and requirements.
 
-Authors use the functions of `templates.core.language.declare`, which make them.
+Authors use the functions of `templates.core.language.declare`, which create them.
 """
 
 from __future__ import annotations
@@ -189,8 +189,8 @@ class Shared(Generic[T]):
 
     attribute: str
 
-    def __init__(self, function: Callable[[Any], T]) -> None:
-        self.function = function
+    def __init__(self, function: Callable[[Any], T], unit: str = "") -> None:
+        self.function, self.unit = function, unit
         self.__doc__ = function.__doc__
 
     def __set_name__(self, owner: type, attribute: str) -> None:

@@ -1,4 +1,4 @@
-"""A formula's source as a syntax tree: what it returns and what it uses."""
+"""A formula's source as a syntax tree: the returned expression and the names that it uses."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from templates.core.language.body import Body
-from templates.core.language.parsing import parse
+from templates.core.language.syntax_trees import parse
 
 
 def returned(function: Callable[..., Any]) -> ast.expr:

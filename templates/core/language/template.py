@@ -1,4 +1,4 @@
-"""Template: declare once what is given and what follows; everything else is derived.
+"""Template: declare each given and each formula once; everything else is derived.
 
 A template is a class in a file `<id>_v<version>.py`. Its instance holds SI values: givens as attributes,
 formulas evaluated at their first use and then kept. The same code runs for one point and for 10⁶.

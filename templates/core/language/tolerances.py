@@ -1,4 +1,4 @@
-"""Tolerances where only the value is calculated with: whoever gives one is warned."""
+"""Warn about tolerances where a calculation uses only the value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The warning `tolerance_unmet`: which errors are beyond the tolerance of a request, or not stated at all."""
+"""The warning `tolerance_unmet`: errors that exceed the tolerance of a request, or are not stated at all."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The sentence for a rule that does not hold: what the values are, made from the comparisons of the rule.
+"""The sentence for a broken rule, which states the values, built from the comparisons of the rule.
 
-The docstring of a rule says what ought to be. Where a rule is violated that would state the opposite of what
-is the case, so nothing here reads it.
+The docstring of a rule states the requirement. For a broken rule it would state the opposite of the facts, so
+this module does not use it.
 """
 
 from __future__ import annotations
@@ -9,12 +9,16 @@ from __future__ import annotations
 import ast
 import inspect
 import re
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from templates.core.criteria.sentences import DIGITS, Side, compared
+from templates.core.arrays import Truth
+from templates.core.criteria.judgement import DIGITS, Side, compared, related
 from templates.core.language.calculation import Calculation
-from templates.core.language.comparisons import Comparison, Operand, outcome
+from templates.core.language.comparisons import OPPOSITE, Comparison, Operand, Outcome, outcome
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.units.units import Unit, unit, unit_symbol
 
@@ -25,11 +29,8 @@ _ATTRIBUTE = re.compile(r"\bself\.(\w+)")
 
 def violation(template: Calculation, rule: Requirement, name: str) -> str:
     """Return a sentence on what violates a rule, for the warning about one of its names."""
-    with np.errstate(all="ignore"):
-        decisive = list(outcome(template, rule).decisive())
-    written = [_written(template, one) for one in decisive if one.actual != one.sign]
-    if written and all(written):
-        return "; ".join(written)
+    if stated := stated_case(template, rule):
+        return stated
     if rule.warning == UNUSED:
         level = str(getattr(template, "level", ""))
         at = f" at level {level.replace('_', ' ')}" if "level" in rule.function.__code__.co_names else ""
@@ -37,10 +38,58 @@ def violation(template: Calculation, rule: Requirement, name: str) -> str:
     return "; ".join(_given(template, one) for one in rule.names)
 
 
+def stated_case(template: Calculation, rule: Requirement) -> str:
+    """Return the comparisons that do not hold, in words with their numbers; empty where one has none."""
+    with np.errstate(all="ignore"):
+        written = [_written(template, one) for one in _broken(outcome(template, rule))]
+    return "; ".join(written) if all(written) else ""
+
+
+def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np.bool_], str]]:
+    """Return where each comparison does not hold, with its words; nothing if one has none."""
+    with np.errstate(all="ignore"):
+        broken = list(_broken(outcome(template, rule)))
+    written = [(np.asarray(one.where), _related(template, one)) for one in broken]
+    return written if all(text for _, text in written) else []
+
+
+def _related(template: Calculation, comparison: Comparison) -> str:
+    """Return a comparison that does not hold, without numbers but those of the rule; empty without words."""
+    sides = comparison.left, comparison.right
+    scale = _common_scale(template, comparison)
+    words = [
+        _words(template, side).removesuffix(" =")
+        if side.constant is None
+        else _constant(side.constant, scale)
+        for side in sides
+    ]
+    return related(words[0], OPPOSITE[comparison.sign], words[1]) if scale and all(words) else ""
+
+
+def _constant(si: float, scale: Unit | None) -> str:
+    return f"{float(scale.from_si(si)):.{DIGITS}g} {unit_symbol(scale.text)}".strip() if scale else ""
+
+
+def _common_scale(template: Calculation, comparison: Comparison) -> Unit | None:
+    left, right = comparison.left, comparison.right
+    return _scale(template, left) or _scale(template, right) or _number_of(left, right)
+
+
+def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
+    """Yield the comparisons that do not hold, of alternatives those at points where none holds."""
+    fails = np.asarray(where, dtype=bool) & ~np.asarray(result.value, dtype=bool)
+    if not fails.any():
+        return
+    if result.comparison is not None:
+        yield replace(result.comparison, where=fails)
+    for part in result.parts:
+        yield from _broken(part, where if result.needs_all else fails)
+
+
 def _written(template: Calculation, comparison: Comparison) -> str:
     """Return a comparison that does not hold, at its worst point; empty where it has no words."""
     left, right = comparison.left, comparison.right
-    scale = _scale(template, left) or _scale(template, right) or _number_of(left, right)
+    scale = _common_scale(template, comparison)
     if scale is None:
         return ""
     words = _words(template, left), _words(template, right)
@@ -58,12 +107,15 @@ def _written(template: Calculation, comparison: Comparison) -> str:
     if any(np.isnan(side.magnitude) for side in sides):
         return ""
     count = f" (worst of {int(broken.sum())} among {broken.size} values)" if broken.size > 1 else ""
-    return compared(sides[0], comparison.actual, sides[1], scale.text) + count
+    return compared(sides[0], OPPOSITE[comparison.sign], sides[1], scale.text) + count
 
 
 def _scale(template: Calculation, side: Operand) -> Unit | None:
     """Return the unit of a side that is an input or output."""
     declared = template.declarations.get(side.attribute or "")
+    between = getattr(type(template), side.attribute or "", None)
+    if isinstance(between, Shared) and between.unit:
+        return unit(between.unit)
     return declared.meaning.scale if declared else None
 
 

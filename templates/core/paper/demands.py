@@ -1,4 +1,4 @@
-"""The criteria of a template in plain values: for its description, its page and the handbook."""
+"""The criteria of a template as plain values, for its description, its page and the handbook."""
 
 from __future__ import annotations
 

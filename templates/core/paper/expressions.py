@@ -15,10 +15,10 @@ from templates.core.paper.mathml import (
     named_symbol,
     tightness,
 )
+from templates.core.units.evaluation import depth_of
 from templates.core.units.operations import Constant, Item, Name, Word
 from templates.core.units.relation import is_relation, parse
 from templates.core.units.units import unit_symbol
-from templates.core.units.walking import depth_of
 
 CONDITION = SUM - 1
 DEEPEST_ON_PAPER = 8  # the typesetter nests few formulas

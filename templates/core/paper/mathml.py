@@ -1,6 +1,6 @@
-"""A formula on paper, from its code: LaTeX by walking the syntax tree, MathML from the LaTeX.
+"""Print a formula from its code: LaTeX by walking the syntax tree, MathML from the LaTeX.
 
-Calls of physics functions are written out where they are one expression, or by the LaTeX they carry.
+Calls of physics functions are written out if they are one expression, or by the LaTeX that they carry.
 """
 
 from __future__ import annotations

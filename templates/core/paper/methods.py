@@ -1,7 +1,8 @@
-"""The method of a result that no formula writes, in words, for its line on paper.
+"""The method of a result that has no printable formula, in words, for its line on paper.
 
-A template reads such a result from a record, as in `self.film.attitude`. Its symbol alone would make a line
-that says nothing, `attitude = attitude`. The physics function that made the record says by `on_paper` how.
+A template reads such a result from a record, as in `self.film.attitude`. Its symbol alone would give an empty
+statement, `attitude = attitude`. The physics function that returned the record states its method by
+`on_paper`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""JSON Schema of a template's inputs and outputs, and its page in words; derived from the declarations."""
+"""The JSON Schema of a template's inputs and outputs, and its description, derived from the declarations."""
 
 from __future__ import annotations
 

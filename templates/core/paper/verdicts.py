@@ -1,7 +1,7 @@
-"""The checks of a calculation report: every bound and rule of a template, held against its values.
+"""The checks of a calculation report: every bound and rule of a template, compared with its values.
 
-For reports: what must hold, what is, and how much of the allowance is used. Nothing is refused here: a
-template that exists has passed the rules that refuse; those that only warn may have been broken.
+Each check states the requirement, the value, and the used share of the allowance. Nothing is refused here: a
+template instance has passed the rules that refuse; only rules that warn may be broken.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Worksheets: text of an engineer, checked, becomes a template class like one from a file.
+"""Worksheets: an engineer's text is checked and becomes a template class like one from a file.
 
 `read` gives a `Sheet`, or raises `SheetRefused` with all faults; `Sheet.template` makes the class, and
 `run_tests` runs the tests that the worksheet holds. The language: `docs/reference/worksheets.md`.
@@ -7,7 +7,7 @@
 from templates.core.sheets.faults import SheetFault, SheetRefused
 from templates.core.sheets.names import KnownName
 from templates.core.sheets.sheet import Sheet, Statement, read
-from templates.core.sheets.testing import SheetTest, TestResult, run_tests
+from templates.core.sheets.worksheet_tests import SheetTest, TestResult, run_tests
 
 __all__ = [
     "KnownName", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult", "read",

@@ -1,4 +1,4 @@
-"""A checked tree in the place of a formula's function: called with a template, it gives the value."""
+"""A checked tree in place of a formula's function: called with a template, it returns the value."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from templates.core.paper.expressions import latex
 from templates.core.paper.mathml import named_symbol
 from templates.core.sheets.partial import explain, explained_in
 from templates.core.units.closures import closure
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.operations import Apply, Name
-from templates.core.units.walking import nodes_of
 
 _SIGNS = {
     "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq,

@@ -1,4 +1,4 @@
-"""Classes made from worksheets: pickled as the text they were made from, never as a class."""
+"""Classes created from worksheets; a class pickles as its text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clauses of a declaration, `(> 0; example 48 mm; also "load")`: what a number means."""
+"""The clauses of a declaration, `(> 0; example 48 mm; also "load")`: the meaning of a number."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
         message = f"words have at most {LONGEST_WORDS} characters"
         raise statement.refuse("too_large", message, words, "write the rest as prose, after >")
     if not text:
-        raise statement.refuse("name", "the words are missing", words, "say what it is")
+        raise statement.refuse("name", "the description is missing", words, "describe the quantity")
     return text
 
 
@@ -90,7 +90,7 @@ def said_in(
         if clause is not None:
             key, value = _clause(statement, clause, reader, unit_text, accepted)
             if key in keys:
-                message = f"{clause_name(clause)} is said twice"
+                message = f"{clause_name(clause)} is given twice"
                 raise statement.refuse("clause", message, clause, "leave out one of the two")
             keys.add(key)
             if key == "example":

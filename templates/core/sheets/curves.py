@@ -1,4 +1,4 @@
-"""Curves through points: functions of one value, linear between the points and without a value outside."""
+"""Curves through points: functions of one variable, linear between the points and undefined outside."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Depth of formulas that call each other: a long chain is calculated from its beginning, step by step.
+"""Depths of formulas that use each other: a long chain is calculated step by step from its beginning.
 
-A formula asks for what it uses when it is first asked itself. In a worksheet of 400 statements in any order
-that would nest too deep for Python; so some formulas of a long chain are asked first, the deepest before all.
+A formula evaluates the formulas that it uses when it is first evaluated itself. In a worksheet of 400
+statements in any order that could nest too deep for Python. So some formulas of a long chain are evaluated
+first, beginning with the deepest.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from graphlib import TopologicalSorter
 from typing import Any
 
 from templates.core.language.spec import Derived, Formula, Requirement
-from templates.core.sheets.built import Built
+from templates.core.sheets.contents import Built
 from templates.core.sheets.faults import SheetFault
 from templates.core.units.operations import Apply
 

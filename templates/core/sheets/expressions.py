@@ -1,4 +1,4 @@
-"""Expressions within statements: their trees, what they measure, and limits that are one number."""
+"""Expressions within statements: their trees, their kinds of quantity, and limits that are one number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions of a worksheet, written out wherever they are called; each sees those above it only."""
+"""Functions of a worksheet, expanded wherever they are called; each sees only those above it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Remedies of a statement that is not understood: by the sign there, else by what is missing."""
+"""Remedies for a statement that cannot be parsed: by the offending character, else by the missing part."""
 
 from __future__ import annotations
 

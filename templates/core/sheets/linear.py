@@ -1,7 +1,7 @@
 """Several unknowns in as many linear equations: `solve x [N] "…", y [N] "…" so that … == … and … == …`.
 
-The trees of the coefficients are taken from the equations when the sheet is read: no differences are formed,
-and an equation that is not linear is refused before anything is calculated.
+The coefficients are derived symbolically from the equations when the sheet is read, without numerical
+differences; a nonlinear equation is refused before any calculation.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def system_of(
     for name in unknowns:
         if not any(name in row for row in rows):
             message = f"{name} does not occur in the equations"
-            raise statement.refuse("equation", message, tree, "leave it out, or write an equation with it")
+            raise statement.refuse("equation", message, tree, "remove it, or write an equation with it")
     return System(unknowns, node, rows)
 
 

@@ -1,11 +1,11 @@
-"""Declarations that follow from themselves."""
+"""Find declarations that depend on themselves."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 
-from templates.core.sheets.built import Built
+from templates.core.sheets.contents import Built
 from templates.core.sheets.faults import SheetFault
 
 MOST_LOOPS = 10

@@ -1,4 +1,4 @@
-"""The names of a worksheet: what each measures, its functions, and how much may still be calculated."""
+"""The names of a worksheet with their kinds of quantity, its functions, and its budget of operations."""
 
 from __future__ import annotations
 

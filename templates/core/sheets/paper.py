@@ -1,4 +1,4 @@
-"""The lines of a worksheet as LaTeX."""
+"""Print the lines of a worksheet as LaTeX."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from templates.core.language.template import Template
 from templates.core.paper.expressions import latex
 from templates.core.paper.mathml import named_symbol, symbols
 from templates.core.sheets.body import names_in
-from templates.core.sheets.built import Built
+from templates.core.sheets.contents import Built
 from templates.core.sheets.grammar import ParsedStatement, declared_by
 
 

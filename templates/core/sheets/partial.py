@@ -1,4 +1,4 @@
-"""Operations that give a value not everywhere, and say why: a curve has none outside its points."""
+"""Operations that do not always have a value, and the reason: a curve has none outside its points."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from templates.core.language.ledger import Mask
 from templates.core.units.closures import closure
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.lists import ITEM
 from templates.core.units.operations import Apply, Operation
-from templates.core.units.walking import nodes_of
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

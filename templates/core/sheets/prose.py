@@ -1,4 +1,4 @@
-"""Prose of a worksheet: headings and paragraphs in Markdown; they make the documentation of the class."""
+"""Prose of a worksheet: headings and paragraphs in Markdown, which become the documentation of the class."""
 
 from __future__ import annotations
 

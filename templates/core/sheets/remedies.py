@@ -1,4 +1,4 @@
-"""Remedies of an expression that is refused: by its fault, and by the operation at its place."""
+"""Remedies for a refused expression, by its fault and by the operation at its place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A worksheet: text that was read and checked whole, and the template class that it makes."""
+"""A worksheet: text that was read and checked as a whole, and its template class."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from templates.core.language.template import Template
-from templates.core.sheets.building import Builder
-from templates.core.sheets.built import Built
+from templates.core.sheets.class_builder import Builder
 from templates.core.sheets.classes import SheetClass, class_of
+from templates.core.sheets.contents import Built
 from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
@@ -23,7 +23,7 @@ from templates.core.sheets.loops import faults_of_loops
 from templates.core.sheets.names import KnownName
 from templates.core.sheets.paper import latex_of
 from templates.core.sheets.prose import documentation_of, markdown_of, title_of
-from templates.core.sheets.testing import SheetTest
+from templates.core.sheets.worksheet_tests import SheetTest
 
 _ID = re.compile(r"[a-z][a-z0-9_]*")
 

@@ -1,4 +1,4 @@
-"""A checked tree as nested functions of the object that has its names: walked once, called often."""
+"""Compile a checked tree to nested functions of the object with its names: walked once, called often."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Conditions: comparisons, `and`, `or`, `not`, the test of a choice, and `if`.
 
-A condition is 1 where it holds, 0 where it does not, and NaN where one of its values is missing: what is not
-known decides nothing. So a formula has no value behind a condition that has none.
+A condition is 1 where it holds, 0 where it does not, and NaN where one of its values is missing. A formula
+has no value where its condition is NaN.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Whether a value fits where another unit is declared, and what else it may be meant as.
+"""Check whether a value fits a declared unit, and suggest what else it may mean.
 
-In a formula every angular speed has its value in rad/s, whatever the unit in which it is typed or shown;
-turns are a spelling. A name that is given in turns may be meant in turns by a textbook's formula: that is
-reported, since the value differs by 2*pi.
+In a formula every angular speed has its value in rad/s, whatever the unit in which it is typed or shown. A
+textbook's formula may expect turns for a name given in turns: this is reported, since the value differs by
+2*pi.
 """
 
 from __future__ import annotations

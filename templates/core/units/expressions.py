@@ -1,8 +1,8 @@
-"""Expressions of relations and worksheets: from the parser's tree to a checked tree of our own nodes.
+"""Expressions of relations and worksheets: convert the parser's tree to a checked tree of our own nodes.
 
-Both share the grammar of `relation.lark`. A worksheet knows what its names are when it is read, and asks for
-`checked`; a relation of a design learns it later, and asks for `built`. What a scope knows of a name replaces
-the name: a parameter of a function becomes the expression with which the function is called.
+Both share the grammar of `relation.lark`. A worksheet knows the meaning of its names when it is read, and
+calls `checked`; a relation of a design learns it later, and calls `built`. A scope may replace a name by an
+expression: a parameter of a function becomes the argument of the call.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText, excerpt, unknown_name
 from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.lists import ITEM, LIST, OVER_LISTS
 from templates.core.units.nodes import kind_of
 from templates.core.units.operations import (
@@ -34,7 +35,6 @@ from templates.core.units.operations import (
 from templates.core.units.rules import as_compared
 from templates.core.units.sorts import Part, Sort, applied
 from templates.core.units.units import Unit, is_rate, unit
-from templates.core.units.walking import nodes_of
 
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
 

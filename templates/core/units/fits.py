@@ -1,6 +1,6 @@
 """Tolerance zones of ISO 286: the limit deviations of `48 mm H7`, by class and nominal size.
 
-The table is `iso286.csv`; its head names its sources and how it was checked.
+The table is `iso286.csv`; its head names its sources and describes its checks.
 """
 
 from __future__ import annotations

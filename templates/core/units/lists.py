@@ -1,6 +1,6 @@
 """Lists: `[a, b]`, `x[3]`, `sum`, `mean`, `count`, `min` and `max` of one list.
 
-A list is the last axis of an array; the axes before it are those of points.
+A list is the last axis of an array; the axes before it belong to points.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The nodes of a relation's tree: constants, names, and operations that know their value and their unit."""
+"""The nodes of a relation's tree: constants, names and operations, each with its value and unit."""
 
 from __future__ import annotations
 

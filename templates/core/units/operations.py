@@ -1,4 +1,4 @@
-"""The operators and functions of relations: how to calculate, and what comes out in terms of what goes in."""
+"""The operators and functions of relations: their values, and the kinds of their results."""
 
 from __future__ import annotations
 

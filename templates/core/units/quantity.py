@@ -1,7 +1,7 @@
-"""Quantities: convert what a user types to SI floats or arrays, once.
+"""Quantities: convert typed values to SI floats or arrays, once.
 
-What is typed is untrusted. Every refusal is a `FaultyText` with a code and a remedy; it quotes no more than
-a few characters of the text, and is fit for JSON (no lone surrogates).
+Typed values are untrusted. Every refusal is a `FaultyText` with a code and a remedy; it quotes only a few
+characters of the text, and is valid JSON text (no lone surrogates).
 """
 
 from __future__ import annotations

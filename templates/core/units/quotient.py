@@ -1,4 +1,4 @@
-"""The unit of a change of one quantity for each unit of another: `um` and `N*m` give `um/(N*m)`."""
+"""The unit of a change of one quantity per unit of another: `um` and `N*m` give `um/(N*m)`."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Relations: `= scale * 48 mm`. Parsed to a checked tree, never evaluated as Python.
+"""Relations, such as `= scale * 48 mm`: parsed to a checked tree, never evaluated as Python.
 
-A relation ties a value of a design to others, as a cell of a spreadsheet does. A unit stands after a number
-and one blank and has no blank itself; every other word is a name. Units are checked before anything runs:
-lengths add to lengths, an exponent is a pure number, `degC` is a temperature with a zero of its own and may
-not be added. `loads.main_load_x[2]` is the second item of an array along its first axis, so that of several
-curves it is one curve.
+A relation links a value of a design to others, like a cell of a spreadsheet. A unit follows a number and one
+blank, and contains no blank; every other word is a name. Units are checked before any calculation: a length
+can only be added to a length, an exponent is a pure number, and `degC` is an absolute temperature, which
+cannot be added. `loads.main_load_x[2]` is the second item of an array along its first axis: one curve of
+several.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from templates.core import definition_cache
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.conditions import CONDITIONS, IS
 from templates.core.units.conformity import misfit, turns_remark
+from templates.core.units.evaluation import LISTWISE, applied_in, nodes_of, value_of
 from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
 from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
 from templates.core.units.sorts import sorted_by
 from templates.core.units.units import Value, forget_units, unit
-from templates.core.units.walking import LISTWISE, applied_in, nodes_of, value_of
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 

@@ -1,4 +1,4 @@
-"""The sort of an expression's node: a quantity, a temperature, a condition, a list, a choice."""
+"""The sort of a node in an expression: a quantity, a temperature, a condition, a list, a choice."""
 
 from __future__ import annotations
 

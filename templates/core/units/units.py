@@ -1,13 +1,13 @@
-"""Units: a factor to SI and what they measure; the one Pint registry; which unit may stand for which.
+"""Units: the factor to SI and the kind of quantity; the Pint registry; which unit may replace which.
 
-The registry reads units only; no Pint object reaches a formula's hot path.
+The registry only parses units; no Pint object reaches a formula's hot path.
 A unit text is untrusted: its grammar is checked before Pint sees it (`m**9**9**9` would hang Pint).
 
 Two kinds of quantity share a dimension, and the unit says which is meant:
 
 - A temperature (degC, degF) and a difference of temperatures (delta_degC, delta_degF); K may be either.
 - An angular speed (rad/s, rpm, rev/s), kept in rad/s, and a frequency in Hz: cycles per second. 1/s may be
-  either, but not where turns are counted.
+  either, except where turns are counted.
 """
 
 from __future__ import annotations
@@ -318,6 +318,7 @@ def _measured(scale: Unit) -> str:
     return next(same, str(dimensions))
 
 
+@lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
     """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 

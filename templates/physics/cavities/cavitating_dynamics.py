@@ -1,11 +1,12 @@
 """Linear stiffness and damping of a film with mass-conserving cavities, by perturbing its discrete equations.
 
-Which nodes are full is held, and in the full ones the pressure, in the others the void follows the change of
-the gap: a front of re-formation moves with the oil that reaches it. Damping is that of slow motion: the oil
-that cavities store follows the displacement, so its rate is the velocity's. Grooves stand still.
+The set of full nodes is held constant. In full nodes the pressure follows the change of the gap, in the
+others the void does: a front of re-formation moves with the oil that reaches it. The damping holds for slow
+motion: the oil stored in cavities follows the displacement, so its rate of change is proportional to the
+velocity. Grooves stand still.
 
-Axes and scales as in `film_dynamics`; here over psi²/(B D eta omega_h) instead of the load, so that the
-coefficients stay finite as the load vanishes.
+Axes and scales are those of `film_dynamics`, but with psi²/(B D eta omega_h) in place of the load, so that
+the coefficients stay finite as the load vanishes.
 """
 
 from collections.abc import Callable
@@ -14,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.cavities.cavitating_film import SolvedRing, force
+from templates.physics.cavities.cavitating_film import RingSolution, force
 from templates.physics.cavities.cavitating_network import perturbed_flows
-from templates.physics.cavities.column_scaled import ColumnScaledSum
+from templates.physics.cavities.scaled_sum import ColumnScaledSum
 from templates.physics.films.film_equations import midpoints
 from templates.physics.films.film_mesh import gap
 
@@ -42,7 +43,7 @@ class LinearFilm:
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
 
 
-def linear_film(film: SolvedRing) -> LinearFilm:
+def linear_film(film: RingSolution) -> LinearFilm:
     """Return the force, stiffness and damping of a solved film."""
     ring, P, fill = film.ring, film.solution.P, 1 - film.solution.void
     phi, middle = ring.phi, midpoints(ring.phi)
@@ -57,7 +58,7 @@ def linear_film(film: SolvedRing) -> LinearFilm:
     return LinearFilm(force(ring, P), np.array(columns[::2]).T, np.array(columns[1::2]).T)
 
 
-def _response(film: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
+def _response(film: RingSolution) -> Callable[[Array], tuple[Array, Array]]:
     """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0

@@ -1,10 +1,10 @@
 """Static journal bearing with mass-conserving cavities, grooves and supply pressure.
 
-Boundary condition: the ambient pressure at the ends, the supply pressure in the grooves, which are
-full; elsewhere the film ruptures and re-forms as mass conservation demands (`cavitation`).
-Pressures are above that of the cavity, P = p psi²/(eta omega_h). First order at the re-formation:
-128 × 16 intervals err by about 0.1 % in So and 3 % in side flow; the flow from pockets that end inside
-the width converges more slowly, 10 % and more. The film turns in the positive sense.
+Boundary conditions: ambient pressure at the ends, supply pressure in the grooves, which are full; elsewhere
+the film ruptures and re-forms as mass conservation requires (`cavitation`). Pressures are relative to the
+cavity pressure, P = p psi²/(eta omega_h). The method is of first order at the re-formation: with 128 × 16
+intervals the errors are about 0.1 % in So and 3 % in side flow; the flow from pockets that end inside the
+width converges more slowly, with errors of 10 % and more. The film turns in the positive sense.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _COARSEST = 16, 6
 
 
 @dataclass(frozen=True)
-class SolvedRing:
+class RingSolution:
     """A solved film on its nodes."""
 
     ring: Ring
@@ -64,13 +64,6 @@ class CavitatingFilm:
     """(n + 1, m + 1) share of the gap without oil."""
 
 
-def cavitating_film(
-    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
-) -> CavitatingFilm:
-    """Solve and measure the static film with cavities; as `solved_ring`."""
-    return measured(solved_ring(eps, ratio, grooves, ambient, around, across))
-
-
 def solved_ring(
     eps: float,
     ratio: float,
@@ -78,8 +71,8 @@ def solved_ring(
     ambient: float = 0.0,
     around: int = 128,
     across: int = 16,
-    near: SolvedRing | None = None,
-) -> SolvedRing:
+    near: RingSolution | None = None,
+) -> RingSolution:
     """Solve the static film with cavities, from a film nearby or from coarse meshes to the requested one.
 
     Parameters
@@ -114,12 +107,12 @@ def solved_ring(
         ring = grooved_ring(eps, ratio, grooves, n, m)
         network, fed = fed_network(ring, grooves, ambient)
         solution = cavitation(network, None if solved is None else _interpolated(solved, ring))
-        solved = SolvedRing(ring, network, solution, fed)
+        solved = RingSolution(ring, network, solution, fed)
     assert solved is not None
     return solved
 
 
-def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
+def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
     """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
     ring = solved.ring
     around, across = _between(ring.phi, finer.phi[:-1]), _between(ring.zeta, finer.zeta)
@@ -146,7 +139,7 @@ def force(ring: Ring, P: Array) -> Array:
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
 
 
-def measured(solved: SolvedRing) -> CavitatingFilm:
+def measured(solved: RingSolution) -> CavitatingFilm:
     """Integrate load, friction and flow."""
     ring, solution, fed = solved.ring, solved.solution, solved.fed
     P, void = ring.closed(solution.P), ring.closed(solution.void)

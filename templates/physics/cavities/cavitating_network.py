@@ -1,7 +1,7 @@
-"""Balances of flow of a journal's cavitating film on the ring of its nodes, and their change with the gap.
+"""Flow balances of a journal's cavitating film on a ring of nodes, and their derivatives by the gap.
 
-Every coefficient is a product of one factor around and one across, as in `film_equations`; a change of the
-gap changes the factors around alone.
+Every coefficient is the product of a circumferential and an axial factor, as in `film_equations`; a change of
+the gap changes only the circumferential factors.
 """
 
 from dataclasses import dataclass

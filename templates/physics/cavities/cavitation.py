@@ -4,10 +4,10 @@ r"""Mass-conserving film rupture and re-formation (Jakobsson, Floberg, Olsson; E
     \nabla\cdot(H^3\nabla P) = 6\,\partial_x\left[(1-\lambda) H\right],\quad
     P \ge 0,\ \lambda \ge 0,\ P\lambda = 0
 
-P is the pressure above that of the cavity, lambda the void. Shear carries what oil there is: upwind.
-Solved by the Fischer–Burmeister–Newton–Schur method: the complementarity becomes the equation
-P + lambda = sqrt(P² + lambda²), Newton's method takes both at once, and at every node the unknown
-on which this equation depends more is eliminated, which leaves one sparse system.
+P is the pressure above the cavity pressure, lambda the void fraction. Shear transports the oil, discretised
+upwind. Solved by the Fischer–Burmeister–Newton–Schur method: the complementarity becomes the equation P +
+lambda = sqrt(P² + lambda²), Newton's method solves for both at once. At every node the unknown on which this
+equation depends more is eliminated, which leaves one sparse system.
 
 References
 ----------
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from templates.core.arrays import Array, Mask
-from templates.physics.cavities.column_scaled import ColumnScaledSum
+from templates.physics.cavities.scaled_sum import ColumnScaledSum
 
 _MOST_STEPS = 200
 _ACCURACY = 1e-11

@@ -1,9 +1,9 @@
 """Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude.
 
-The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
-those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
-which their stiffness makes up for what the load still lacks. No answer, where the supply pressure alone lifts
-more than the load, or the search has not come to rest after 20 films.
+A line at the widest gap feeds the film, or grooves that stand still relative to the load. The search solves
+films of `cavitating_film` on 64 × 8 intervals; the result is extrapolated from twice as many intervals, and
+the film's stiffness corrects the remaining difference of load. There is no answer if the supply pressure
+alone lifts more than the load, or if the search does not converge within 20 films.
 """
 
 from contextlib import suppress
@@ -13,7 +13,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.cavities.cavitating_dynamics import LinearFilm, linear_film
-from templates.physics.cavities.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
+from templates.physics.cavities.cavitating_film import CavitatingFilm, RingSolution, measured, solved_ring
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.films.film_map import mapped_film, mapped_load
 from templates.physics.films.film_map_inverse import mapped_eccentricity
@@ -161,7 +161,7 @@ class Search:
     feed: Feed
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-    def balance(self) -> tuple[Place, SolvedRing] | None:
+    def balance(self) -> tuple[Place, RingSolution] | None:
         """Return the place and its film on the coarse mesh, by Newton's method.
 
         Steps are halved when it turns back.
@@ -194,7 +194,7 @@ class Search:
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
-    def solved(self, place: Place, mesh: tuple[int, int], near: SolvedRing | None) -> SolvedRing:
+    def solved(self, place: Place, mesh: tuple[int, int], near: RingSolution | None) -> RingSolution:
         """Return the film at a place, from one nearby if there is one that leads to it."""
         grooves = self.feed.placed(place.attitude)
         if near is not None:
@@ -225,7 +225,7 @@ class Search:
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
         return missing, np.array([max(along, -0.9 * place.eps), 0.0])
 
-    def extrapolated(self, place: Place, ring: SolvedRing) -> FedFilm:
+    def extrapolated(self, place: Place, ring: RingSolution) -> FedFilm:
         """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
 
         Load and peak converge with order 2, shear and flow, which see the front, with 1.

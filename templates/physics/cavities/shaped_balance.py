@@ -1,21 +1,22 @@
 """Static position of a journal in a bore of any shape, tilted or not, from its load.
 
-Newton's method on a mesh that stands still while it searches; then the mesh is graded to the place found,
-until both agree, and refined: 32, 64 and 128 intervals around. No step takes more than 70 % of the gap
-anywhere, and none is kept that leaves the force farther from the load. The last two meshes give Richardson's
-extrapolation, the last three an estimate of the error.
+Newton's method searches on a fixed mesh. Then the mesh is graded to the position found, until both agree, and
+refined to 32, 64 and 128 intervals around. No step reduces the gap by more than 70 % anywhere, and a step
+that moves the force away from the load is rejected. The last two meshes give Richardson's extrapolation, the
+last three an estimate of the error.
 
-A mesh of a lobed or grooved bore, graded to one lobe, exerts a force on a journal in the middle. Under a
-light load that force counts, and the meshes are not in their asymptote. So where the last step of refinement
-moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals follows. If the
-steps still do not fall as the square of the mesh, nothing is extrapolated: the finest mesh answers.
+A mesh of a lobed or grooved bore that is graded to one lobe exerts a spurious force on a centred journal.
+Under a light load that force matters, and the meshes are not yet in the asymptotic range. So if the last
+refinement moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals
+follows. If the changes still do not decrease with the square of the mesh size, the result of the finest mesh
+is returned without extrapolation.
 
-Oil comes in where `Feed` has grooves, which stand still relative to the load. Without grooves it comes along
-the joints of a lobed bore, and else along a line opposite the displacement of the journal's middle.
+Oil enters at the grooves of `Feed`, which stand still relative to the load. Without grooves it enters along
+the joints of a lobed bore, or in a plain bore along a line opposite the displacement of the journal's centre.
 
-A balance may lie on either side: supply pressure can lift the journal above the bearing's middle. So the
-search begins where the plain film would have the journal, then near the middle, then on the other sides. A
-balance without resistance to slow displacement, det K ≤ 0, is none.
+The equilibrium may lie on any side: supply pressure can lift the journal above the bearing's centre. So the
+search begins at the position of the plain film, then near the centre, then on the other sides. An equilibrium
+that does not resist slow displacement, det K ≤ 0, is rejected.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -41,6 +42,8 @@ SETTLED = 0.01
 """Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
 SAFETY = 1.25
 """What a stated error is over the change by refinement, after Roache 1994 [-]."""
+EXTRAPOLATED = 1.5
+"""What is stated more of film, place and pressure where they are extrapolated [-]."""
 OFF_ORDER = 0.5
 """Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
 LEAST_GAP = 1e-6
@@ -65,7 +68,7 @@ class NoBalance(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class Loaded:
+class BearingCase:
     """A bearing whose journal's place is wanted."""
 
     So: float
@@ -98,7 +101,7 @@ class Loaded:
 
 
 @dataclass(frozen=True)
-class Refined:
+class MeshEquilibrium:
     """The film that bears a load on one mesh."""
 
     film: ShapedFilm
@@ -111,10 +114,10 @@ class Refined:
 class Balance:
     """The film that bears a load, on the last meshes, coarse to fine."""
 
-    before: Refined | None
+    before: MeshEquilibrium | None
     """None where only two meshes bear it."""
-    coarse: Refined
-    fine: Refined
+    coarse: MeshEquilibrium
+    fine: MeshEquilibrium
 
     @property
     def is_settled(self) -> bool:
@@ -134,28 +137,34 @@ class Balance:
     def place_error(self) -> float:
         """Return how far the journal may lie from where it is said to, over its displacement [-]."""
         step, previous = (float(np.hypot(*step)) for step in self._steps)
-        return SAFETY * max(step, min(previous / 4, _SUDDEN * step)) / max(self.fine.lie.eps, 1e-300)
+        moved = max(step, min(previous / 4, _SUDDEN * step))
+        return self._trust * SAFETY * moved / max(self.fine.lie.eps, 1e-300)
 
     @property
     def gap_error(self) -> float:
         """Return how far the least gap may be off, relative [-]."""
-        return self._error(lambda refined: refined.gap, 2)
+        return self._trust * self._error(lambda refined: refined.gap, 2)
 
     @property
     def pressure_error(self) -> float:
         """Return how far the largest pressure may be off, relative [-]."""
-        return self._error(lambda refined: refined.film.peak[0], 2)
+        return self._trust * self._error(lambda refined: refined.film.peak[0], 2)
 
     @property
     def flow_error(self) -> float:
         """Return how far the side flow, which converges irregularly, may be off, relative [-]."""
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
-    def _error(self, value: Callable[[Refined], float], order: int) -> float:
+    def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
         """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
+
+    @property
+    def _trust(self) -> float:
+        """Return the factor on the error of what is extrapolated by the order of the last steps [-]."""
+        return EXTRAPOLATED if self.is_asymptotic else 1.0
 
     @property
     def _steps(self) -> tuple[Array, Array]:
@@ -164,7 +173,7 @@ class Balance:
         return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
 
-def balance(loaded: Loaded) -> Balance:
+def balance(loaded: BearingCase) -> Balance:
     """Find where the journal lies.
 
     Raises
@@ -181,7 +190,7 @@ def balance(loaded: Loaded) -> Balance:
     raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
-def _ladders(loaded: Loaded) -> list[Sequence[tuple[int, int]]]:
+def _ladders(loaded: BearingCase) -> list[Sequence[tuple[int, int]]]:
     """Return meshes to refine over.
 
     In a bore of lobes also without the coarsest, which may miss some of them.
@@ -189,7 +198,7 @@ def _ladders(loaded: Loaded) -> list[Sequence[tuple[int, int]]]:
     return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
 
 
-def _starts(loaded: Loaded) -> Iterator[Array]:
+def _starts(loaded: BearingCase) -> Iterator[Array]:
     """Yield the displacements from which to search."""
     eps = float(np.nan_to_num(mapped_eccentricity(np.array(loaded.So), np.array(loaded.ratio)), nan=0.999))
     eps = min(max(eps, SMALLEST), ECCENTRICITY_LIMIT)
@@ -203,7 +212,7 @@ def _starts(loaded: Loaded) -> Iterator[Array]:
             yield _inside(loaded, 0.6 * np.array([cos, sin]))
 
 
-def _inside(loaded: Loaded, e: Array) -> Array:
+def _inside(loaded: BearingCase, e: Array) -> Array:
     """Return the displacement, shortened until the journal is free everywhere."""
     for _ in range(60):
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
@@ -212,9 +221,9 @@ def _inside(loaded: Loaded, e: Array) -> Array:
     raise NoBalance("the tilted journal touches the bore in every position")
 
 
-def _refined(loaded: Loaded, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
+def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
     """Return the balance on the meshes, each begun at that of the coarser one, and on `FINER` if needed."""
-    films: list[Refined] = []
+    films: list[MeshEquilibrium] = []
     for mesh in meshes:
         films.append(
             stable_film(loaded, films[-1].lie.e if films else e, mesh, films[-1].film if films else None)
@@ -229,16 +238,18 @@ def _refined(loaded: Loaded, e: Array, meshes: Sequence[tuple[int, int]]) -> Bal
     return Balance(balanced.coarse, balanced.fine, finer)
 
 
-def stable_film(loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None) -> Refined:
+def stable_film(
+    loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
+) -> MeshEquilibrium:
     """Return the balance on one mesh, which resists slow displacement."""
     film, lie = _agreed(loaded, e, mesh, near)
     if np.linalg.det(film.linear[0]) <= 0:
         raise NoBalance("the equilibrium position found is not stable")
-    return Refined(film, lie, narrowest(loaded.bore, lie)[0])
+    return MeshEquilibrium(film, lie, narrowest(loaded.bore, lie)[0])
 
 
 def _agreed(
-    loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
     """Return the balance on a mesh graded to it, whose line of supply lies opposite it."""
     line = loaded.lie(e).attitude
@@ -257,7 +268,7 @@ def _agreed(
 
 
 def _searched(
-    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Array]:
     """Return Newton's method on one mesh."""
     film = _solved(loaded, e, nodes, pockets, near)
@@ -273,12 +284,12 @@ def _searched(
             return film, e
         film, e = _nearer(loaded, film, e, share * step, nodes, pockets)
         if float(film.H.nodes.min()) < LEAST_GAP:
-            raise NoBalance("the film that would support it is thinner than a millionth of the clearance")
+            raise NoBalance("the film that would carry the load is thinner than a millionth of the clearance")
     raise NoBalance("the search for the journal's position does not converge")
 
 
 def _nearer(
-    loaded: Loaded, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
+    loaded: BearingCase, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
 ) -> tuple[ShapedFilm, Array]:
     """Return the film after a step, which is halved until the force is nearer to the load than before."""
     wanted = np.array([loaded.So, 0.0])
@@ -295,7 +306,7 @@ def _nearer(
 
 
 def _solved(
-    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+    loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> ShapedFilm:
     """Return the film at a displacement, begun from a near one if there is any."""
     start = None if near is None else _carried(near, nodes)

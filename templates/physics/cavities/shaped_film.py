@@ -1,8 +1,9 @@
-"""A film whose gap is given, solved with either rupture, with force, couple, stiffness and damping.
+"""A film with a given gap, solved with either rupture condition: force, couple, stiffness and damping.
 
-`swift_stieber` ruptures where pressure and its gradient vanish and re-forms wherever motion brings oil;
-`conserving` ruptures and re-forms as the oil there is demands (`cavitation`). Everything is dimensionless as
-in `cavitating_film`; axes x along the load, y ahead of it in the sense of rotation.
+With `swift_stieber` the film ruptures where pressure and its gradient vanish and re-forms wherever motion
+brings oil; with `conserving` it ruptures and re-forms as mass conservation requires (`cavitation`).
+Everything is dimensionless as in `cavitating_film`; axes x along the load, y ahead of it in the sense of
+rotation.
 """
 
 from collections.abc import Callable

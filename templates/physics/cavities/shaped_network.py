@@ -1,7 +1,7 @@
-"""Balances of flow of a film whose gap is given, on a ring of nodes, and their change with the gap.
+"""Flow balances of a film with a given gap, on a ring of nodes, and their derivatives by the gap.
 
-As `cavitating_network`, but the gap may differ across as well: a tilted journal needs the whole width, a bore
-with lobes or a bell mouth half of it. Angles count from the load.
+As in `cavitating_network`, but the gap may also vary axially: a tilted journal needs the whole width, a bore
+with lobes or a bell mouth half of it. Angles are measured from the load.
 """
 
 from dataclasses import dataclass

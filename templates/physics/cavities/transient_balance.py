@@ -1,4 +1,4 @@
-"""Balances of flow of a moving film on a ring of nodes, and their linear solution: see `transient_film`."""
+"""Flow balances of a moving film on a ring of nodes, and their linear solution: see `transient_film`."""
 
 from dataclasses import dataclass
 

@@ -4,12 +4,13 @@ r"""The film of a moving journal with mass-conserving cavities, one step of time
     \nabla\cdot(H^3\nabla P) = 12\,\partial_\theta(\alpha H) + 12 w\,\partial_\varphi(\alpha H),\quad
     P \ge 0,\ 1-\alpha \ge 0,\ P(1-\alpha) = 0
 
-alpha is the fill of the gap, P = p psi²/(eta Omega) the pressure above that of the cavity, which is ambient;
-angles phi are fixed in the frame of the load, in which the gap is carried at w. The journal has no mass: at
-every step its place is solved for together with pressure and fill so that the film bears the load. Newton's
-method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more unknowns. Finite
-volumes on half the width, backward differences of second order in time, upwind in the cavities.
-Oil is fed at ambient pressure along the line of the widest gap, as by `cavitating_film` without grooves.
+alpha is the filled fraction of the gap, P = p psi²/(eta Omega) the pressure above the cavity pressure, which
+is ambient. Angles phi are fixed in the frame of the load, in which the gap rotates at w. The journal has no
+mass: at every step its position is solved for together with pressure and fill so that the film carries the
+load. Newton's method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more
+unknowns. Finite volumes on half the width, backward differences of second order in time, upwind in the
+cavities. Oil enters at ambient pressure along the line of the widest gap, as in `cavitating_film` without
+grooves.
 
 References
 ----------

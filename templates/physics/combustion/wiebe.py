@@ -1,8 +1,8 @@
-r"""Single-zone combustion with Wiebe's burnt share: pressure over a four-stroke cycle, adiabatic walls.
+r"""Single-zone combustion with Wiebe's burnt fraction: pressure over a four-stroke cycle, adiabatic walls.
 
-With one ratio of specific heats the first law integrates: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ from where
-the inlet closes, so the pressure is a quadrature and no differential equation. Angles count from suction;
-the cylinder fires at 360°.
+With one ratio of specific heats the first law integrates: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ from the
+closing of the inlet, so the pressure needs only a quadrature, not a differential equation. Angles are
+measured from the start of suction; the cylinder fires at 360°.
 
 References
 ----------
@@ -24,6 +24,7 @@ from templates.physics.engine.slider_crank import Motion
 
 FIRING = 2 * np.pi
 _PANELS = 240  # of the combustion, and of each part of the work
+_DEGREES, _CLOSER, _AROUND = 720, 5, 41  # angles of the first search for the peak, searches, angles of others
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -32,7 +33,7 @@ def _column(value: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Burning:
+class HeatRelease:
     """Wiebe's law: heat [J], start and duration [rad], efficiency constant and shape [1], for each point."""
 
     heat: Array
@@ -48,7 +49,7 @@ class Burning:
 
 
 @dataclass(frozen=True)
-class Closed:
+class ClosedCylinder:
     """A cylinder with closed valves: rod over crank radius, volumes [m³], pressure [Pa], angles [rad].
 
     `gamma` is the ratio of specific heats [1].
@@ -61,7 +62,7 @@ class Closed:
     closes: Array
     opens: Array
     gamma: Array
-    burning: Burning
+    burning: HeatRelease
 
     def volume(self, theta: Array) -> Array:
         """Return the volume [m³] at crank angles [rad], (…, K)."""
@@ -128,15 +129,15 @@ def _hermite(t: Array, ends: list[Array], slopes: list[Array]) -> Array:
 
 def closed_cylinder(
     n: Array, swept: Array, epsilon: Array, p_1: Array, closes: Array, opens: Array, gamma: Array,
-    burning: Burning,
-) -> Closed:  # fmt: skip
+    burning: HeatRelease,
+) -> ClosedCylinder:  # fmt: skip
     """Return the cylinder with its compression ratio."""
-    return Closed(n, swept, swept / (epsilon - 1), p_1, closes, opens, gamma, burning)
+    return ClosedCylinder(n, swept, swept / (epsilon - 1), p_1, closes, opens, gamma, burning)
 
 
 @on_paper("by quadrature of the first law with closed valves; constant in suction and exhaust")
 @units(None, "rad", "Pa", "Pa", returns="Pa")
-def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Array:
+def cycle_pressure(cylinder: ClosedCylinder, theta: Array, p_s: Array, p_e: Array) -> Array:
     """Return the pressure over the whole cycle [Pa], (…, K); from the exhaust's opening linear to 540°."""
     closes, opens = _column(cylinder.closes), _column(cylinder.opens)
     inside = np.clip(theta, closes, opens)
@@ -149,27 +150,27 @@ def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Ar
 
 
 @units(None, "rad", returns="1")
-def burnt_share(cylinder: Closed, theta: Array) -> Array:
+def burnt_share(cylinder: ClosedCylinder, theta: Array) -> Array:
     """Return the burnt share over the cycle [1], (…, K); 0 in the next suction."""
     return cylinder.burning.share(theta)
 
 
 @on_paper("by quadrature over the closed part of the cycle")
 @units(None, returns="J")
-def closed_work(cylinder: Closed) -> Array:
+def closed_work(cylinder: ClosedCylinder) -> Array:
     """Return the work of the gas with closed valves [J]."""
     return np.asarray(cylinder.work())[()]
 
 
 @units(None, returns="J")
-def released_heat(cylinder: Closed) -> Array:
+def released_heat(cylinder: ClosedCylinder) -> Array:
     """Return the heat that is burnt until the end of the duration [J]."""
     b = cylinder.burning
     return b.heat * -np.expm1(-b.a)
 
 
 @units(None, returns="J")
-def energy_change(cylinder: Closed) -> Array:
+def energy_change(cylinder: ClosedCylinder) -> Array:
     """Return the inner energy at the opening less that at the closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
     energy = [
         cylinder.pressure(_column(at)) * cylinder.volume(_column(at))
@@ -178,16 +179,46 @@ def energy_change(cylinder: Closed) -> Array:
     return ((energy[1] - energy[0])[..., 0] / (cylinder.gamma - 1))[()]
 
 
-@units("Pa", returns="Pa")
-def peak(p: Array) -> Array:
-    """Return the largest pressure of the curve [Pa]."""
-    return np.asarray(p.max(axis=-1))[()]
+@dataclass(frozen=True)
+class Peak:
+    """The largest pressure of a cycle [Pa] and its crank angle [rad]."""
+
+    pressure: Array
+    angle: Array
 
 
-@units("Pa", "rad", returns="rad")
-def peak_angle(p: Array, theta: Array) -> Array:
-    """Return the angle of the curve's largest pressure [rad]."""
-    return np.asarray(theta[np.argmax(p, axis=-1)])[()]
+def highest(cylinder: ClosedCylinder, p_s: Array, p_e: Array) -> Peak:
+    """Return the largest pressure of the cycle, whatever the angles at which the curve is returned.
+
+    It is sought at each degree and at the ends of the combustion, then nearer and nearer to the best of them.
+    """
+    b = cylinder.burning
+    shape = np.broadcast_shapes(*map(np.shape, (b.start, b.duration, cylinder.closes, p_s, p_e, b.heat)))
+    whole = np.broadcast_to(np.linspace(0, 2 * FIRING, _DEGREES, endpoint=False), (*shape, _DEGREES))
+    ends = [np.broadcast_to(_column(at), (*shape, 1)) for at in (b.start, b.start + b.duration)]
+    theta, reach = np.concatenate([whole, *ends], axis=-1), 2 * FIRING / _DEGREES
+    best, p = theta[..., :1], np.empty(0)
+    for _ in range(_CLOSER):
+        p = cycle_pressure(cylinder, theta, p_s, p_e)
+        theta = np.broadcast_to(theta, p.shape)
+        best = np.take_along_axis(theta, np.nan_to_num(p).argmax(axis=-1)[..., None], axis=-1)
+        theta = np.clip(best + reach * np.linspace(-1, 1, _AROUND), 0, 2 * FIRING)
+        reach *= 2 / (_AROUND - 1)
+    return Peak(np.asarray(p.max(axis=-1))[()], best[..., 0][()])
+
+
+@on_paper("the largest pressure of the cycle")
+@units(None, returns="Pa")
+def peak(highest: Peak) -> Array:
+    """Return the largest pressure [Pa]."""
+    return highest.pressure
+
+
+@on_paper("where the pressure is largest")
+@units(None, returns="rad")
+def peak_angle(highest: Peak) -> Array:
+    """Return its crank angle [rad]."""
+    return highest.angle
 
 
 @units("1", returns="rad")

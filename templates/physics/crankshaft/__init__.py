@@ -1,1 +1,1 @@
-"""Bearings of a whole crankshaft: their loads, determinate and on elastic supports."""
+"""Bearings of a whole crankshaft: their loads, statically determinate and on elastic supports."""

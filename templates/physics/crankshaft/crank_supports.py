@@ -1,11 +1,12 @@
 r"""Main bearings of an elastic crankshaft on elastic supports: the force method (three-moment equations).
 
-Reactions R = R0 + N λ: R0 balances the loads by the lever, the columns of N balance themselves, one for
-each main between the two outermost, across x and y. The displacements of the supports, −R/k, and those of
-the shaft, C R + C_l F + a rigid motion, agree: Nᵀ((C + 1/k)(R0 + N λ) + C_l F) = 0. So force and moment
-balance to rounding whatever the stiffness, from soft supports (a rigid shaft) to rigid ones.
+The reactions are R = R0 + N λ. R0 balances the loads by the lever rule; each column of N is a self-balanced
+set of reactions, one for each main between the two outermost, in x and in y. The displacements of the
+supports, −R/k, and those of the shaft, C R + C_l F + a rigid motion, agree: Nᵀ((C + 1/k)(R0 + N λ) + C_l F) =
+0. So force and moment balance to rounding at any stiffness, from soft supports (a rigid shaft) to rigid ones.
 
-All is in axes that turn with the shaft, in which its flexibility is constant; supports are alike in x and y.
+All quantities are in axes that rotate with the shaft, in which its flexibility is constant; supports are
+equal in x and y.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-r"""Loads of every main bearing from all loads on the crankshaft, and what balances them.
+r"""Loads of every main bearing from all loads on the crankshaft, and their balance.
 
-Each load is a complex force, x + i y, at a place along the shaft. *Determinate*: every load goes by the
-lever to the two mains of its span, an overhung one to those of the end span. On elastic supports see
-`crank_supports`.
+Each load is a complex force, x + i y, at a position along the shaft. *Determinate*: the lever rule
+distributes every load to the two mains of its span, an overhung load to those of the end span. For elastic
+supports see `crank_supports`.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def governing(forces: Vectors) -> Array:
         return np.array(np.nan)
     most = np.abs(forces).max(axis=-1)
     near = most >= most.max(axis=-1, keepdims=True) * (1 - 1e-9)
-    return np.asarray(np.argmax(near, axis=-1) + 1.0)[()]
+    return np.where(near.any(axis=-1), np.argmax(near, axis=-1) + 1.0, np.nan)[()]
 
 
 @units(None, None, returns="1")

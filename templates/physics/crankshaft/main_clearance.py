@@ -1,13 +1,14 @@
-r"""Main bearings with play: an elastic crankshaft on elastic supports that it touches beyond a clearance.
+r"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance.
 
-A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the middle of its bore
-where that exceeds the clearance c, else not at all. The bore's middle may lie off the line of the others.
+A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore
+where that exceeds the clearance c, otherwise not at all. The bore's centre may be offset from the line of the
+others.
 
-By the force method of `crank_supports`: reactions R = R₀ + B x, with sets B that balance themselves. The
-shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap,
-Bᵀ(d + R/k + c R/|R| − o) = 0. That is where a convex energy is least, and damped Newton steps find it, at all
-crank angles at once. |R| is √(R² + ε²), with ε lowered to 1e-7 of the loads: a main that touches nothing
-bears as little as that.
+By the force method of `crank_supports`, the reactions are R = R₀ + B x, with self-balanced sets B. The
+shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap, Bᵀ(d + R/k +
+c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all crank angles
+at once. |R| is √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without contact carries only that
+much.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def flexibilities(
 
 
 @dataclass(frozen=True)
-class Supported:
+class SupportReactions:
     """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative, (…, K)."""
 
     forces: Vectors
@@ -88,7 +89,7 @@ class Supported:
 
 def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
-) -> Supported:
+) -> SupportReactions:
     """Return the loads of mains with play; each point of the loads has the one shaft, or its own."""
     turn = np.exp(1j * theta)[..., None, :]
     shape = loads.forces.shape[:-2]
@@ -108,7 +109,7 @@ def with_play(
         ]
         split, left = np.array([one.forces for one in each]), np.array([one.residual for one in each])
         shape = shape if len(points) == len(shafts) else (len(shafts),)
-    return Supported(split.reshape(*shape, *split.shape[-2:]) * turn, left.reshape(*shape, theta.size))
+    return SupportReactions(split.reshape(*shape, *split.shape[-2:]) * turn, left.reshape(*shape, theta.size))
 
 
 class _Play:
@@ -122,16 +123,16 @@ class _Play:
         self.give = shaft.mains + np.diag(np.repeat(1 / supports.stiffness, 2))
         self.clearance = supports.clearance[:, None]
 
-    def reactions(self, forces: Vectors, offsets: Vectors) -> Supported:
+    def reactions(self, forces: Vectors, offsets: Vectors) -> SupportReactions:
         """Return reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
         parts = [
             self._some(forces[:, at : at + _COLUMNS], offsets[:, at : at + _COLUMNS])
             for at in range(0, forces.shape[-1], _COLUMNS)
         ]
         together = np.concatenate([part.forces for part in parts], axis=-1)
-        return Supported(together, np.concatenate([part.residual for part in parts]))
+        return SupportReactions(together, np.concatenate([part.residual for part in parts]))
 
-    def _some(self, forces: Vectors, offsets: Vectors) -> Supported:
+    def _some(self, forces: Vectors, offsets: Vectors) -> SupportReactions:
         rows, bores = _rows(forces), _rows(offsets)
         first = self.start @ rows
         free = self.give @ first + self.shaft.loads @ rows - bores
@@ -146,7 +147,7 @@ class _Play:
         moved = np.abs(free).max(axis=0) + np.max(self.clearance)
         left = np.abs(slope).max(axis=0, initial=0.0) / moved
         pairs = (first + B @ x).reshape(-1, 2, rows.shape[-1])
-        return Supported(pairs[:, 0] + 1j * pairs[:, 1], left)
+        return SupportReactions(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
         """Return Newton's method from x, damped by the energy at each crank angle for itself."""
@@ -223,7 +224,7 @@ def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Tru
 
 
 @units(None, None, returns="1")
-def law_residual(forces: Vectors, supported: Supported | None) -> Array:
+def law_residual(forces: Vectors, supported: SupportReactions | None) -> Array:
     """Return the residual of the supports' law, relative; 0 below 1e-8, none without mains."""
     if not np.ndim(forces):
         return _NONE

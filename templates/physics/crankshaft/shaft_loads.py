@@ -1,4 +1,4 @@
-"""Loads on a whole crankshaft: rods, unbalances of throws and webs; rules about its inputs."""
+"""Loads on a whole crankshaft from rods and unbalances of throws and webs, and rules about its inputs."""
 
 from __future__ import annotations
 

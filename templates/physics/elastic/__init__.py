@@ -1,1 +1,1 @@
-"""Films whose bearing gives way: liner, housing, and oil that thickens under pressure."""
+"""Films in elastic bearings: liner, housing, and oil that thickens under pressure."""

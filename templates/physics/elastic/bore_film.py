@@ -1,13 +1,15 @@
-r"""The film of a journal bearing in a bore of modes, by the balance of `soft_balance`.
+r"""The film of a journal bearing whose bore deforms in modes, by the equilibrium of `soft_balance`.
 
 .. math:: H = 1 - \varepsilon\cos\phi + l\,P + \sum_{i,j} m_i\,C_{ij}\,a_j + \sum_{n>9} g_n\,(\ldots),\quad
     a_j = \overline{m_j P}
 
-m are the modes of `bore_modes`, a_j the mean of pressure times mode over the bore, g_n those of a half plane.
+m are the modes of `bore_modes`, a_j the mean of pressure times mode over the bore, g_n the compliances of a
+half plane.
 
-A ring is alike all around, a housing is not: its modes count from the block, the film from the displacement
-of the journal. The angle between the two, the turn, is that from block to load plus the attitude angle, which
-the film decides. So the balance is solved at a turn, and secants seek the one that its attitude confirms.
+A ring is equal in all directions, a housing is not: its modes are measured from the block, the film from the
+displacement of the journal. The angle between the two, the turn, is the angle from block to load plus the
+attitude angle, which the film determines. So the equilibrium is solved at a trial turn, and a secant method
+finds the turn that agrees with its attitude.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from templates.core.arrays import Array, Mask
 from templates.physics.elastic.bore_modes import BENDING, MODES, modes_along, modes_around
 from templates.physics.elastic.soft_balance import (
     MESHES,
-    Balanced,
+    FilmEquilibrium,
     NoBalance,
     carried,
     rigid_balance,
@@ -122,7 +124,7 @@ class BoreFilm(SoftFilm):
 
 
 def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, to_load: float) -> list[
-    tuple[Balanced, Balanced]
+    tuple[FilmEquilibrium, FilmEquilibrium]
 ]:  # fmt: skip
     """Return the films of a load in a rigid and in a soft bore on each of `MESHES`.
 
@@ -142,8 +144,8 @@ def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, t
     NoBalance
         If no film was found.
     """
-    pairs: list[tuple[Balanced, Balanced]] = []
-    soft: Balanced | None = None
+    pairs: list[tuple[FilmEquilibrium, FilmEquilibrium]] = []
+    soft: FilmEquilibrium | None = None
     for mesh in MESHES:
         rigid = rigid_balance(So, ratio, eps, *mesh)
         if soft is None:
@@ -167,7 +169,7 @@ def attitude(film: SoftFilm) -> float:
     return float(np.arctan2(-ahead, along))
 
 
-def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
+def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibrium:
     """Return the film whose attitude is the one at which its bore was turned, from one nearby.
 
     Raises
@@ -189,7 +191,7 @@ def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
     raise NoBalance("the direction of the journal does not converge")
 
 
-def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
+def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> FilmEquilibrium:
     """Return the balance after a step of the turn, or after as much of it as settles."""
     for _ in range(_SHORTER):
         try:
@@ -199,7 +201,7 @@ def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
     return _turned(found, So, turn + step)
 
 
-def _turned(found: Balanced, So: float, turn: float) -> Balanced:
+def _turned(found: FilmEquilibrium, So: float, turn: float) -> FilmEquilibrium:
     """Return the balance at another turn, on a mesh graded to its gap."""
     film = replace(found.film, softness=replace(_softness(found), turn=turn))
     film = replace(film, eps=film.eps + float(found.film.H.min() - film.H.min()))
@@ -209,7 +211,7 @@ def _turned(found: Balanced, So: float, turn: float) -> Balanced:
     return carried(after, So, *(size - 1 for size in after.film.P.shape))
 
 
-def _softness(found: Balanced) -> BoreSoftness:
+def _softness(found: FilmEquilibrium) -> BoreSoftness:
     softness = found.film.softness
     assert isinstance(softness, BoreSoftness)
     return softness

@@ -3,7 +3,7 @@
     elastic    the liner as columns, and behind it the bore as a matrix of modes with a half plane above them
 
 As at the other soft levels, the change from stiff to soft is solved on 64 × 8 and 128 × 16 intervals,
-extrapolated, and applied to the film of the map. A bore that does not give way has that film exactly.
+extrapolated, and applied to the film of the map. A rigid bore has that film exactly.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from templates.physics.elastic.bore_modes import (
     modes_along,
     modes_around,
 )
-from templates.physics.elastic.compliance import HARMONICS
 from templates.physics.elastic.elastic_journal import (
     HOUSING,
     LEVELS,
@@ -35,6 +34,7 @@ from templates.physics.elastic.elastic_journal import (
     Elasticity,
     ElasticJournalFilm,
     elastic_film_at,
+    mean_pressure,
     measured,
     neglected_deformation,
 )
@@ -189,7 +189,7 @@ def neglected_in_bore(
     p_max, load, radius, width, bore_width, peak = np.broadcast_arrays(
         *(np.asarray(v, float) for v in (p_max, load, radius, width, bore_width, peak))
     )
-    around = _bump(p_max, load, radius, width)
+    around = mean_pressure(p_max, load, radius, width)
     share = width / bore_width
     along = np.stack([share, share * np.sqrt(5) * (0.3 * share**2 - 0.5)], axis=-1)  # of 3/2 (1 − zeta²)
     turned = np.where(np.isfinite(peak), peak, 0.0)[..., None] * np.arange(1, HIGHEST + 1)
@@ -208,15 +208,3 @@ def neglected_in_bore(
     above = (around * half_plane(inner, modulus, poisson)).sum(axis=-1)
     of_liner = liner * p_max if level == RIGID else 0 * p_max
     return np.asarray(of_liner + deepest + above + 0 * p_max)[()]
-
-
-def _bump(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
-    """Return the harmonics (..., 41) of the mean pressure across, 2/3 of the largest, about its peak [Pa]."""
-    mean = np.asarray(2 / 3 * p_max)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)
-    n = np.arange(HARMONICS + 1)
-    angle = np.asarray(half)[..., None] * n
-    bump = np.sinc(angle / np.pi) + np.sinc(angle / np.pi + 1) / 2 + np.sinc(angle / np.pi - 1) / 2
-    share = np.where(n == 0, 0.5, 1.0) * np.asarray(mean * half / np.pi)[..., None] * bump
-    return np.nan_to_num(share, nan=0.0)

@@ -1,15 +1,15 @@
-r"""Displacement of a bore under an oil film, as a matrix between modes of the pressure.
+r"""Displacement of a bore under an oil film, as a matrix between pressure modes.
 
-A mode is a pressure, and a radial displacement, over the whole bore: 1, cos n theta or sin n theta up to
-n = 9, even along the bore or times Legendre's second polynomial, each with a mean square of 1. C_ij is the
-displacement in mode i under a unit pressure in mode j. theta counts from the block of a housing, or the shank
-of a rod.
+A mode is a distribution of pressure, or of radial displacement, over the whole bore: 1, cos n theta or sin n
+theta up to n = 9, uniform along the bore or times Legendre's second polynomial, each with a mean square of 1.
+C_ij is the displacement in mode i under a unit pressure in mode j. theta is measured from the block of a
+housing, or the shank of a rod.
 
-Work is mutual (Betti), so C is symmetric. No pressure gains energy, so C has no negative eigenvalue. Rows c1
-and s1 are a motion of the bore as a whole. A film sees that as eccentricity, so these rows are left out;
-their columns stay, for a pressure in c1 or s1 bends the bore too.
+C is symmetric (Betti's theorem). No pressure gains energy, so C has no negative eigenvalue. Rows c1 and s1
+are a motion of the whole bore, which is eccentricity for the film, so these rows are left out. Their columns
+stay, because a pressure in c1 or s1 also bends the bore.
 
-Above n = 9 the bore gives way as a half plane does, 2 (1 − nu²) R/(E n), without coupling.
+Above n = 9 the bore deforms like a half plane, 2 (1 − nu²) R/(E n), without coupling.
 
 References
 ----------

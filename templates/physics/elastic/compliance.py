@@ -8,8 +8,8 @@ Lamé's solution. For n ≥ 2 Airy's function is Michell's
 
 .. math:: (A r^n + B r^{n+2} + C r^{-n} + D r^{2-n})\cos n\theta
 
-n = 1 carries the load itself. What supports the ring against it moves the bore as a whole, and in the gap
-that is eccentricity. So it is left out here, and eccentricity is that of the displaced bore.
+n = 1 carries the load itself. The supports of the ring against it move the whole bore, which is eccentricity
+in the gap. So n = 1 is left out here, and the eccentricity is relative to the displaced bore.
 
 References
 ----------

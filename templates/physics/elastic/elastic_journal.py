@@ -1,12 +1,13 @@
-r"""One journal bearing under static load whose liner, housing and oil give way, at every level.
+r"""A journal bearing under static load with elastic liner and housing, at every level.
 
     rigid    the converged Swift–Stieber film of `film_map`
     liner    the same with the liner as columns
     housing  the same with the liner, and with the housing as a ring that feels the mean pressure across
 
-What elasticity changes is solved by finite volumes twice on one mesh, stiff and soft, and the change is
-applied to the film of the map: so a stiff bearing has that film exactly, and the mesh errs in the change
-alone. 64 × 8 and 128 × 16 intervals are extrapolated. Everything is dimensionless as in `static_journal`.
+The effect of elasticity is the difference of two finite-volume solutions on the same mesh, stiff and soft,
+and is applied to the film of the map. So a stiff bearing has that film exactly, and the mesh error affects
+only the difference. Results of 64 × 8 and 128 × 16 intervals are extrapolated. Everything is dimensionless as
+in `static_journal`.
 """
 
 from dataclasses import dataclass, fields
@@ -18,7 +19,7 @@ from templates.core.language.declare import on_paper, units
 from templates.physics.elastic.compliance import HARMONICS, ring_compliance
 from templates.physics.elastic.soft_balance import (
     MESHES,
-    Balanced,
+    FilmEquilibrium,
     NoBalance,
     carried,
     rigid_balance,
@@ -176,7 +177,7 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 
 def _changes(So: float, ratio: float, softness: Softness, eps: float) -> list[dict[str, float]]:
     """On each mesh: logarithms of ratios, differences of angles, deformation and thickening."""
-    soft: Balanced | None = None
+    soft: FilmEquilibrium | None = None
     changes = []
     for mesh in MESHES:
         rigid = rigid_balance(So, ratio, eps, *mesh)
@@ -246,6 +247,18 @@ def wall_ratio(outer: Array, inner: Array) -> Array:
     return np.where(np.isnan(outer), 1.0, outer / inner)[()]
 
 
+def mean_pressure(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
+    """Return the harmonics (..., 41) of the mean pressure across, 2/3 of the largest, about its peak [Pa]."""
+    mean = np.asarray(2 / 3 * p_max)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)
+    n = np.arange(HARMONICS + 1)
+    angle = np.asarray(half)[..., None] * n
+    bump = np.sinc(angle / np.pi) + np.sinc(angle / np.pi + 1) / 2 + np.sinc(angle / np.pi - 1) / 2
+    share = np.where(n == 0, 0.5, 1.0) * np.asarray(mean * half / np.pi)[..., None] * bump
+    return np.nan_to_num(share, nan=0.0)
+
+
 @on_paper("estimated for a pressure that falls as a parabola to the ends and as a cosine squared around")
 @units(None, "Pa", "N", "m", "m", "m/Pa", "m", "m", "Pa", "1", returns="m")
 def neglected_deformation(
@@ -276,14 +289,8 @@ def neglected_deformation(
     of_liner = liner * p_max if level == RIGID else 0 * p_max
     if level == HOUSING:
         return np.asarray(of_liner)[()]
-    mean = 2 / 3 * p_max
-    with np.errstate(invalid="ignore", divide="ignore"):
-        half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)
-    n = np.arange(HARMONICS + 1)
-    angle = np.asarray(half)[..., None] * n
-    bump = np.sinc(angle / np.pi) + np.sinc(angle / np.pi + 1) / 2 + np.sinc(angle / np.pi - 1) / 2
-    share = np.where(n == 0, 0.5, 1.0) * np.asarray(mean * half / np.pi)[..., None] * bump
-    of_ring = (share * ring_compliance(inner, outer, modulus, poisson)).sum(axis=-1)
+    around = mean_pressure(p_max, load, radius, width)
+    of_ring = (around * ring_compliance(inner, outer, modulus, poisson)).sum(axis=-1)
     return np.asarray(of_liner + np.nan_to_num(of_ring, nan=0.0) + 0 * p_max)[()]
 
 

@@ -1,11 +1,12 @@
-r"""The film under a load with elastic bearing and pressure-dependent oil, by one Newton method for all.
+r"""The film under a load with an elastic bearing and pressure-dependent oil, by a single Newton method.
 
-Unknown are the pressure at the nodes, which of them are in the film (P ≥ 0, loss ≥ 0, P · loss = 0), and the
-eccentricity. The ring couples every node with every other, but by few harmonics, so its part of the matrix
-is of low rank: one sparse factorisation a step with as many right sides (Woodbury's formula).
+The unknowns are the pressures at the nodes, the nodes that belong to the film (P ≥ 0, loss ≥ 0, P · loss =
+0), and the eccentricity. The ring couples all nodes with each other, but through few harmonics, so its part
+of the matrix has low rank: each step takes one sparse factorisation with as many right-hand sides (Woodbury's
+formula).
 
-The search begins at the rigid film and lets the bearing give way by shares, each begun where the last one
-ended; a share that does not settle is halved. The mesh is graded to the least gap found.
+The search begins at the rigid film and increases the compliance in steps, each starting from the previous
+solution; a step that does not converge is halved. The mesh is graded to the least gap found.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +39,7 @@ class NoBalance(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class Balanced:
+class FilmEquilibrium:
     """A film that bears the load, and which of its nodes carry pressure."""
 
     film: SoftFilm
@@ -49,7 +50,7 @@ class Balanced:
     """Factorisations, of all shares and meshes so far."""
 
 
-def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> Balanced:
+def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> FilmEquilibrium:
     """Return the rigid film of a load on a mesh graded to an eccentricity near its own."""
     mesh = ring_mesh(eps, ratio, around, across)
     stiff = Softness(0.0, np.zeros(1))
@@ -58,7 +59,7 @@ def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int)
     return settled(film, solved.film, So, 1 - eps)
 
 
-def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
+def soft_balance(So: float, softness: Softness, rigid: FilmEquilibrium) -> FilmEquilibrium:
     """Return the film of an elastic bearing, from the rigid film under the same load.
 
     Raises
@@ -85,7 +86,7 @@ def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
     return at
 
 
-def _shared(So: float, softness: Softness, at: Balanced) -> Balanced:
+def _shared(So: float, softness: Softness, at: FilmEquilibrium) -> FilmEquilibrium:
     """Return one share, on the mesh there is, and on one graded to the gap that it makes."""
     film = replace(at.film, softness=softness, modes=modes(at.film.mesh, softness.ring))
     film = replace(film, eps=_opened(film, at.film))
@@ -102,7 +103,7 @@ def _opened(film: SoftFilm, before: SoftFilm) -> float:
     return film.eps + float(film.H.min() - before.H.min())
 
 
-def carried(found: Balanced, So: float, around: int, across: int) -> Balanced:
+def carried(found: FilmEquilibrium, So: float, around: int, across: int) -> FilmEquilibrium:
     """Return the balance on a mesh of this number of intervals that is graded to its gap."""
     film, own = found.film, found.film.mesh
     least = min(max(float(film.H.min()), 1e-7), 1.0)
@@ -114,7 +115,7 @@ def carried(found: Balanced, So: float, around: int, across: int) -> Balanced:
     return settled(there, P > 0, So, least, found.steps)
 
 
-def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int = 0) -> Balanced:
+def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int = 0) -> FilmEquilibrium:
     """Return Newton's method on one mesh.
 
     Raises
@@ -138,7 +139,7 @@ def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int =
             break
         done = share == 1 and change < _ACCURACY and abs(deps) < _ACCURACY * least
         if done and np.array_equal(moved, inside):
-            return Balanced(after, inside, graded, steps + step + 1)
+            return FilmEquilibrium(after, inside, graded, steps + step + 1)
         film, inside = after, moved
     raise NoBalance("the film does not converge")
 

@@ -1,4 +1,4 @@
-r"""The Reynolds equation of a film whose gap and oil give way to its own pressure, and its slopes.
+r"""The Reynolds equation of a film whose gap and oil depend on its own pressure, and its derivatives.
 
 .. math::
     \partial_\phi\left(\frac{H^3}{\bar\eta}\partial_\phi P\right)
@@ -10,8 +10,8 @@ ring's compliances. The oil thickens after Roelands,
 
 .. math:: \ln\bar\eta = L\,[(1 + s P)^Z - 1]
 
-Balances of flow in finite volumes, those of `film_equations` where nothing gives way: the conductance
-between two nodes takes the deformation and the pressure midway between them as their mean.
+The flow balances in finite volumes equal those of `film_equations` for a rigid bearing: the conductance
+between two nodes uses the means of their deformations and pressures.
 
 References
 ----------

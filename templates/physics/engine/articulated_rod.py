@@ -1,17 +1,17 @@
-r"""Articulated rods: a master rod carries the rods of other cylinders on pins of its big end.
+r"""Articulated rods: a master rod carries the rods of other cylinders on pins in its big end.
 
-Vectors across the shaft are complex. In the axes of the master's cylinder its crankpin stands at
-r e^{iα}, its rod leans by φ, and the pin of an articulated rod is at Q = r e^{iα} + ρ e^{i(γ−φ)}: ρ the
-articulation radius, γ its angle from the axis of the master rod, in the sense of rotation. Turned into the
-axes of its own cylinder, Q takes the place of the crankpin; all else is a slider-crank. Primes are
-derivatives by the crank angle.
+Vectors across the shaft are complex. In the axes of the master's cylinder its crankpin stands at r e^{iα},
+its rod leans by φ, and the pin of an articulated rod is at Q = r e^{iα} + ρ e^{i(γ−φ)}: ρ the articulation
+radius, γ its angle from the axis of the master rod, in the sense of rotation. Rotated into the axes of its
+own cylinder, Q takes the place of the crankpin; the rest is a slider-crank. Primes are derivatives by the
+crank angle.
 
-The rod's force F on its pin turns the master rod, which the master's wall has to hold: with
-N = −Im((Q−P)* F)/(l cos φ), P the crankpin, the crankpin bears F + iN more, the wall −N.
+The rod's force F on its pin exerts a moment on the master rod, which the master's cylinder wall must react:
+with N = −Im((Q−P)* F)/(l cos φ), P the crankpin, the load on the crankpin increases by F + iN, and that on
+the wall by −N.
 
-References
-----------
-Formulas by geometry; their check is the energy: torque + dE/d(alpha) = 0 with E of the rigid bodies.
+References ---------- The formulas follow from geometry; the energy checks them: torque + dE/d(alpha) = 0 with
+E of the rigid bodies.
 """
 
 from __future__ import annotations

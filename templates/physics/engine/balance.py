@@ -1,10 +1,10 @@
-r"""Balance of a crankshaft with any number of equal cylinders: what their rotation and stroke leave over.
+r"""Balance of a crankshaft with any number of equal cylinders: remaining forces and couples.
 
-The crank of a cylinder stands at −(firing interval) · (its place in the firing order, from 0), seen when the
-first to fire is at top dead centre, plus the angle of its bank. Phasors are complex: x real, y imaginary, in
-units of mass times omega² r. A piston along its bank's axis is the sum of a phasor that turns with the crank
-and one that turns against it; for cylinders in line the two are equal, and the sum stays in the plane of the
-cylinders. A V engine differs by its bank angles alone.
+The crank of a cylinder is at −(firing interval) · (its place in the firing order, from 0) plus the angle of
+its bank, when the first cylinder to fire is at top dead centre. Phasors are complex: x real, y imaginary, in
+units of mass times omega² r. The force of a piston along its bank's axis is the sum of a phasor that turns
+with the crank and one that turns against it; for cylinders in line the two are equal, and the sum stays in
+the plane of the cylinders. A V engine differs only by its bank angles.
 
 References
 ----------

@@ -3,9 +3,9 @@ r"""Forces in a crank mechanism at constant speed, after Rao & Singh (DYREMI), w
 x points from the crankshaft to the cylinder head, y to where the crankpin moves first; F_ij acts from body i
 on body j: 1 frame, 2 crank, 3 rod, 4 piston. No gravity, no friction.
 
-The rod is two masses, statically equivalent, at its ends; `excess`, the inertia that these have too much of,
-makes it a rigid body: a couple `excess` · d²phi/dt², which the cylinder wall and the main bearing bear. With
-an excess of 0 the forces are those of DYREMI.
+The rod is replaced by two statically equivalent masses at its ends. Their moment of inertia exceeds that of
+the rigid rod by `excess`; the correction is a couple `excess` · d²phi/dt², which the cylinder wall and the
+main bearing carry. With an excess of 0 the forces are those of DYREMI.
 
 References
 ----------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -11,9 +10,8 @@ import numpy as np
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.engine.engine_layout import TURN, Layout
-from templates.physics.engine.gas_checks import burns_before_exhaust, pressure_rises
 from templates.physics.engine.gas_cycle import AT_DEAD_CENTRES, Charge, Polytropic, Valves, ideal, wrapped
-from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycle, one_cycle
 from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
 
 _HALVINGS = 60
@@ -26,6 +24,14 @@ class OffsetPolytropic(Polytropic):
     """The chain of events with the volumes of an offset crank; angles count from top dead centre."""
 
     crank: OffsetCrank
+
+    def in_every_cylinder(self, holds: Truth) -> Truth:
+        """Return whether something holds in every cylinder, of which the last axis is."""
+        return np.all(holds, axis=-1)
+
+    def greatest(self, value: Array) -> Array:
+        """Return the greatest value of all cylinders, of which the last axis is."""
+        return np.max(value, axis=-1)
 
     def way(self, angle: Array | float) -> Array:
         """Return the way of each piston from its highest place at an angle, over its stroke."""
@@ -52,7 +58,7 @@ class OffsetPolytropic(Polytropic):
 
 
 @dataclass(frozen=True)
-class OffsetTabulated(Tabulated):
+class OffsetTabulatedCycle(TabulatedCycle):
     """A table of pressures with the volumes of an offset crank; angles count from top dead centre."""
 
     crank: OffsetCrank
@@ -86,7 +92,7 @@ def engine_gas(
     if name == "none":
         return NoGas(np.asarray(p_c)[..., None])
     if name == "table":
-        return OffsetTabulated(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle, crank)
+        return OffsetTabulatedCycle(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle, crank)
     if name != "four_stroke":
         charge, valves = ideal(name, charge), AT_DEAD_CENTRES
     each = Charge(*_for_each(charge))
@@ -135,17 +141,3 @@ def gas_force(p: Array, p_c: Array, factor: Array, bore: Array) -> Array:
     """Force of the gas on each piston towards the crank [N], (…, N, K); `factor` multiplies its pressure."""
     area = np.atleast_1d(np.pi * bore**2 / 4)[..., None]
     return area * (np.atleast_1d(factor)[..., None] * p - np.asarray(p_c)[..., None, None])
-
-
-@units(None, None, returns="1")
-def burns_in_time(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Return whether combustion ends before the exhaust opens in every cylinder."""
-    holds = np.asarray(burns_before_exhaust(name, gas))
-    return np.all(holds, axis=-1) if holds.ndim else bool(holds)
-
-
-@units(None, returns="1")
-def combustion_raises(gas: GasCycle) -> Truth:
-    """Return whether combustion begins at or above the compression's end pressure in every cylinder."""
-    holds = np.asarray(pressure_rises(gas))
-    return np.all(holds, axis=-1) if holds.ndim else bool(holds)

@@ -1,9 +1,9 @@
-r"""Angles of a crankshaft's pins and its firing angles: each from the other, for any layout.
+r"""Angles of a crankshaft's pins and its firing angles, each computed from the other, for any layout.
 
 Seen from the flywheel, x is up, y left, and the shaft turns from x to y; a reference line on the shaft stands
-at theta. Cylinder j stands at its bank angle beta_j from x, its pin at psi_j from the line, and it fires at
-theta = phi_j. Its crank angle is alpha_j = theta + psi_j − beta_j, and at top dead centre that of its own
-mechanism, so psi_j = beta_j − phi_j + top_j (mod 360°).
+at theta. Cylinder j is at its bank angle beta_j from x, its pin at psi_j from the line, and it fires at theta
+= phi_j. Its crank angle is alpha_j = theta + psi_j − beta_j. At top dead centre it equals top_j, the angle of
+its own mechanism, so psi_j = beta_j − phi_j + top_j (mod 360°).
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
     """
     if cycle < 1.5 * TURN:
         return base
-    if not listed(order) or np.ndim(order) > 1:
+    if not listed(order) or np.ndim(order) > 1 or not np.isfinite(base).all():
         return np.full(base.size, np.nan)
     places = np.rint(order).astype(int) - 1
     if sorted(places) != list(range(base.size)):

@@ -1,4 +1,4 @@
-"""Torque of many cylinders, its swing of energy, and the flywheel that evens it out."""
+"""Torque of many cylinders, its energy fluctuation, and the flywheel that evens it out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Check the data of a gas cycle for completeness and order, for rules of templates."""
+"""Check the data of a gas cycle for completeness and order, for use in rules of templates."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from templates.physics.numerics.crank_grid import angles_in
 
 CYCLES = ("none", "otto", "diesel", "four_stroke", "table")
 POLYTROPIC, GIVEN_PEAK = ("otto", "diesel", "four_stroke"), ("otto", "four_stroke")
+GAUGE = "the crankcase has 0 bar: gas pressures count from it, as gauge pressures"
 FEWEST = 8  # points of a table
 MOST_VALUES = 2_000_000  # of a curve over all points
 _QUARTER = np.pi / 2
-_ABSOLUTE, _AMBIENT = 0.3e5, 0.5e5  # pressures that only an absolute scale has in a table, in a crankcase
 
 
 @units(None, None, None, returns="1")
@@ -45,15 +45,18 @@ def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
     """Return whether combustion ends before the exhaust opens; other rules report missing inputs."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
-    return ~(cycle.v_cut >= cycle.v_opened)
+    return cycle.in_every_cylinder(~(cycle.v_cut >= cycle.v_opened))
 
 
-@units(None, returns="1")
-def pressure_rises(gas: GasCycle) -> Truth:
-    """Return whether combustion does not begin below the pressure of the compression's end."""
-    if not isinstance(gas, Polytropic):
-        return True
-    return gas.charge.combustion >= gas.p_compressed * (1 - 1e-12)
+@units(None, None, returns="Pa")
+def end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
+    """Return the pressure [Pa] at the end of compression, rounding aside; 0 where nothing needs it.
+
+    Of several cylinders it is the greatest.
+    """
+    if name not in GIVEN_PEAK or not isinstance(cycle := gas(), Polytropic):
+        return np.asarray(0.0)
+    return cycle.greatest(cycle.p_compressed) * (1 - 1e-12)
 
 
 @units(None, "rad", "Pa", returns="1")
@@ -83,8 +86,9 @@ def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 @units(None, "1", "rad", "Pa", returns="1")
 def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Return whether a point that repeats the first, a cycle later, repeats its pressure."""
-    if name != "table" or np.ndim(angle) == 0 or not full_cycle(name, strokes, angle, p):
-        return True
+    given = name == "table" and np.ndim(angle) > 0 and np.ndim(p) > 0
+    if not given or not angles_rise(name, angle, p) or not full_cycle(name, strokes, angle, p):
+        return True  # another rule reports it
     repeats = np.isclose(angle[-1] - angle[0], np.pi * strokes, rtol=1e-9)
     return ~repeats | np.isclose(p[..., 0], p[..., -1], rtol=1e-6)
 
@@ -95,16 +99,22 @@ def crankcase_is_filled(name: str, p_c: Array) -> Truth:
     return np.logical_or(name not in POLYTROPIC, p_c > 0)
 
 
-@units(None, "Pa", "Pa", returns="1")
-def pressures_are_of_one_kind(name: str, p: Array, p_c: Array) -> Truth:
-    """Return whether a table's pressures and the crankcase's [Pa] may both be absolute, or both gauge.
+@units(None, "Pa", returns="Pa")
+def lowest_of_table(name: str, p: Array) -> Array:
+    """Return the lowest pressure [Pa] of a table; 0, which both scales have, where there is none."""
+    return np.min(p, axis=-1) if name == "table" and np.ndim(p) else np.asarray(0.0)
 
-    A table that never falls below 0.3 bar is taken for absolute, one that falls below 0 for gauge.
-    """
-    if name != "table" or np.ndim(p) == 0:
-        return True
-    lowest = np.min(p, axis=-1)
-    return ~(((lowest >= _ABSOLUTE) & (p_c == 0)) | ((lowest < 0) & (p_c >= _AMBIENT)))
+
+@units(returns="Pa")
+def absolute_table() -> float:
+    """Return the lowest pressure [Pa] from which a table is taken for absolute; one below 0 is gauge."""
+    return 0.3e5
+
+
+@units(returns="Pa")
+def absolute_crankcase() -> float:
+    """Return the pressure [Pa] from which a crankcase's is taken for absolute; 0 is gauge."""
+    return 0.5e5
 
 
 @units(None, "1", "rad", returns="1")

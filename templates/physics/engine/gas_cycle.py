@@ -1,19 +1,18 @@
-r"""Gas cycles of engines: ideal Otto, ideal Diesel, practical four-stroke, tabulated; for each the work.
+r"""Gas cycles of engines and their work: ideal Otto, ideal Diesel, practical four-stroke, tabulated.
 
-One chain of events serves the first three. Between inlet opening and exhaust closing, in either order,
-the pressure goes linearly in crank angle from the exhaust's to the suction's; suction at
-constant pressure until the inlet closes; a polytrope to top dead centre; combustion at constant pressure
-until the volume is `cutoff` times that of the dead centre; a polytrope until the exhaust opens; linearly to
-the exhaust's pressure at bottom dead centre (at once if it opens later); exhaust at constant pressure.
+The first three share one chain of events. Between inlet opening and exhaust closing, in either order, the
+pressure changes linearly in crank angle from exhaust to suction pressure. It is constant until the inlet
+closes, follows a polytrope to top dead centre, stays constant during combustion until the volume is `cutoff`
+times that at dead centre, and follows a polytrope until the exhaust opens. Then it falls linearly to the
+exhaust pressure at bottom dead centre (at once if the exhaust opens later), and stays constant during
+exhaust.
 
-Otto is this with cutoff 1, Diesel with the combustion at the end pressure of the compression, both with
-valves that open and close at dead centres. In two strokes the charge changes at bottom dead centre.
-Polytropes need absolute pressures.
+Otto has cutoff 1, and Diesel burns at the final compression pressure; both have valves that open and close at
+dead centres. In two-stroke engines the charge changes at bottom dead centre. Polytropes need absolute
+pressures.
 
-References
-----------
-S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, names the parameters of the practical
-cycle; what the pressure does while valves open and overlap is said above, as the source does not.
+References ---------- S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, names the parameters
+of the practical cycle, but not the pressure while valves open and overlap, which is defined above.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Array
-from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.core.arrays import Array, Truth
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycle, one_cycle
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
 _SAME = 1e-9
@@ -71,6 +70,14 @@ class Polytropic(GasCycle):
     inlet_closes: Array
     exhaust_opens: Array
     emptied: float
+
+    def in_every_cylinder(self, holds: Truth) -> Truth:
+        """Return whether something holds in every cylinder; here there is one."""
+        return holds
+
+    def greatest(self, value: Array) -> Array:
+        """Return the greatest value of all cylinders; here there is one."""
+        return value
 
     def pressure(self, theta: Array, travel: Array) -> Array:
         """Return the pressure by the event in which each angle lies."""
@@ -207,7 +214,7 @@ def gas_cycle(
     if name == "none":
         return NoGas(np.asarray(p_c))
     if name == "table":
-        return Tabulated(*one_cycle(angle, p, cycle), n, cycle)
+        return TabulatedCycle(*one_cycle(angle, p, cycle), n, cycle)
     if name != "four_stroke":
         charge, valves = ideal(name, charge), AT_DEAD_CENTRES
     if strokes == 2:

@@ -1,4 +1,4 @@
-r"""Results of every gas cycle, and the simplest two: no gas, and a pressure tabulated over the angle.
+r"""Results of every gas cycle, and the two simplest cycles: no gas, and pressure tabulated over crank angle.
 
 The zero of the crank angle: suction begins at 0° and combustion at 360° in a four-stroke engine, combustion
 at 0° in a two-stroke engine. Pressures are arrays over the angle (last axis) for each point.
@@ -55,7 +55,7 @@ class NoGas(GasCycle):
 
 
 @dataclass(frozen=True)
-class Tabulated(GasCycle):
+class TabulatedCycle(GasCycle):
     """Pressures p [Pa], (…, M), at angles [rad], (M,), linear between them and periodic; n = l/r, (…)."""
 
     angle: Array

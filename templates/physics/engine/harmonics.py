@@ -1,9 +1,9 @@
-r"""Unbalance of any engine by orders: the parts that turn with the crank and against it.
+r"""Unbalance of any engine by orders: the components that turn with the crank and against it.
 
 The force of order h on the frame is f e^{ihθ} + b e^{−ihθ}, complex, x + i y. With w the amplitude of the
 force of a cylinder's piston, f = ½ Σ w e^{i(β+h(ψ−β))} and b = ½ Σ w* e^{i(β−h(ψ−β))}; couples are the same
-sums, each cylinder times its arm. The largest size on the way round is |f| + |b|, at hθ = (arg b − arg
-f)/2, where it points to (arg f + arg b)/2; the smallest is ||f| − |b||.
+sums, with each cylinder multiplied by its arm. The largest magnitude over a turn is |f| + |b|, at hθ = (arg b
+− arg f)/2, in the direction (arg f + arg b)/2; the smallest is ||f| − |b||.
 
 References
 ----------

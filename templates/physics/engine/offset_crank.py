@@ -1,13 +1,12 @@
-r"""Slider-crank whose cylinder axis may pass beside the crankshaft: motion, and the forces of rod and piston.
+r"""Slider-crank with an optional offset of the cylinder axis: motion, and the forces of rod and piston.
 
 Vectors across the shaft are complex, x + i y: x along the axis of the cylinder to its head, y to where the
-crankpin moves first. The axis passes at `e` on the side of y; an offset piston pin adds to it. The crank
-angle alpha counts from x, and the rod's angle phi has sin(phi) = (r sin(alpha) − e)/l. Primes are
-derivatives by alpha.
+crankpin moves first. The axis is offset by `e` towards y; an offset piston pin adds to it. The crank angle
+alpha is measured from x, and the rod's angle phi has sin(phi) = (r sin(alpha) − e)/l. Primes are derivatives
+by alpha.
 
-References
-----------
-Formulas by geometry; their check is the energy: torque + dE/d(alpha) = 0 with E of the rigid bodies.
+References ---------- The formulas follow from geometry; the energy checks them: torque + dE/d(alpha) = 0 with
+E of the rigid bodies.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 r"""Slider-crank: positions and motion of piston and rod, per unit of crank radius and crank speed.
 
 The axis of the cylinder meets that of the crankshaft. x points from the crankshaft to the cylinder head, y to
-where the crankpin moves first; theta counts from top dead centre, n = l/r, sin(phi) = sin(theta)/n. The rod
-stands at −phi from the x axis, so that at top dead centre it swings against the crank.
+where the crankpin moves first; theta is measured from top dead centre, n = l/r, sin(phi) = sin(theta)/n. The
+rod is at −phi from the x axis, so at top dead centre it swings against the crank.
 
-With q = n cos(phi) = sqrt(n² − sin²(theta)), all is exact for n > 1. At n = 1 the mechanism locks at 90°.
+With q = n cos(phi) = sqrt(n² − sin²(theta)), all formulas are exact for n > 1. At n = 1 the mechanism locks
+at 90°.
 
 References
 ----------

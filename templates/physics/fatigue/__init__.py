@@ -1,1 +1,1 @@
-"""Fatigue under stresses of any direction that repeat: tensors, criteria, counting, strength."""
+"""Fatigue under multiaxial periodic stresses: tensors, criteria, cycle counting, strength."""

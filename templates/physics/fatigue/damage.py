@@ -1,12 +1,10 @@
 r"""Damage of counted cycles: equivalent reversed amplitudes, Miner's sum, the governing point.
 
-References
-----------
-A. Palmgren 1924, M. A. Miner: Cumulative damage in fatigue. J. Appl. Mech. 12, 1945.
-E. Haibach: Betriebsfestigkeit, 3rd ed. 2006: below the endurance limit the line goes on with 2 k - 1.
-J. Goodman 1899, W. Gerber 1874, J. Morrow (SAE Fatigue Design Handbook) 1968 for the mean stress.
-R. G. Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 10th ed. 2015: a compressive mean does
-not count.
+References ---------- A. Palmgren 1924, M. A. Miner: Cumulative damage in fatigue. J. Appl. Mech. 12, 1945. E.
+Haibach: Betriebsfestigkeit, 3rd ed. 2006: below the endurance limit the line continues with the slope 2 k -
+1. J. Goodman 1899, W. Gerber 1874, J. Morrow (SAE Fatigue Design Handbook) 1968 for the mean stress. R. G.
+Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 10th ed. 2015: a compressive mean stress is
+ignored.
 """
 
 from __future__ import annotations
@@ -18,8 +16,8 @@ import numpy as np
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
-from templates.physics.fatigue.counting import Cycles, by_extremes, by_rainflow
 from templates.physics.fatigue.findley import CriticalPlane, critical_planes, uniaxial_equivalent
+from templates.physics.fatigue.rainflow import Cycles, by_extremes, by_rainflow
 from templates.physics.fatigue.tensors import PROPORTIONAL, leading_tensor, signed_von_mises, von_mises_1913
 
 FINDLEY, SIGNED = "findley", "signed_von_mises"
@@ -31,7 +29,7 @@ _LARGEST = 690.0  # of logarithms of cycles and damages
 
 
 @dataclass(frozen=True)
-class Counted:
+class CycleCounts:
     """Cycles of every point, and the lowest stress that takes part in a compressive mean."""
 
     cycles: Cycles  # [..., point, cycle]; with Findley amplitudes of shear
@@ -39,14 +37,14 @@ class Counted:
     low: Array  # [..., point] [Pa]
 
 
-def counted_cycles(history: Array, criterion: str, level: str, k: Array, credit: str) -> Counted:
+def counted_cycles(history: Array, criterion: str, level: str, k: Array, credit: str) -> CycleCounts:
     """Return the cycles of stress histories [..., point, angle, 6] [Pa] by criterion and counting method."""
     count = by_extremes if level == EXTREMES else by_rainflow
     if criterion == SIGNED:
         signed = signed_von_mises(history)
-        return Counted(count(signed), None, signed.min(axis=-1))
+        return CycleCounts(count(signed), None, signed.min(axis=-1))
     plane = critical_planes(history, float(k), credit=credit == YES)
-    return Counted(count(plane.shear), _normal_that_counts(plane, credit), plane.normal_low)
+    return CycleCounts(count(plane.shear), _normal_that_counts(plane, credit), plane.normal_low)
 
 
 def _normal_that_counts(plane: CriticalPlane, credit: str) -> Array:
@@ -84,7 +82,7 @@ def greatest_von_mises(history: Array) -> Array:
 
 
 @units(None, None, "1", "Pa", returns="1")
-def compression_used(counted: Counted, credit: str, support: Array, yield_strength: Array) -> Array:
+def compression_used(counted: CycleCounts, credit: str, support: Array, yield_strength: Array) -> Array:
     """Return the lowest stress of each point, in compression, over the yield strength [1].
 
     0 without credit.
@@ -96,7 +94,7 @@ def compression_used(counted: Counted, credit: str, support: Array, yield_streng
 
 @units(None, "1", None, None, "Pa", "Pa", "1", "1", returns="Pa")
 def reversed_amplitudes(
-    counted: Counted, support: Array, correction: str, credit: str, ultimate: Array, coefficient: Array,
+    counted: CycleCounts, support: Array, correction: str, credit: str, ultimate: Array, coefficient: Array,
     k: Array, compression: Array,
 ) -> Array:  # fmt: skip
     """Return the reversed uniaxial amplitudes [..., point, cycle] [Pa] that do the same damage as each cycle.
@@ -135,7 +133,7 @@ def largest_amplitudes(equivalent: Array) -> Array:
 
 @units(None, None, "Pa", "1", "1", None, returns="1")
 def damages(
-    equivalent: Array, counted: Counted, endurance: Array, slope: Array, knee: Array, rule: str
+    equivalent: Array, counted: CycleCounts, endurance: Array, slope: Array, knee: Array, rule: str
 ) -> Array:
     """Return Miner's damage of each point in one engine cycle [..., point] [1]."""
     limit, b = _to_cycles(endurance), _to_cycles(slope)
@@ -153,7 +151,7 @@ def damages(
 
 @units(None, None, None, None, "Pa", "Pa", "Pa", "1", returns="1")
 def load_uses(
-    counted: Counted, equivalent: Array, correction: str, credit: str, endurance: Array, ultimate: Array,
+    counted: CycleCounts, equivalent: Array, correction: str, credit: str, endurance: Array, ultimate: Array,
     coefficient: Array, support: Array,
 ) -> Array:  # fmt: skip
     """Return 1/n of each point [1].

@@ -1,8 +1,8 @@
-r"""Findley's criterion: the plane on which shear amplitude and greatest normal stress together are largest.
+r"""Findley's criterion: the plane with the largest combination of shear amplitude and greatest normal stress.
 
-tau_a + k sigma_n,max, tau_a the radius of the smallest circle about the path of the shear stress on a plane.
-A surface needs no normal of its own here: planes of every direction are searched, those at its surface among
-them.
+The criterion is tau_a + k sigma_n,max, where tau_a is the radius of the smallest circle about the path of the
+shear stress on a plane. The normal of a free surface is not needed: the search covers planes of every
+direction, which include those at the surface.
 
 References
 ----------

@@ -1,8 +1,9 @@
 """The smallest circle about plane paths, many at once; its radius is the shear amplitude on a plane.
 
-A circle is held by two or three of its points. Begin with the two points farthest apart among a few; as long
-as a point lies outside, the new circle is the smallest one about the held points and that one. The radius
-grows with each step, so none returns, and a few steps suffice. Nothing is sampled: the circle is exact.
+Two or three points define the circle. The search begins with the two points farthest apart among a few; as
+long as a point lies outside, the next circle is the smallest one about the defining points and that point.
+The radius grows with each step, so no set of points recurs, and a few steps suffice. The circle is exact, not
+sampled.
 
 References
 ----------

@@ -1,8 +1,8 @@
-r"""Stress tensors over a cycle: superposed from those of unit loads, and which tensor carries them.
+r"""Stress tensors over a cycle: superposed from those of unit loads, and the data types that hold them.
 
-A tensor is its components xx, yy, zz, xy, yz, xz [Pa], as tables of finite elements write them. Linear
-elasticity: the stress of loads that act together is the sum of their tensors, sigma(theta) = sum over the
-loads of load(theta) times the tensor of a unit of it. Equivalent stresses do not add.
+A tensor has the components xx, yy, zz, xy, yz, xz [Pa], in the order of finite-element tables. By linear
+elasticity, the stress of simultaneous loads is the sum of their tensors: sigma(theta) = sum over the loads of
+load(theta) times its unit tensor. Equivalent stresses do not add.
 
 References
 ----------

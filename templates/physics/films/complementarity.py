@@ -2,9 +2,9 @@ r"""Film rupture after Swift and Stieber as a complementarity problem, solved by
 
 .. math:: P \ge 0, \quad A P - b \ge 0, \quad P\,(A P - b) = 0
 
-At each step the nodes of the film solve A P = b by banded Cholesky and the others hold P = 0; then
-nodes with P < 0 leave the film and nodes that gain oil join it. A is an M-matrix, so the pressure
-rises from step to step and the set is final after finitely many. A coarser mesh gives the start.
+At each step the nodes of the film solve A P = b by banded Cholesky factorisation, and the others have P = 0;
+then nodes with P < 0 leave the film and nodes that gain oil join it. A is an M-matrix, so the pressure rises
+from step to step, and the set is final after finitely many steps. A coarser mesh gives the initial set.
 
 References
 ----------
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.physics.films.banded import Banded, Resumed, banded
+from templates.physics.films.banded_matrix import BandedMatrix, IncrementalSolver, banded
 from templates.physics.films.film_equations import Equations
 
 _MOST_STEPS = 1000
@@ -30,7 +30,7 @@ class Rupture:
     """(n + 1, m + 1) pressure, 0 outside the film."""
     film: Mask
     """(n + 1, m + 1) nodes inside the film."""
-    matrix: Banded
+    matrix: BandedMatrix
     """The matrix, for further right-hand sides on the same film."""
     steps: int
     """Linear solutions used."""
@@ -60,7 +60,7 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
         b[0] += b[-1]
     film = (may & (b > 0)) if film is None else may & film
     noise = 1e-13 * np.abs(b).max()
-    solver = Resumed(matrix)
+    solver = IncrementalSolver(matrix)
     for step in range(1, _MOST_STEPS):
         P = solver.solve(film, b)
         if equations.ring:

@@ -1,8 +1,8 @@
 """Linear stiffness and damping of a static journal film, by perturbing its discrete equations.
 
-The film's extent is held: at a free rupture pressure and gradient vanish, so its motion is of second
-order. Axes: x along the load, y ahead of x in the sense of rotation. K = k c W⁻¹ and
-B = b c omega_h W⁻¹ with radial clearance c and load W; force on the journal = −k·x − b·dx/dt.
+The film's extent is held constant: at a free rupture, pressure and gradient vanish, so its motion has a
+second-order effect. Axes: x along the load, y ahead of x in the sense of rotation. K = k c W⁻¹ and B = b c
+omega_h W⁻¹ with radial clearance c and load W; force on the journal = −k·x − b·dx/dt.
 
 References
 ----------

@@ -1,12 +1,12 @@
-r"""The Reynolds equation in finite volumes on a product mesh: one balance of flow a node.
+r"""The Reynolds equation in finite volumes on a product mesh: one flow balance per node.
 
 .. math::
     \partial_\phi(H^3\partial_\phi P) + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P)
     = 6\,\partial_\phi H + 12\,\partial_\tau H
 
-written A P = b: A is symmetric and an M-matrix, b is what rotation and squeeze bring to a node.
-All coefficients are products of one factor around and one across, so a perturbation of the gap is
-again a set of such equations.
+written A P = b: A is symmetric and an M-matrix, b is the flow that rotation and squeeze bring to a node. All
+coefficients are products of a circumferential and an axial factor, so a perturbation of the gap gives
+equations of the same form.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 """The fit of DIN 31652-2 / ISO 7902-2 to the converged film of 1976: load and attitude, 1/8 ≤ B/D ≤ 1.
 
-Inside its range So errs by 2.4 % (median) and 6.8 % (largest), the attitude by 0.7° and 2.4°.
+Inside its range the error of So is 2.4 % (median) and 6.8 % (largest), that of the attitude 0.7° and 2.4°.
 Outside it is badly wrong (+221 % at B/D 1.5, tenfold at 2) and is therefore refused.
 Boundary condition: P = 0 at the ends and at the widest gap, rupture after Swift and Stieber.
 

@@ -1,9 +1,9 @@
 """The converged static film of `reynolds`, precomputed over eccentricity and width.
 
-Cubic splines over atanh(eps) and ln(B/D) of what the film does, each in logarithm against its
-short-bearing form or in Sommerfeld's angle, which leaves little to interpolate. Built and measured by
-`benchmarks/film_map.py`, from solutions extrapolated by Richardson; boundary condition as there.
-Range: eps 0 … 1 − 1e-7, B/D 0.01 … 100; beyond it is refused.
+Cubic splines over atanh(eps) and ln(B/D) represent each result of the film, as the logarithm of its ratio to
+the short-bearing form or in Sommerfeld's angle, so that little is left to interpolate.
+`benchmarks/film_map.py` computes and measures the map from solutions extrapolated by Richardson; it has the
+same boundary condition. Range: eps 0 … 1 − 1e-7, B/D 0.01 … 100; values outside are refused.
 """
 
 from dataclasses import dataclass

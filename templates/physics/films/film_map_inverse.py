@@ -1,7 +1,7 @@
 """Relative eccentricity from load by the film map, for any number of points at once.
 
-The load at the map's nodes brackets eps within one cell, because it rises; inside the cell the spline
-is a cubic, and a bracketed search ends at rounding.
+The load rises with eps, so the loads at the map's nodes bracket eps within one cell. Inside the cell the
+spline is a cubic, and a bracketed search converges to rounding.
 """
 
 import numpy as np

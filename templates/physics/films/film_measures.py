@@ -1,7 +1,7 @@
-"""Integral measures of a static film from its pressure field: load, friction, flow, peak.
+"""Integral measures of a static film from its pressure field: load, friction, flow, peak pressure.
 
-Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902; beside it
-stands the friction with shear by streamers only where the film has ruptured.
+Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902; the friction with
+shear by streamers only, where the film has ruptured, is computed as well.
 """
 
 from dataclasses import dataclass

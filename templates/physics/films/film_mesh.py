@@ -1,4 +1,4 @@
-"""Meshes for the film of a journal bearing: graded to the thin film, to the ends and to a short bearing.
+"""Meshes for the film of a journal bearing: graded to the thin film, to the ends, and for a short bearing.
 
 phi is the angle from the narrowest gap, positive in the sense of rotation; H = 1 − eps cos(phi).
 zeta = 2z/B runs from the middle of the bearing (0) to its end (1): the film is symmetric.

@@ -1,14 +1,14 @@
-r"""Shape of the gap of a journal bearing: lobes, bell mouth, and where the journal lies, tilted or not.
+r"""Shape of the gap of a journal bearing: lobes, bell mouth, and the position and tilt of the journal.
 
 .. math::
     H(\varphi,\zeta) = 1 + \delta(\varphi) + \mu(\zeta)
         - (\mathbf e + \zeta\,\mathbf t)\cdot\mathbf n(\varphi)
 
-phi counts from the load in the sense of the hydrodynamic speed, n = (cos phi, sin phi), zeta = 2z/B from
-−1 to 1. All lengths are over the radial clearance c_b of the largest cylinder that fits into the bore, the
-assembled clearance: a centred, aligned journal has H ≥ 1 everywhere, whatever the shape.
+phi is measured from the load in the sense of the hydrodynamic speed, n = (cos phi, sin phi), zeta = 2z/B from
+−1 to 1. All lengths are divided by the assembled clearance c_b, the radial clearance of the largest cylinder
+that fits into the bore. So a centred, aligned journal has H ≥ 1 everywhere, whatever the shape.
 
-Lobes are arcs of one radius, which is larger than the journal's by c_p, the clearance of machining. Their
+Lobes are arcs of one radius, which exceeds the journal's by c_p, the machined clearance. Their
 preload is 1 − c_b/c_p. With the least gap at psi_k, delta = (c_p/c_b − 1)(1 − cos(phi − psi_k)) on lobe k.
 
 References

@@ -1,7 +1,7 @@
 """Rupture of the long journal bearing's film: no axial flow, pressure along the circumference only.
 
 H = 1 + eps cos(theta) from the widest gap; gamma is Sommerfeld's angle, H = (1−eps²)/(1−eps cos gamma).
-Closed forms of its load and pressure, with which tests compare, stand in `tests/references/long_bearing.py`.
+Tests compare with the closed forms of its load and pressure in `tests/references/long_bearing.py`.
 
 References
 ----------

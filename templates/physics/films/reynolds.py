@@ -2,11 +2,11 @@
 
 Isothermal, incompressible, rigid and aligned, laminar; full circle without grooves.
 Boundary condition: P = 0 at the ends and along a supply line at the widest gap; the film ruptures
-where P = dP/dn = 0 (Swift, Stieber). A plain periodic film would have other attitudes at small eps.
+where P = dP/dn = 0 (Swift, Stieber). A purely periodic film would have different attitudes at small eps.
 
-Everything is dimensionless: P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h).
-Second-order finite volumes; 128 × 16 intervals err by about 0.05 % in So up to eps 0.999 (0.1 % at
-1 − 1e-6), and by Richardson's extrapolation from there to twice as many by some 1e-5.
+Everything is dimensionless: P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Second-order finite
+volumes: with 128 × 16 intervals the error of So is about 0.05 % up to eps 0.999 (0.1 % at 1 − 1e-6);
+Richardson's extrapolation from these and twice as many intervals reduces it to some 1e-5.
 
 References
 ----------

@@ -1,15 +1,16 @@
-r"""One viscosity for a film over a cycle, from what the film heats and what its oil carries off.
+r"""One viscosity for a film over a cycle, from the heat of the film and the heat that its oil removes.
 
 .. math::
     k\,P = \rho c\,(Q + Q_p)(T_{ex} - T_{en}),\quad T = (T_{en} + T_{ex})/2,\quad
     \eta = \eta_\mathrm{Cross}\left(\eta_0(T),\ \dot\gamma\right)
 
-as ISO 7902-1 has it for a steady load, with loss P and side flow Q as means over the cycle. Q_p is what the
-supply pressure drives from a groove over the two lands, with the gap along the orbit; the film's own
-pressure does not hinder it, as in the standard. The shear rate is |U|/h, a mean over circle and cycle.
+This is the balance of ISO 7902-1 for a steady load, with power loss P and side flow Q as means over the
+cycle. Q_p is the flow that the supply pressure drives from a groove over the two lands, with the gap along
+the orbit; as in the standard, the film's own pressure does not reduce it. The shear rate is |U|/h, a mean
+over circle and cycle.
 
-P rises with the viscosity, and so the viscosity that belongs to its heat falls: there is one root in ln(eta).
-The viscosity of the supply is lowered by factors of four until it is too low: that step holds the root.
+P rises with the viscosity, and the film's temperature with P, so there is one root in ln(eta). The viscosity
+at the supply temperature is divided by four repeatedly until it is too low: the last step brackets the root.
 
 References
 ----------
@@ -41,7 +42,7 @@ from templates.physics.supplied.fed_cycle import (
     fed_film,
     fed_orbit,
 )
-from templates.physics.supplied.feeding import Feeding
+from templates.physics.supplied.supply_geometry import SupplyGeometry
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 """Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
@@ -102,7 +103,7 @@ class CycleBearing:
     level: str
     duty: Duty
     """Its scale is that of 1 Pa s."""
-    feeding: Feeding
+    feeding: SupplyGeometry
     pressure: Array
     """Supply pressure, NaN without a groove [Pa]."""
     clearance: Array
@@ -135,7 +136,7 @@ class CycleHeat:
 
 
 @dataclass(frozen=True)
-class Warmed:
+class FilmState:
     """What a film of some viscosity does."""
 
     loss: Array
@@ -144,7 +145,7 @@ class Warmed:
     rate: Array
 
 
-def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
+def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, FilmState]:
     """Return orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
     duty = bearing.duty
     fed = bearing.fed(eta)
@@ -159,17 +160,16 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
     gap = orbit.gap
     with np.errstate(invalid="ignore"):
         rate = (sliding / np.sqrt(gap * (2 - gap))) @ mean * D / (2 * c)
-    return orbit, Warmed(loss, side, film.feed_flow * W * D * c * Omega, rate)
+    return orbit, FilmState(loss, side, film.feed_flow * W * D * c * Omega, rate)
 
 
 @on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
 def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     """Return the viscosity of every point at which heat and viscosity agree."""
     shape = np.broadcast_shapes(
-        *(np.shape(getattr(oil, field.name)) for field in fields(oil)), np.shape(bearing.duty.scale),
+        *(np.shape(getattr(oil, field.name)) for field in fields(oil)), bearing.duty.points,
         *(np.shape(getattr(bearing.feeding, field.name)) for field in fields(bearing.feeding)),
-        np.shape(bearing.pressure), np.shape(bearing.duty.F_x)[:-1], np.shape(bearing.clearance),
-        np.shape(bearing.duty.omega_J)[:-1],
+        np.shape(bearing.pressure), np.shape(bearing.clearance),
     )  # fmt: skip
     top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
 
@@ -233,7 +233,7 @@ def heaviest(duty: Duty) -> Array:
     return np.asarray(np.hypot(duty.F_x, duty.F_y).max(axis=-1) * duty.scale)
 
 
-def temperature(oil: CycleOil, film: Warmed) -> Array:
+def temperature(oil: CycleOil, film: FilmState) -> Array:
     """Return the mean of supply and outlet, by the heat that the oil carries off [K]."""
     with np.errstate(invalid="ignore", divide="ignore"):
         rise = oil.share * film.loss / (oil.heat_capacity * (film.side_flow + film.feed_flow))

@@ -1,8 +1,9 @@
-"""The heat balance over a cycle with the film of level supplied, which conserves its oil.
+"""The heat balance over a cycle with the mass-conserving film of level `supplied`.
 
-Its side flow is all the oil that leaves by the ends: what the journal displaces and what the supply drives,
-hindered by the film's own pressure, from the ends of grooves and from holes too. A march takes a second or
-more, so the balance begins at that of a cheap level and goes on by secants; three or four marches are enough.
+Its side flow is all the oil that leaves at the ends, displaced by the journal or driven by the supply against
+the film's own pressure, including the oil from groove ends and holes. A march takes a second or more, so the
+balance starts from the result of a cheap level and continues by the secant method; three or four marches are
+enough.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from templates.physics.heat.cycle_heat import (
     CycleBearing,
     CycleHeat,
     CycleOil,
-    Warmed,
+    FilmState,
     cycle_heat,
     heated_film,
     temperature,
@@ -74,7 +75,7 @@ def following(rounds: list[tuple[float, float]]) -> float:
     return x + float(np.clip(step, -FARTHEST, FARTHEST))
 
 
-def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, float]:
+def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, float]:
     """Return the film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
     film = heated_film(bearing, eta)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -82,7 +83,7 @@ def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, flo
     return film, float(np.ravel(lack)[0])
 
 
-def _balanced(oil: CycleOil, film: Warmed, eta: Array, lack: float) -> CycleHeat:
+def _balanced(oil: CycleOil, film: FilmState, eta: Array, lack: float) -> CycleHeat:
     unknown = np.full(np.shape(eta), np.nan)
     values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
     residual = np.full(np.shape(eta), np.expm1(lack))

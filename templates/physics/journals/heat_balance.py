@@ -3,10 +3,10 @@ r"""Temperature of a journal bearing's film by the global heat balance of ISO 79
 .. math:: P(T) = \rho c\,Q(T)\,(T_{out} - T_{supply}) + kA\,(T - T_{ambient}), \quad
     T = (T_{supply}+T_{out})/2
 
-Power loss P and side flow Q are those of the film map (`film_map`) at the viscosity of T, at every level of
-fidelity: so the temperature, and with it the viscosity, is the same for all of them. Whichever of the two
-terms is not given is left out. P falls and what is carried off rises with T: there is one root, and it lies
-between the colder surrounding and 500 °C, or there is none.
+Every level of fidelity uses the power loss P and the side flow Q of the film map (`film_map`) at the
+viscosity of T, so the temperature and the viscosity are the same for all levels. A term that is not given is
+left out. P falls with T and the removed heat rises, so there is at most one root; it lies between the colder
+of the two surroundings and 500 °C.
 
 References
 ----------
@@ -33,7 +33,7 @@ _ACCURACY = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
-class Running:
+class OperatingPoint:
     """A bearing at work, in SI; arrays that broadcast together."""
 
     F: Array
@@ -132,15 +132,15 @@ class HeatBalance:
 
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
-def heat_balance(running: Running) -> HeatBalance:
+def heat_balance(running: OperatingPoint) -> HeatBalance:
     """Find the film temperature of every point that has a supply, or air to cool it."""
     names = [field.name for field in fields(running)]
     parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
-    everything = Running(**dict(zip(names, parts, strict=True)))
+    everything = OperatingPoint(**dict(zip(names, parts, strict=True)))
     wanted = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
     T, residual = np.full(wanted.shape, np.nan), np.full(wanted.shape, np.nan)
     if wanted.any():
-        point = Running(**{name: part[wanted] for name, part in zip(names, parts, strict=True)})
+        point = OperatingPoint(**{name: part[wanted] for name, part in zip(names, parts, strict=True)})
         T[wanted], residual[wanted] = _balance(point)
     return HeatBalance(T[()], (2 * T - everything.T_supply)[()], residual[()])
 
@@ -150,7 +150,7 @@ def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
     return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
 
 
-def _balance(point: Running) -> tuple[Array, Array]:
+def _balance(point: OperatingPoint) -> tuple[Array, Array]:
     """Return the temperature and residual of points in a row.
 
     Infinite and NaN where there is none, NaN unknown.

@@ -1,8 +1,8 @@
 """The eight linear coefficients of a journal film at every fidelity that has them, also without load.
 
-K = k c psi²/(B D eta omega_h) and B = b c psi²/(B D eta): stiffness and damping over So, times So, so that
-both stay finite as the load vanishes. Axes: x along the load, y ahead of x in the sense of rotation. c is
-the radial clearance, psi = c/R.
+K = k c psi²/(B D eta omega_h) and B = b c psi²/(B D eta): the usual stiffness and damping multiplied by So,
+so that both stay finite as the load vanishes. Axes: x along the load, y ahead of x in the sense of rotation.
+c is the radial clearance, psi = c/R.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Motion of a journal relative to its sleeve and its load, and the size of its load.
+"""Motion of a journal relative to its sleeve and its load, and the magnitude of its load.
 
 References
 ----------

@@ -1,4 +1,4 @@
-"""The temperature of a journal bearing's film: a mean, that of a heat balance, or none."""
+"""The temperature of a journal bearing's film: a mean, the result of a heat balance, or none."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Effect of a load on the friction of a journal: Petrov's concentric film against the Reynolds solution.
 
-The film is the converged static one of `film_map`: full circle without grooves, Swift–Stieber rupture, shear
+The film is the converged static film of `film_map`: full circle without grooves, Swift–Stieber rupture, shear
 over the whole circle as in DIN 31652 and ISO 7902.
 """
 

@@ -1,4 +1,4 @@
-"""Separation of surfaces by a film: the film parameter lambda, and the regime that it stands for.
+"""Separation of surfaces by a film: the film parameter lambda, and the lubrication regime.
 
 References
 ----------

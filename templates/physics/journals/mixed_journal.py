@@ -1,16 +1,15 @@
-r"""A journal whose film and roughness share its load, and its friction over the speed (Stribeck's curve).
+r"""A journal whose film and roughness share its load, and its friction over the speed (Stribeck curve).
 
-The film's force F_f stands at its attitude beta to the line of centres; the contact's force F_c along that
-line, and its friction mu F_c across it, against the rotation:
+The film force F_f acts at its attitude beta to the line of centres, the contact force F_c along that line,
+and the contact friction mu F_c across it, against the rotation:
 
 .. math::
     F^2 = (F_f\cos\beta + F_c)^2 + (F_f\sin\beta - \mu F_c)^2
 
-Both grow with the eccentricity, so one eccentricity bears a load. The film is that of smooth faces from
-`film_map`, or of rough ones by the average Reynolds equation: then it is solved at some eccentricities,
-and what it differs by from the map is interpolated between them. The journal alone turns.
-Friction is the shear over the full circle at the mean gap, the couple of the film's force, and that of the
-contact.
+Both grow with the eccentricity, so exactly one eccentricity carries a load. The film of smooth faces comes
+from `film_map`, that of rough faces from the average Reynolds equation: this is solved at some
+eccentricities, and its difference from the map is interpolated. Only the journal turns. The friction is the
+sum of the shear over the full circle at the mean gap, the couple of the film force, and the contact friction.
 """
 
 from dataclasses import dataclass, fields

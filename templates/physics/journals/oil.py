@@ -3,8 +3,8 @@
 Walther: lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point
 and about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
 
-Vogel: eta = a exp(b/(t + c)), t in °C: three constants of an oil, or with c = 95 K, which Cameron found to
-serve for mineral oils, two viscosities. It has a pole at t = −c and means nothing below.
+Vogel: eta = a exp(b/(t + c)), t in °C: an oil is defined by the three constants, or by two viscosities and c
+= 95 K, which Cameron found suitable for mineral oils. The law has a pole at t = −c and is invalid below.
 
 References
 ----------

@@ -1,6 +1,6 @@
 """Oils by grade: SAE J300 engine oils and ISO 3448 industrial oils, from `oil_grades.csv`.
 
-A grade bounds the viscosity at one temperature only; the table says what was assumed for the other. At the
+A grade limits the viscosity at one temperature only; the table states the assumption for the other. At the
 shear rates of a bearing a multigrade oil is thinner than its kinematic viscosity suggests, by up to a third:
 give `dynamic_viscosity` where that matters.
 

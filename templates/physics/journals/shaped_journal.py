@@ -1,9 +1,9 @@
-"""One journal bearing under static load, of any bore, aligned or tilted, at every fidelity that knows it.
+"""One journal bearing under static load with any bore, aligned or tilted, at every level that supports it.
 
-A plain, aligned bearing has the levels of `static_journal`. A bore with lobes or bell mouth, a tilted
-journal, and a plain bearing with grooves or supply pressure are solved by `shaped_balance`: level reynolds
-with rupture after Swift and Stieber, mass_conserving with cavities that conserve mass. Everything is
-dimensionless as there, over the smallest clearance; angles count from the load.
+A plain, aligned bearing has the levels of `static_journal`. `shaped_balance` solves a bore with lobes or bell
+mouth, a tilted journal, and a plain bearing with grooves or supply pressure: at level `reynolds` with rupture
+after Swift and Stieber, at level `mass_conserving` with cavities that conserve mass. Everything is
+dimensionless as there, based on the smallest clearance; angles are measured from the load.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 from templates.physics.cavities.fed_film import Feed
-from templates.physics.cavities.shaped_balance import SMALLEST, Balance, Loaded, NoBalance, balance
+from templates.physics.cavities.shaped_balance import SMALLEST, Balance, BearingCase, NoBalance, balance
 from templates.physics.films.film_map import mapped_load
 from templates.physics.films.film_shape import Bore, Lie, narrowest
 from templates.physics.journals.journal_coefficients import Linear, coefficients_at
@@ -205,12 +205,12 @@ def _solved(
     bore, tilt, conserving = shape.at(*numbers[:5]), np.array(numbers[5:]), level == FED
     if level not in ("reynolds", FED):
         return _unborne()
-    loaded = Loaded(So, ratio, bore, tilt, feed, conserving)
+    loaded = BearingCase(So, ratio, bore, tilt, feed, conserving)
     smallest = float(mapped_load(np.array(SMALLEST), np.array(ratio))) if loaded.line_turns else 0.0
     if feed.pressure > 0 or So >= smallest:
         smallest = So
     try:
-        balanced = balance(Loaded(smallest, ratio, bore, tilt, feed, conserving))
+        balanced = balance(BearingCase(smallest, ratio, bore, tilt, feed, conserving))
     except NoBalance:
         return _unborne()
     return measured(balanced, bore, tilt, So / smallest if smallest > 0 else 1.0)

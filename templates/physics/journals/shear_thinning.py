@@ -1,11 +1,11 @@
-r"""Shear thinning of multigrade oils: the law of Cross, its critical shear rate from one HTHS viscosity.
+r"""Shear thinning of multigrade oils: Cross's law, with its critical shear rate from one HTHS viscosity.
 
 .. math:: \eta = \eta_\infty + \frac{\eta_0-\eta_\infty}{1+(\dot\gamma/\dot\gamma_c)^n}
 
-The HTHS viscosity of SAE J300 is that at 150 °C and 1e6 1/s. With the viscosities at low and at endless shear
-at 150 °C it gives gamma_c. `critical_rate_at` takes it to another temperature: the product of gamma_c and
-eta_0 stays, as where time and temperature superpose. No source for that step in engine oils was at hand;
-without it pass a gamma_c of that temperature.
+The HTHS viscosity of SAE J300 is measured at 150 °C and 1e6 1/s. Together with the viscosities at low and at
+infinite shear rate at 150 °C it gives gamma_c. `critical_rate_at` converts gamma_c to another temperature:
+the product of gamma_c and eta_0 stays constant, as in time-temperature superposition. We found no source for
+this step in engine oils; to avoid it, give a gamma_c at the temperature of the film.
 
 References
 ----------

@@ -1,7 +1,7 @@
-"""Smallest film that may be planned for a journal bearing, after DIN 31652-3 / ISO 7902-3, table 1.
+"""Smallest permissible film of a journal bearing in design, after DIN 31652-3 / ISO 7902-3, table 1.
 
-The numbers are those that textbooks quote; they were not checked against the standard, of which no public
-copy was found.
+The numbers are quoted from textbooks; they were not checked against the standard, of which we found no public
+copy.
 
 References
 ----------

@@ -1,15 +1,16 @@
-"""One journal bearing under static load at every fidelity: from load and width to all that its film does.
+"""One journal bearing under static load at every fidelity: all film results from load and width.
 
 Levels, cheapest first. Each states its boundary condition in `BOUNDARY` and its widths in `WIDTHS`.
 
     short_bearing    Ocvirk's closed form
     fit              DIN 31652-2 / ISO 7902-2
     map              the converged Swift–Stieber film, precomputed (`film_map`)
-    reynolds         that film solved afresh on two meshes and extrapolated
+    reynolds         the same film, solved on two meshes and extrapolated
     mass_conserving  cavities after Jakobsson, Floberg and Olsson; grooves and supply pressure
 
-Everything is dimensionless, P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Points without a load
-or width, NaN, or of a width outside the level's range, are NaN; eps is infinite where no film bears the load.
+Everything is dimensionless, P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Results are NaN at
+points without a load or width, or with a width outside the level's range; eps is infinite where no film
+carries the load.
 """
 
 from collections.abc import Callable

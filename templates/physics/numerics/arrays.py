@@ -1,4 +1,4 @@
-"""The array type of the physics functions, the refusal of values outside a domain, points and curves."""
+"""The array type of the physics functions, the domain check of values, points and curves."""
 
 import numpy as np
 

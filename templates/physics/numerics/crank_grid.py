@@ -1,8 +1,8 @@
-"""Crank angles at which an engine is calculated: a uniform grid of at most 1°, and both sides of each jump.
+"""Crank angles at which an engine is calculated: a uniform grid of at most 1°, with both sides of each jump.
 
-The step that a user chooses says which of these angles are returned. Greatest values and integrals use all of
-them, so that they do not depend on that step. Where the pressure jumps, as at an ideal combustion or when an
-exhaust valve opens late, one angle stands just before the jump and one on it.
+The user's step selects which of these angles are returned. Maxima and integrals use all angles, so that they
+do not depend on that step. Where the pressure jumps, as at an ideal combustion or when an exhaust valve opens
+late, one angle lies just before the jump and one at it.
 """
 
 from __future__ import annotations

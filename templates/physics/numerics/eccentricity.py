@@ -1,7 +1,7 @@
 """Relative eccentricity from load, for any load function that rises with eccentricity.
 
-The unknown is logit(eps), bracketed from eps 1e-20 to 1 − 1e-7, the residual is the logarithm of the
-load: both ends are resolved alike and the search cannot leave its bracket.
+The unknown is logit(eps), bracketed from eps 1e-20 to 1 − 1e-7, and the residual is the logarithm of the
+load. So both ends are resolved equally well, and the search cannot leave its bracket.
 """
 
 from collections.abc import Callable

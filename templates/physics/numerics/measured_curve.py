@@ -1,7 +1,7 @@
-"""A measured curve beside a calculated one: measured values at calculated angles, and how far they differ.
+"""Compare a measured curve with a calculated one: measured values at calculated angles, and the differences.
 
-Both repeat with a cycle. Between its points, and from the last to the first, a measurement is linear. Means
-are over the calculated angles, each counting alike.
+Both are periodic. Between its points, and from the last to the first, a measurement is linear. Means are
+taken over the calculated angles with equal weights.
 """
 
 from __future__ import annotations

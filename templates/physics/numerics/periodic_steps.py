@@ -1,12 +1,12 @@
-r"""Newton steps for two coordinates that obey a differential equation and repeat after a cycle.
+r"""Newton steps for two coordinates that obey a periodic differential equation.
 
 Backward differences of second order at all nodes of the cycle at once (BDF2, variable steps):
 
 .. math:: a_0 e_k + a_1 e_{k-1} + a_2 e_{k-2} = f_k(e_k)
 
 A step solves the linearised equations of many cases together: one banded triangular system for all, in which
-the last two nodes of the cycle before are unknown, and a system of four for these. It decays as a stiff
-equation should (L-stable for equal steps), and needs no cycles run in.
+the last two nodes of the previous cycle are unknown, and a system of four equations for these. Its solutions
+decay as those of a stiff equation should (L-stable for equal steps), and no run-in cycles are needed.
 """
 
 import numpy as np

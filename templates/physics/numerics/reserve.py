@@ -1,4 +1,4 @@
-"""Reserves to limits that a user may have set."""
+"""Reserves to limits that a user may set."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Roots of many equations at once, each inside its bracket.
 
-New versions use `root_between`, which is SciPy's. Released versions keep `bracketed_root`, of the same
-method: their results are frozen to the last digits.
+New versions use `root_between`, which calls SciPy. Released versions keep `bracketed_root`, which uses the
+same method, because their results are frozen to the last digits.
 
 References
 ----------

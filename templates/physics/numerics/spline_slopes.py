@@ -1,6 +1,6 @@
-"""Values and slopes of cubic splines over two coordinates, each point on a surface of its own.
+"""Values and slopes of cubic splines over two coordinates, where each point uses its own surface.
 
-The splines of `uniform_spline`, for Newton's method: there values alone are wanted.
+These are the splines of `uniform_spline` with slopes added for Newton's method.
 """
 
 import numpy as np

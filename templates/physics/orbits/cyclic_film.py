@@ -1,4 +1,4 @@
-"""What a journal bearing has to do over a cycle and what its film does, in the frame of the load.
+"""The duty of a journal bearing over a cycle and the results of its film, in the frame of the load.
 
 A positive speed turns x to y. Pressure, loss and flow are dimensionless: P = p psi²/(eta Omega), psi the
 diametral clearance over the diameter, Omega the speed of the crank.
@@ -14,6 +14,8 @@ from templates.physics.numerics.arrays import largest_load as largest_load
 
 FEWEST, MOST = 12, 3600
 """Angles of a cycle."""
+NEARLY_HALF = 0.3
+"""By how much a speed may differ from half the crank's, over that [-]."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,13 @@ class Duty:
     """S over F, psi²/(B D eta Omega), (...) [1/N]."""
     ratio: Array
     """Width over diameter B/D, (...) [-]."""
+
+    @property
+    def points(self) -> tuple[int, ...]:
+        """Return the shape of the points."""
+        curves = (self.F_x, self.F_y, self.omega_J, self.omega_B, self.omega_F)
+        values = (self.Omega, self.scale, self.ratio)
+        return np.broadcast_shapes(*(np.shape(one)[:-1] for one in curves), *map(np.shape, values))
 
 
 @dataclass(frozen=True)
@@ -81,6 +90,34 @@ def cycle_of(angle: Array) -> float:
 def cycle_length(angle: Array) -> Array:
     """Return the same as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]
+
+
+@dataclass(frozen=True)
+class LoadCourse:
+    """How a load varies over the cycle; dimensionless, (...)."""
+
+    peak: Array
+    """Its largest size over its mean size."""
+    steadiness: Array
+    """Size of its mean over its mean size: 1 where it keeps its direction."""
+    at_half_speed: Array
+    """Share of the cycle in which its direction turns at 0.2 to 0.8 of the crank's speed, about half of it: a
+    film bears no load that does so for ever."""
+
+
+def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:
+    """Return how a load [N], (..., N), varies over crank angles (N,) [rad]."""
+    period = cycle_of(angle)
+    weight, size = weights(angle, period) / period, np.hypot(F_x, F_y)
+    mean = size @ weight
+    step = np.diff(angle, append=angle[0] + period)
+    along = np.arctan2(F_y, F_x)
+    turned = (np.roll(along, -1, axis=-1) - along + np.pi) % (2 * np.pi) - np.pi
+    return LoadCourse(
+        peak=size.max(axis=-1) / mean,
+        steadiness=np.hypot(F_x @ weight, F_y @ weight) / mean,
+        at_half_speed=(np.abs(turned / step - 0.5) < NEARLY_HALF) @ step / period,
+    )
 
 
 @units("rad/s", returns="rad/s", latex=r"\left|\overline{{{0}}}\right|")

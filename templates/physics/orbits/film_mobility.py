@@ -1,9 +1,10 @@
-"""The motion that a load gives a journal, by the full solution: pressure, film and velocity solved together.
+"""The journal velocity under a load, by the full solution: pressure, film and velocity solved together.
 
-The same film as in `moving_film`, whose boundary condition holds; there the motion is given and the load
-follows, here the load is given. On a supposed film pressure is linear in the velocity, so the load gives
-the velocity, and the pressure then determines the film. Valid as `moving_film`; the mesh is graded to the gap
-that lies in the direction of the load, so that separating motion is resolved as well as closing motion.
+The film and its boundary condition are those of `moving_film`; there the motion is given and the load
+follows, here the load is given. On an assumed film extent the pressure is linear in the velocity, so the load
+gives the velocity, and the pressure then determines the extent. The range of validity is that of
+`moving_film`. The mesh is graded to the gap in the direction of the load, so that separating motion is
+resolved as well as closing motion.
 """
 
 from dataclasses import dataclass, replace
@@ -11,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.physics.films.banded import Banded, banded
+from templates.physics.films.banded_matrix import BandedMatrix, banded
 from templates.physics.films.complementarity import finer
 from templates.physics.films.film_equations import Equations, dual_widths, film_equations, midpoints, squeeze
 from templates.physics.films.film_mesh import Mesh, gap, ring_mesh
@@ -36,13 +37,13 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class _Squeezed:
+class _UnitVelocityFilm:
     """The discrete film of unit velocities along the line of centres and ahead of it."""
 
     mesh: Mesh
     equations: Equations
     """Balances of flow, their source still to be given."""
-    matrix: Banded
+    matrix: BandedMatrix
     sources: Array
     """(n + 1, 2) what each velocity brings to a node, per unit zeta."""
     brought: Array
@@ -93,7 +94,7 @@ def _nested(eps: float, ratio: float, load_direction: float, mesh: Mesh) -> Moti
     return _settled(_squeezed(eps, ratio, mesh), load_direction, start)
 
 
-def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _Squeezed:
+def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _UnitVelocityFilm:
     """Set up the balances of flow."""
     H, H_mid = gap(mesh.phi, eps), gap(midpoints(mesh.phi), eps)
     equations = replace(film_equations(mesh, ratio, H, H_mid, np.zeros_like(mesh.phi)), ring=True)
@@ -103,10 +104,10 @@ def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _Squeezed:
     brought[0] += brought[-1]
     may = np.zeros(matrix.shape, bool)
     may[matrix.order, :-1] = True
-    return _Squeezed(mesh, equations, matrix, sources, brought, may)
+    return _UnitVelocityFilm(mesh, equations, matrix, sources, brought, may)
 
 
-def _settled(system: _Squeezed, load_direction: float, film: Mask) -> Motion:
+def _settled(system: _UnitVelocityFilm, load_direction: float, film: Mask) -> Motion:
     """Alternate between the velocity that bears the load and the film of that velocity until both agree."""
     film = system.may & film
     load = np.array([np.cos(load_direction), np.sin(load_direction)])

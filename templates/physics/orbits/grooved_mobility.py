@@ -1,13 +1,14 @@
-r"""Mobility of a bearing with a circumferential groove in its sleeve: where the load passes, two lands bear.
+r"""Mobility of a bearing with a circumferential groove in its sleeve, over which two lands carry the load.
 
 .. math:: \vec M = (1-s)\,\vec M(b) + s\,\frac{\vec M\left(b(1-g)/2\right)}{1-g}
 
 b is the width ratio, g the groove's width over the bearing's, and s the share of the 90° around the load's
 direction that the groove covers. M is the finite bearing's mobility (`mobility_map`). With s = 1 this is
-exact: two bearings of half the land side by side, of which each bears half the load. Between, it is a blend.
+exact: two bearings side by side, each with half of the land width, carry half the load each. For s between 0
+and 1 the formula is a blend.
 
-The film is always full of oil, so nothing starves. Compared with level supplied by
-`benchmarks/film_cycle_ensemble.py`.
+The film is always full of oil, so starvation cannot occur. `benchmarks/film_cycle_ensemble.py` compares it
+with level `supplied`.
 """
 
 from dataclasses import dataclass, replace
@@ -26,7 +27,7 @@ from templates.physics.orbits.journal_orbit import (
 )
 from templates.physics.orbits.mobility_law import MapLaw
 from templates.physics.orbits.mobility_map import mapped_film_under_load
-from templates.physics.orbits.turning import Turning
+from templates.physics.orbits.rotation import PartRotation
 
 SECTOR = np.pi / 4
 """Half of the sector about the load's direction in which the groove counts [rad]."""
@@ -69,18 +70,18 @@ class Groove:
 
 
 @dataclass(frozen=True)
-class Passing:
+class GroovePassage:
     """A load that passes a groove: the load of some cases, the groove, and how the sleeve turns."""
 
     load: CyclicLoad
-    sleeve: Turning
+    sleeve: PartRotation
     groove: Groove
 
-    def of(self, cases: Mask) -> "Passing":
+    def of(self, cases: Mask) -> "GroovePassage":
         """Return the same object for a subset of the cases."""
-        return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
+        return GroovePassage(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
-    def with_distinct_rings(self) -> tuple["Passing", NDArray[np.intp]]:
+    def with_distinct_rings(self) -> tuple["GroovePassage", NDArray[np.intp]]:
         """Return the same at angles whose rings differ in their number of nodes.
 
         And where the old angles are.
@@ -92,7 +93,7 @@ class Passing:
             return self, np.arange(steps.size)
         ring, own = self.ring(max(_FINENESSES))
         divided = CyclicLoad(ring.place, ring.period, ring.S[:2], ring.w)
-        return Passing(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
+        return GroovePassage(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
 
     def ring(self, finer: int) -> tuple[Ring, NDArray[np.intp]]:
         """Return the finest nodes, the sleeve's swing as the third row of their load.
@@ -123,10 +124,10 @@ class Passing:
 class GroovedLaw:
     """The mobility beside a groove; a `MobilityLaw`.
 
-    It recognises the ring on which it is asked by the number of nodes: `Passing.with_distinct_rings`.
+    It recognises the ring on which it is asked by the number of nodes: `GroovePassage.with_distinct_rings`.
     """
 
-    def __init__(self, ratio: Array, passing: Passing) -> None:
+    def __init__(self, ratio: Array, passing: GroovePassage) -> None:
         """Take the widths B/D of the cases, (C,), those of their lands within the map [-]."""
         self.ratio, self.passing = ratio, passing
         self.whole, self.lands = MapLaw(ratio), MapLaw(passing.groove.land(ratio))
@@ -177,7 +178,7 @@ def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
     return np.asarray(np.where(grooved, pressure * (1 + share) / 2 * np.sin(extent / 2), 0.0))[()]
 
 
-def lifting(lift: Array, sleeve: Turning, groove: Groove, angle: Array) -> Array:
+def lifting(lift: Array, sleeve: PartRotation, groove: Groove, angle: Array) -> Array:
     """Return the force of the supply pressure on the journal, against which the load presses, (2, C, N) [-].
 
     Parameters
@@ -197,7 +198,7 @@ def lifting(lift: Array, sleeve: Turning, groove: Groove, angle: Array) -> Array
     return np.stack([force * np.cos(middle), force * np.sin(middle)])
 
 
-def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
+def grooved_orbit(passing: GroovePassage, ratio: Array) -> Orbit:
     """Return the periodic orbit of each case by the mobility beside its groove; NaN where none was found.
 
     Parameters
@@ -212,7 +213,9 @@ def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
     return replace(orbit, eps=orbit.eps[..., own])
 
 
-def grooved_film_under_load(xi: Array, eta: Array, ratio: Array, passing: Passing) -> tuple[Array, Array]:
+def grooved_film_under_load(
+    xi: Array, eta: Array, ratio: Array, passing: GroovePassage
+) -> tuple[Array, Array]:
     """Return what the film beside a groove does, at the load's angles (C, N), in Booker's frame [-].
 
     Parameters

@@ -1,13 +1,15 @@
-r"""The orbit of a journal under a load that repeats, by the mobility method; many cases at once.
+r"""The orbit of a journal under a periodic load, by the mobility method; many cases at once.
 
 .. math:: d\vec\epsilon/d\theta = S\,\vec M(\vec\epsilon, \vec S) + w\,\hat z\times\vec\epsilon,
     \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
 
-theta is the crank angle, which turns with Omega; the load on the journal is linear between its points. The
-film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
-is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
-of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
-the smallest gap would err by more than 0.2 per cent; the difference from twice the step gives the error.
+theta is the crank angle, which increases with Omega; the load on the journal is linear between its points.
+The film is massless and always full where it carries, so its history does not matter. All nodes of the cycle
+are solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
+of Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and
+a quarter of that where the error bound of the smallest gap is above 0.2 per cent. The intervals of the load
+are halved until they are short enough: the nodes, the answer and its bound do not change if the same load is
+given at twice as many angles.
 
 References
 ----------
@@ -42,7 +44,7 @@ _THINNER, _LONGEST = 0.25, 0.7
 _STUCK = 0.1
 """A journal at the wall that moves less than this, over its gap, stays there."""
 ROUGHEST = 2e-3
-"""Relative error of the smallest gap by the step, beyond which the steps are shortened [-]."""
+"""Bound of the relative error of the smallest gap, beyond which the steps are shortened [-]."""
 UNKNOWN = 0.1
 """The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
 _FINER = 4
@@ -131,7 +133,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
         part = borne & (np.arange(cases) // size == start // size)
         _fill(whole, load, law, part, finer=1)
         if node_counts(load, _FINER).sum() > node_counts(load).sum():
-            _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
+            _fill(whole, load, law, part & ~(whole.step_bound < ROUGHEST), finer=_FINER)
     unknown = ~(whole.step_error < UNKNOWN)
     whole.eps[:, unknown] = np.nan
     for values in (
@@ -146,9 +148,10 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
 
 
 def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
-    """Return the number of steps into which each interval between the load's angles is divided, (N,)."""
+    """Return the number of steps into which each interval between the load's angles is halved, (N,)."""
     widths = np.diff(load.angle, append=load.angle[0] + load.period)
-    return np.maximum(1, np.ceil(finer * widths / LARGEST_STEP - 1e-6)).astype(np.intp)
+    halvings = np.ceil(np.log2(finer * widths / LARGEST_STEP) - 1e-6)
+    return (1 << np.maximum(0, halvings).astype(np.intp)).astype(np.intp)
 
 
 def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
@@ -181,7 +184,7 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
     whole.least_angle[cases] = ring.place[place]
     whole.step_error[cases] = error[settled]
     whole.between[cases] = films[-1][settled]
-    whole.step_bound[cases] = step_bound(films[-3:])[settled]
+    whole.step_bound[cases] = step_bound(films)[settled]
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:

@@ -1,7 +1,7 @@
 """Mobility with its slopes, for the orbits of many journals at once: the form that Newton's method needs.
 
-In Booker's frame, xi along the load on the journal and eta ahead of it; points are (cases, places), and
-every case has a width of its own. Two laws: Booker's closed form, and the map of the finite bearing.
+In Booker's frame, xi is along the load on the journal and eta ahead of it. Points are (cases, places), and
+every case has its own width. Two laws: Booker's closed form, and the map of the finite bearing.
 
 References
 ----------

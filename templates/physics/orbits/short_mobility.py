@@ -1,10 +1,11 @@
-"""Pressure and side flow of the short bearing under a load that moves its journal, by Booker's fit.
+"""Pressure and side flow of the short bearing under a moving load, by Booker's fit.
 
 Only axial flow, P = 0 at the ends and wherever the gap grows (half film). A load moves the journal's centre
-with d(eps)/dt = M F psi²/(B D eta); in a frame with xi along the load and eta ahead of it the fit of 1971 is
-M = (1−xi)^(5/2)/(pi b²) along the load and −4 eta (1−xi)^(3/2)/(pi b)² ahead of it, b = B/D. Its error over
-the size of M, at the worst direction, against the exact half film (`tests/references/short_mobility.py`):
-1.0 % up to eps 0.2, 2.6 % to 0.5, 5.7 % to 0.8, 7.5 % to 0.9, 10.4 % to 0.99, 11.6 % beyond.
+with d(eps)/dt = M F psi²/(B D eta). In a frame with xi along the load and eta ahead of it, the fit of 1971 is
+M = (1−xi)^(5/2)/(pi b²) along the load and −4 eta (1−xi)^(3/2)/(pi b)² ahead of it, b = B/D. Its error
+relative to M, in the worst direction, compared with the exact half film
+(`tests/references/short_mobility.py`), is 1.0 % up to eps 0.2, 2.6 % to 0.5, 5.7 % to 0.8, 7.5 % to 0.9, 10.4
+% to 0.99, and 11.6 % beyond.
 
 References
 ----------

@@ -1,33 +1,31 @@
-"""Bound of the error of an orbit's smallest gap by the step: from three rings of nodes, each twice as fine.
+"""Bound of the error of an orbit's smallest gap by the step: from rings of nodes, each twice as fine.
 
 The nodes rarely meet the smallest gap: it lies between them, at the vertex of a parabola through the lowest
-three. The error of that gap falls with the square of the step, once the step is small enough. With the
-changes d1 from ring 4h to 2h and d2 from 2h to h, and r = d1/d2, the error is taken for
+three. The error of that gap falls with the square of the step, once the step is small enough: a change from
+ring to ring is then a quarter of the change before. The bound is
 
-    d2/3, a quarter added        where 3 <= r <= 5.5: the order is seen
-    d1/4, or d2 if that is more  where r > 5.5: d2 is small by chance
-    d2                           where 1.5 < r < 3: it falls, but not yet as it should
-    3 max(d1, d2)                where r <= 1.5: it does not fall
-    max(d1, d2)                  where the changes have opposite signs and r > 1.5
+    LEAST + MARGIN · max(d0, d1/4, d2/16) / gap
 
-three times which is the bound. There is none where the coarse ring has no orbit, or where the changes grow by
-more than rounding: nothing can be read from these. It is an estimate with a margin, not a proof;
+with d0 the last change, d1 and d2 those before. Where the order is seen it is 3.75 times the error. A change
+that is small by chance does not make the bound small, and a small change of the load changes it little: it
+has no steps. There is none where the coarse ring has no orbit. It is an estimate with a margin, not a proof;
 `python -m benchmarks.step_bound` compares it with steps sixteen times as fine on random duties.
 """
 
 from collections.abc import Sequence
+from functools import reduce
+from itertools import pairwise
 
 import numpy as np
 
 from templates.core.arrays import Array
 
-SEEN = (3.0, 5.5)
-"""Ratios of two changes between which the second order is seen: 4, in the limit [-]."""
-FALLING = 1.5
-"""Ratio above which the changes fall [-]."""
-GROWING = 1e-6
-"""Last change over the gap, above which changes that grow leave the error unknown [-]."""
-MARGIN = 3.0
+MARGIN = 1.25
+"""Bound over the largest change from ring to ring, each brought to the finest ring [-]."""
+LEAST = 5e-4
+"""What is stated at least: where the changes are smaller, kinks of the load decide the error [-]."""
+RINGS = 4
+"""Rings of which the changes count, the finest and those before it."""
 
 
 def least_between(place: Array, period: float, gap: Array) -> Array:
@@ -59,36 +57,21 @@ def least_between(place: Array, period: float, gap: Array) -> Array:
 
 
 def step_bound(films: Sequence[Array]) -> Array:
-    """Return the bound of the relative error of the last of three gaps, by rings with steps 4h, 2h and h.
+    """Return the bound of the relative error of the last of several gaps, by rings each twice as fine.
 
     Parameters
     ----------
     films
-        Three times (C,) smallest gaps between the nodes, NaN where a ring has none [-].
+        (C,) smallest gaps between the nodes of each ring, the finest last, NaN where a ring has none [-].
 
     Returns
     -------
-    (C,) relative error; NaN where a ring has no gap, or there are fewer than three [-].
+    (C,) relative error; NaN where the last two rings have no gap, or there are fewer than two [-].
     """
-    if len(films) < 3:
-        return np.full_like(films[-1], np.nan)
-    coarse, middle, fine = films[-3:]
-    first, second = coarse - middle, middle - fine
-    d1, d2 = np.abs(first), np.abs(second)
-    with np.errstate(all="ignore"):
-        ratio = np.where(d2 > 0, d1 / d2, np.inf)
-    error = np.where(first * second > 0, _straight(d1, d2, ratio), _alternating(d1, d2, ratio))
-    grows = (ratio < 1) & (d2 > GROWING * fine)
-    return np.asarray(np.where(grows, np.nan, MARGIN * error / fine))
-
-
-def _straight(d1: Array, d2: Array, ratio: Array) -> Array:
-    """Return the error where both changes go the same way."""
-    falling = np.where(ratio > FALLING, d2, 3 * np.maximum(d1, d2))
-    seen = np.where(ratio >= SEEN[0], 1.25 * d2 / 3, falling)
-    return np.where(ratio > SEEN[1], np.maximum(d2, d1 / 4), seen)
-
-
-def _alternating(d1: Array, d2: Array, ratio: Array) -> Array:
-    """Return the error where the last change goes back."""
-    return np.asarray(np.maximum(d1, d2) * np.where(ratio > FALLING, 1.0, 3.0))
+    fine = films[-1]
+    if len(films) < 2:
+        return np.full_like(fine, np.nan)
+    changes = [np.abs(coarse - finer) for coarse, finer in pairwise(films[-RINGS:])]
+    reduced = [change / 4**rings for rings, change in enumerate(reversed(changes))]
+    largest = reduce(np.fmax, reduced)
+    return np.asarray(np.where(np.isnan(reduced[0]), np.nan, LEAST + MARGIN * largest / fine))

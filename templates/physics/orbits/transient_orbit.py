@@ -1,8 +1,8 @@
-"""The orbit of a journal with mass-conserving cavities, run in until it repeats: the reference level.
+"""The orbit of a journal with mass-conserving cavities, marched until it repeats: the reference level.
 
 The march starts from the mobility orbit and a full film, and repeats the cycle with `transient_film` at most
-`MOST_CYCLES` times. `benchmarks/film_cycle.py` measures error and cost on big ends, against a mesh twice as
-fine and half the step.
+`MOST_CYCLES` times. `benchmarks/film_cycle.py` measures error and cost on big-end bearings, compared with a
+mesh twice as fine and half the step.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _REPORTED = 30  # steps between two reports of progress
 
 
 @dataclass(frozen=True)
-class Marching:
+class MarchSettings:
     """Mesh and step."""
 
     around: int = 144
@@ -56,7 +56,7 @@ class TransientOrbit:
 
 
 def transient_orbit(
-    load: CyclicLoad, ratio: float, start: Array, marching: Marching
+    load: CyclicLoad, ratio: float, start: Array, marching: MarchSettings
 ) -> TransientOrbit | None:
     """March one case until it repeats; None where the search for the film fails or the orbit does not repeat.
 

@@ -1,8 +1,8 @@
-r"""Hydrostatic pads: a deep recess fed through a restrictor, bounded by circular lands of even film.
+r"""Hydrostatic pads: a deep recess, fed through a restrictor and bounded by circular lands of uniform film.
 
 In the land the pressure falls with ln r from the recess to the edge: (1/r) d/dr(r h³ dp/dr) = 0. The outer
-land spans R_0 … R. An annular pad has an inner land r … r_0 too; a circular one has none, and its inner radii
-are not a number.
+land spans R_0 … R. An annular pad has an inner land r … r_0 too; a circular pad has none, and its inner radii
+are NaN.
 
 References
 ----------

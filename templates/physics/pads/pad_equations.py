@@ -1,7 +1,7 @@
-"""The balances of flow of converging pads of finite width, solved for many pads together.
+"""Flow balances of converging pads of finite width, solved for many pads together.
 
-They are those of `film_equations` on the mesh of `pad_mesh`. A converging film does not rupture, and then
-they separate: their eigenvectors across the pad leave one tridiagonal system along it each.
+The balances are those of `film_equations` on the mesh of `pad_mesh`. A converging film does not rupture, so
+they separate: each eigenvector across the pad leaves one tridiagonal system along it.
 
 References
 ----------

@@ -1,9 +1,9 @@
-r"""Meshes for the films of plane pads, many at once, graded to the thin film and to all edges.
+r"""Meshes for the films of plane pads, many at once, refined towards the thin film and all edges.
 
-x = 0 (inlet) … 1 (outlet) along the pad, H = a − (a − 1) x; zeta = 2z/b = 0 (middle) … 1 (side).
-The nodes are equally spaced in t, 0 … 1, which maps smoothly to x, so that differences and Richardson's
-extrapolation keep their order. From t to s, tanh crowds the nodes in the two end layers, as thick as the pad
-is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share.
+x = 0 (inlet) … 1 (outlet) along the pad, H = a − (a − 1) x; zeta = 2z/b = 0 (middle) … 1 (side). The nodes
+are equally spaced in t, 0 … 1, which maps smoothly to x, so that differences and Richardson's extrapolation
+keep their order. From t to s, tanh concentrates the nodes in the two end layers, which are as thick as the
+pad is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share of nodes.
 
 References
 ----------
@@ -22,7 +22,7 @@ _NEWTON_STEPS = 12
 
 
 @dataclass(frozen=True)
-class Grading:
+class NodeMap:
     """The map between t and x for pads (..., 1)."""
 
     logarithm: Array
@@ -53,7 +53,7 @@ class Grading:
         return np.clip(0.5 + np.arctanh((2 * u - 1) * np.tanh(self.stretch / 2)) / self.stretch, 0, 1)
 
 
-def grading(a: Array, width: Array) -> Grading:
+def grading(a: Array, width: Array) -> NodeMap:
     """Return the map for pads of film ratio a ≥ 1 and width b/l.
 
     Parameters
@@ -67,7 +67,7 @@ def grading(a: Array, width: Array) -> Grading:
     outlet = _layer_slope(width / np.pi * np.expm1(logarithm) / logarithm)
     inlet = _layer_slope(width / np.pi * -np.expm1(-logarithm) / logarithm)
     stretch = _stretch(-np.log(outlet * inlet) / 2)
-    return Grading(logarithm[..., None], np.sqrt(outlet / inlet)[..., None], stretch[..., None])
+    return NodeMap(logarithm[..., None], np.sqrt(outlet / inlet)[..., None], stretch[..., None])
 
 
 def _layer_slope(layer: Array) -> Array:

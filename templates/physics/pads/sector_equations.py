@@ -1,14 +1,14 @@
-r"""The film of sector pads whose gap falls with the angle alone, solved for many pads together.
+r"""The film of sector pads whose gap depends only on the angle, solved for many pads together.
 
-With rho = ln r the Reynolds equation of a turning collar keeps the form that it has under a rectangle:
+With zeta along ln r, the Reynolds equation of a rotating collar has the same form as for a rectangle:
 
 .. math::
     \partial_\xi(H^3\partial_\xi P) + (2\varphi/\Lambda)^2 H^3\,\partial_\zeta^2 P
     = (r/r_m)^2\,dH/d\xi, \quad H = a-(a-1)\xi, \quad P = \frac{p\,h_o^2}{6\,\eta\,\omega\,r_m^2\,\varphi}
 
 xi = 0 (inlet) … 1 (outlet) of the angle phi, zeta = −1 (inner edge) … 1 over Lambda = ln(r_o/r_i), r_m the
-mean radius; P = 0 at all four edges. Only the source grows outwards. So the eigenvectors across separate
-these balances as in `pad_equations`, and a narrow ring far out is a row of rectangles.
+mean radius; P = 0 at all four edges. Only the source term grows outwards. So the eigenvectors across separate
+these balances as in `pad_equations`, and a narrow ring of large radius behaves like a row of rectangles.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Plane slider bearings without side leakage: parallel faces and the fixed incline, per unit width.
 
 The pad spans 0 ≤ x ≤ l with film h_i at the inlet and h_o at the outlet; ambient pressure at both ends.
-a = h_i/h_o is the film ratio; a = 1 is the parallel pad, which bears nothing.
+a = h_i/h_o is the film ratio; a = 1 is the parallel pad, which carries no load.
 
 References
 ----------

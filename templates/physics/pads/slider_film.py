@@ -5,15 +5,14 @@ r"""Plane slider pads with a fixed incline, of infinite or finite width, for any
     \quad H = a - (a-1)x, \quad P = \frac{p\,h_o^2}{\eta U l}
 
 x = 0 (inlet) … 1 (outlet), zeta = 2z/b = −1 … 1; P = 0 (ambient) at all four edges. Isothermal,
-incompressible, rigid, laminar. A diverging film (a < 1) gains oil nowhere, so the complementarity of
-`complementarity` is met by P = 0: all of it is ruptured, it bears nothing, and streamers that fill
-h_i/h of it shear. A parallel film (a = 1) bears nothing either.
+incompressible, rigid, laminar. A diverging film (a < 1) gains oil nowhere, so P = 0 satisfies the
+complementarity conditions of `complementarity`: the whole film is ruptured and carries no load, and only
+streamers that fill h_i/h of it are sheared. A parallel film (a = 1) carries no load either.
 
-The finite width is solved by `pad_equations`, of second order, and extrapolated by Richardson from 32 × 8 and
-64 × 16 intervals. Measured by `benchmarks/slider_bearing.py`, the load errs by 2e-5 up to a film ratio of
-10 and by 2e-4 up to 1000, the pressure by 5e-5 and 3e-4 of its peak, the largest pressure by 3e-4 and 8e-4;
-the flows are less smooth at the corners: that of the inlet errs by 2e-3, the little at the sides of wide
-pads by 1e-2.
+`pad_equations` solves pads of finite width with second order, extrapolated by Richardson from 32 × 8 and 64 ×
+16 intervals. Errors measured by `benchmarks/slider_bearing.py`: load 2e-5 up to a film ratio of 10 and 2e-4
+up to 1000, pressure 5e-5 and 3e-4 of its peak, largest pressure 3e-4 and 8e-4. The flows are less smooth at
+the corners: the error is 2e-3 at the inlet, and 1e-2 for the small side flow of wide pads.
 
 References
 ----------
@@ -30,7 +29,7 @@ from templates.core.language.declare import units
 from templates.physics.numerics.arrays import require
 from templates.physics.numerics.arrays import spread as spread
 from templates.physics.pads.pad_equations import solved_pads
-from templates.physics.pads.pad_mesh import Grading, grading
+from templates.physics.pads.pad_mesh import NodeMap, grading
 from templates.physics.pads.slider import (
     centre_of_pressure_Rayleigh_1918,
     film_velocity,
@@ -202,7 +201,7 @@ def _infinite(a: Array) -> InfinitePad:
 class FinitePad(PadFilm):
     """A solved pad of finite width, with its pressure at mid-width."""
 
-    mesh: Grading
+    mesh: NodeMap
     """Where its nodes stand."""
     P: Array
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""

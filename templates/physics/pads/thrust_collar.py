@@ -1,12 +1,12 @@
 r"""A collar on fixed-incline pads: film from load, with the temperature of a heat balance.
 
-Every pad has the same film, h = h_o + t (1 − xi) over its angle. The film ratio a = h_i/h_o is the one
-unknown: it makes the outlet film h_o = t/(a − 1), by the load the viscosity, and by the balance the
-temperature; the oil has that viscosity at that temperature for one a.
+Every pad has the same film, h = h_o + t (1 − xi) over its angle. The film ratio a = h_i/h_o is the only
+unknown: it gives the outlet film h_o = t/(a − 1), the load then gives the viscosity, and the heat balance the
+temperature. For one value of a the oil has that viscosity at that temperature.
 
-Heat of a pad: its oil enters with T_1; it leaves at the outlet with T_2, and at the sides with their mean,
-which is that of the film. A share k of the outlet's oil goes on under the next pad, fresh oil replaces the
-rest; nothing leaves through pads and collar:
+Heat balance of a pad: its oil enters with T_1; it leaves at the outlet with T_2, and at the sides with the
+mean of both, which is the film temperature. A share k of the outlet's oil flows under the next pad, and fresh
+oil replaces the rest; no heat leaves through pads and collar:
 
 .. math::
     P = \rho c\,(T_2 - T_1)(Q_i - \tfrac12 Q_s), \quad Q_i T_1 = k Q_o T_2 + (Q_i - k Q_o) T_s

@@ -1,4 +1,4 @@
-r"""Rating life of rolling bearings, ISO 281:2007: equivalent load, its mean over a cycle, reliability.
+r"""Rating life of rolling bearings, ISO 281:2007: equivalent load, its mean over a cycle, and reliability.
 
 Deep groove ball bearings with an axial load take X and Y from the table for radial contact, by f0 Fa/C0.
 

@@ -1,1 +1,1 @@
-"""Effects of rough faces on a film: contact of summits, and flow factors."""
+"""Effects of rough faces on a film: asperity contact, and flow factors."""

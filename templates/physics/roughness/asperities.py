@@ -1,11 +1,11 @@
-r"""Contact of two rough surfaces whose summits stand in a normal distribution, after Greenwood and Tripp.
+r"""Contact of two rough surfaces with normally distributed summits, after Greenwood and Tripp.
 
 .. math::
     p_c = \frac{16\sqrt2\,\pi}{15}(\sigma\beta\eta)^2\sqrt{\sigma/\beta}\,E'\,F_{5/2}(h/\sigma), \quad
     F_{5/2}(u) = \frac{1}{\sqrt{2\pi}}\int_u^\infty (s-u)^{5/2} e^{-s^2/2}\,ds
 
-sigma is the composite roughness (root mean square), beta the radius of the summits, eta how many there are on
-an area, 1/E' the sum of (1 − nu²)/E of both. F_{5/2} is taken from a spline through its exact values.
+sigma is the composite roughness (root mean square), beta the radius of the summits, eta their number per
+area, 1/E' the sum of (1 − nu²)/E of both. A spline through exact values represents F_{5/2}.
 
 References
 ----------

@@ -1,16 +1,16 @@
-r"""The average Reynolds equation of rough surfaces after Patir and Cheng, and the journal's film by it.
+r"""The average Reynolds equation of rough surfaces after Patir and Cheng, and its film of a journal.
 
 .. math::
     \partial_x(\phi_x h^3\partial_x p) + \partial_z(\phi_x h^3\partial_z p)
     = 6\,\eta\,U\,\partial_x(\bar h_T + \sigma\Phi_s)
 
 phi_x is that of isotropic roughness (gamma = 1) in both directions. Phi_s is (sigma_1/sigma)² phi_s of the
-moving face less (sigma_2/sigma)² phi_s of the other: faces of equal roughness have none. The mean gap h_T of
-a normal distribution is h where the faces do not touch. Below h/sigma = 0.5, where the tables end, the
-factors stay as they are there.
+moving face minus (sigma_2/sigma)² phi_s of the other, so it vanishes for faces of equal roughness. The mean
+gap h_T of a normal distribution is h where the faces do not touch. Below h/sigma = 0.5, where the tables end,
+the factors stay constant.
 
-The tables' numbers were read in the source code of foam-extend 4.0 (flowFactorsPatirCheng.C), which quotes
-the papers; both branches of phi_s meet at h/sigma = 5 to 1e-3.
+The tables' numbers were taken from the source code of foam-extend 4.0 (flowFactorsPatirCheng.C), which quotes
+the papers; at h/sigma = 5 the two branches of phi_s agree to 1e-3.
 
 References
 ----------

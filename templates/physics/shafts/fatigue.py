@@ -1,11 +1,12 @@
 """Fatigue life by stress: Basquin's line, mean stress by Goodman, Gerber or Morrow.
 
 For smooth or notched steel parts under constant amplitude, where stresses stay elastic (beyond some 10³
-cycles). Scatter of life by a factor of three and more is common; no reliability is in these formulas.
+cycles). Lives commonly scatter by a factor of three and more; these formulas include no reliability.
 
-A compressive mean stress: Goodman's and Gerber's lines were drawn through tests in tension. Gerber's parabola
-would punish compression as much as tension, Goodman's line would promise life for it; both take it as zero
-here, after Budynas and Nisbett. Morrow's formula is taken as it stands: compression lengthens life (Dowling).
+Compressive mean stress: Goodman's and Gerber's lines were fitted to tests in tension. In compression,
+Gerber's parabola would reduce life as in tension, and Goodman's line would increase it; here both set a
+compressive mean stress to zero, after Budynas and Nisbett. Morrow's formula is used unchanged: compression
+lengthens life (Dowling).
 
 References
 ----------

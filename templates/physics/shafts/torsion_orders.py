@@ -1,7 +1,8 @@
 """Critical speeds, where engine orders meet natural frequencies, and the lines of a Campbell diagram.
 
-For `torsional_vibration`. An order is a number of excitations for each turn: a four-stroke engine has whole
-and half orders. Natural frequencies of a chain do not depend on speed: in the diagram they are level.
+For `torsional_vibration`. An order is a number of excitations per turn: a four-stroke engine has whole and
+half orders. The natural frequencies of a chain do not depend on speed, so they are horizontal lines in the
+diagram.
 """
 
 from __future__ import annotations

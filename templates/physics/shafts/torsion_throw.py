@@ -1,6 +1,6 @@
-"""A crank throw in torsion: sections of its parts, and which closed form suits it.
+"""A crank throw in torsion: the sections of its parts, and the choice of the closed form.
 
-For `crank_stiffness`. Both closed forms are fits to tests: Carter's to throws with slender webs, Ker
+For `crank_stiffness`. Both closed forms are fitted to tests: Carter's to throws with slender webs, Ker
 Wilson's to throws whose pin overlaps the journals.
 
 References

@@ -1,13 +1,14 @@
 """A smooth transition from Carter's to Ker Wilson's formula where pin and journal begin to overlap.
 
-For `crank_stiffness` 1. The literature chooses by the sign of the overlap and names no width. At overlap 0
-nothing happens to the steel: the webs stiffen steadily as the throw becomes shorter. So the two formulas are
-joined over a range of throws. Its middle is the published boundary, R = (D_j + D_c)/2, its half width
-0.1 (D_j + D_c): half of the length 0.2 (D_j + D_c) by which Ker Wilson shortens the throw for what pin and
-journal stiffen of the webs. Outside of it each formula holds alone, as published. The width is ours.
+For `crank_stiffness` 1. The literature chooses by the sign of the overlap, without a transition. But at
+overlap 0 nothing changes abruptly: the webs stiffen steadily as the throw becomes shorter. So the two
+formulas are blended over a range of throws. Its middle is the published boundary, R = (D_j + D_c)/2. Its half
+width is 0.1 (D_j + D_c), half of the length by which Ker Wilson shortens the throw because pin and journal
+stiffen the webs. Outside this range each formula holds alone, as published. The width of the range is our
+choice.
 
-Within it the flexibilities 1/K are joined, in shares that have no kink: both formulas are sums of the
-flexibilities of journal, pin and web, so this joins them part by part. The stiffness stays between the two.
+Within the range the flexibilities 1/K are blended with smooth weights: both formulas are sums of the
+flexibilities of journal, pin and web, so this blends them part by part. The stiffness stays between the two.
 
 References
 ----------

@@ -1,1 +1,1 @@
-"""Films that a groove or hole feeds, marched over a cycle with their oil conserved."""
+"""Films fed by grooves or holes, marched over a cycle with conservation of mass."""

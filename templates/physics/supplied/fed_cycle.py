@@ -1,18 +1,19 @@
 """The film of a journal bearing over a cycle, fed as in an engine, at every level.
 
-Orbit, pressure, loss and flow:
+The levels compute orbit, pressure, power loss and flow:
 
-    mobility_short    Booker's closed form (1971) of the short bearing's half film; knows no supply
-    mobility          the finite bearing's mobility from its map; knows no supply
+    mobility_short    Booker's closed form (1971) of the short bearing's half film; ignores the supply
+    mobility          the finite bearing's mobility from its map; ignores the supply
     mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
                       nowhere else; knows no groove, hole or supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; case after case
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
-clearance over the diameter, Omega the speed of the crank. The load is what the journal pushes with, in a
-frame whose axes sleeve and journal share at crank angle 0; a positive speed turns x to y. A massless journal
-(supplied: nearly so) in a rigid, aligned bearing; isothermal, laminar.
+clearance over the diameter, Omega the speed of the crank. The load is the force that the journal exerts, in a
+frame whose axes coincide with those of sleeve and journal at crank angle 0; a positive speed turns x to y.
+The journal is massless (nearly so at level `supplied`), the bearing rigid and aligned, the film isothermal
+and laminar.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -28,7 +29,7 @@ from templates.core.progress import part_of_progress
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty, cycle_of, weights
 from templates.physics.orbits.grooved_mobility import (
     Groove,
-    Passing,
+    GroovePassage,
     grooved_film_under_load,
     grooved_orbit,
     lift_of,
@@ -37,18 +38,18 @@ from templates.physics.orbits.grooved_mobility import (
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw, ShortLaw
 from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
+from templates.physics.orbits.rotation import turning
 from templates.physics.orbits.short_mobility import short_film_under_load
 from templates.physics.orbits.transient_orbit import (
-    Marching,
+    MarchSettings,
     TransientOrbit,
     along_march,
     sampled_orbit,
     transient_orbit,
 )
-from templates.physics.orbits.turning import turning
-from templates.physics.supplied.feeding import AROUND, Feeding, supplies_of
 from templates.physics.supplied.supplied_orbit import NEAR_HOLES, SuppliedOrbit, Verdict, supplied_orbit
 from templates.physics.supplied.supply import Supply
+from templates.physics.supplied.supply_geometry import AROUND, SupplyGeometry, supplies_of
 
 MOBILITY = ("mobility_short", "mobility", "mobility_grooved")
 LEVELS = (*MOBILITY, "flooded", "supplied")
@@ -203,7 +204,7 @@ def _of_points(texts: Sequence[str]) -> str:
 class _Cases:
     """The points of a duty in one row, dimensionless."""
 
-    passing: Passing
+    passing: GroovePassage
     ratio: Array
     """(C,) width over diameter; 1 where the level does not take it, and the load has no speed then."""
     sliding: Array
@@ -315,7 +316,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
     return up_to(start + extent - centre) - up_to(start - centre)
 
 
-def fed_duty(level: str, duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
+def fed_duty(level: str, duty: Duty, feeding: SupplyGeometry, pressure: Array) -> FedDuty:
     """Return a duty with what feeds it at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supplies = supplies_of(feeding, pressure) if level == "supplied" else None
@@ -342,7 +343,7 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     S = np.stack([x, y])
     if level == "mobility_grooved":
         S = S - lifting(lift_of(groove.share, groove.extent, pressure), rests, whole, duty.angle)
-    passing = Passing(CyclicLoad(duty.angle, period, S, w), rests, whole)
+    passing = GroovePassage(CyclicLoad(duty.angle, period, S, w), rests, whole)
     return _Cases(passing, np.where(taken, ratio, 1.0), journal - sleeve, pressure, points)
 
 
@@ -362,7 +363,7 @@ def _flooded_orbit(cases: _Cases) -> FedOrbit:
     ratio = cases.ratio
     start, flooded = periodic_orbit(cases.load, MapLaw(ratio)), None
     if np.isfinite(start.least_gap).all():
-        flooded = transient_orbit(cases.load, float(ratio[0]), start.eps[:, 0, 0], Marching())
+        flooded = transient_orbit(cases.load, float(ratio[0]), start.eps[:, 0, 0], MarchSettings())
     return replace(_shaped(sampled_orbit(flooded, cases.load), cases), flooded=flooded)
 
 

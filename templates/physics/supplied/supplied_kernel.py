@@ -5,22 +5,22 @@ In the frame of the mesh the shear flow vanishes. A cell balances, with 12 times
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
 
-A node in a pocket is held at its pressure. Where a pocket's edge lies at a distance d before the next node,
-oil flows from there, by the conductance of the step times step/d: nothing snaps between nodes, and the place
-of the edge counts to second order.
+A node in a pocket has the pocket's pressure. If a pocket's edge lies at a distance d before the next node,
+oil flows from the edge with the conductance of the step times step/d: the edge moves continuously between
+nodes, and its position is accurate to second order.
 
-Conductances around are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. Per cell the
-complementarity (active set: the smaller of pressure and void is 0; or the function of Fischer and Burmeister)
-has two slopes, by pressure and by void, and the larger is eliminated. The matrix that is left has dominant
-columns whatever the film: with r <= 1 the smaller slope over the larger, the column of a full cell has 1 + r
-on its diagonal and conductances over their sum beside it, that of another 1 + r and r times these. So its
-banded factors need no pivots.
+Circumferential conductances are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. In each
+cell the complementarity condition (active set: the smaller of pressure and void is 0; or the function of
+Fischer and Burmeister) has two slopes, by pressure and by void; the unknown with the larger slope is
+eliminated. The remaining matrix is dominant by columns for every film: with r <= 1 the ratio of the smaller
+slope to the larger, the column of a full cell has 1 + r on its diagonal and conductances divided by their sum
+beside it; any other column has 1 + r, and r times these. So its banded factorisation needs no pivoting.
 """
 
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.numerics.compiled import compiled
+from templates.physics.numerics.machine_code import compiled
 from templates.physics.supplied.supplied_mesh import Mesh
 
 MOST = 25

@@ -1,4 +1,4 @@
-"""A supplied film marched over a cycle: steps of BDF2 whose size follows the gap, halved where one fails."""
+"""March a supplied film over a cycle: BDF2 steps whose size follows the gap, halved where one fails."""
 
 from __future__ import annotations
 

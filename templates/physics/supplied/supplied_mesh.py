@@ -1,8 +1,8 @@
-"""The mesh of a supplied film: cells around, turning with the mean speed of journal and sleeve, and across.
+"""The mesh of a supplied film: cells that turn with the mean speed of journal and sleeve, and rows across.
 
-Across, half the width is taken: rows of nodes from the middle to the edge of the shortest pocket, one on
-the edge of every other, then rows that grow finer towards the end of a wide bearing. The end, at ambient
-pressure, is left out.
+Across, the mesh covers half the width: rows of nodes from the middle to the edge of the shortest pocket, one
+row at the edge of every other pocket, then rows that become finer towards the end of a wide bearing. The end,
+at ambient pressure, has no row.
 """
 
 from typing import NamedTuple

@@ -1,9 +1,9 @@
-"""The orbit of a journal in a film that conserves its oil and is fed by holes and grooves: level `supplied`.
+"""The orbit of a journal in a mass-conserving film fed by holes and grooves: level `supplied`.
 
-The film is marched over cycle after cycle (`supplied_march`) in a mesh that turns with the mean speed of
-journal and sleeve. There the shear flow vanishes, and oil in a cavity stays in its cell: its history is not
-smeared. A coarse mesh is run in until the orbit repeats, or it is clear that the film starves; then a mesh
-whose cells follow the least gap. Measured by `python -m benchmarks.supplied_orbits`.
+The film is marched over several cycles (`supplied_march`) in a mesh that turns with the mean speed of journal
+and sleeve. In this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so its history is not
+smeared. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves; then on a mesh
+whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures it.
 """
 
 from dataclasses import astuple, dataclass, replace
@@ -16,7 +16,15 @@ from templates.core.progress import report
 from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.supplied.supplied_march import Duty, State, gap_at, start
 from templates.physics.supplied.supplied_mesh import Mesh, carried, supplied_mesh
-from templates.physics.supplied.supplied_run import WANDERS, Ending, Run, in_frame, least_gap, returns, run_in
+from templates.physics.supplied.supplied_run import (
+    WANDERS,
+    Run,
+    RunOutcome,
+    in_frame,
+    least_gap,
+    returns,
+    run_in,
+)
 from templates.physics.supplied.supply import Supply
 
 MASS = 2.5e-4
@@ -46,7 +54,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True)
-class Meshing:
+class MeshSettings:
     """A mesh, the largest step in time on it, and how many cycles to march on it at most."""
 
     around: int
@@ -60,16 +68,16 @@ class Meshing:
     """Cells around over those that a thin gap asks for, where the mesh follows it [-]."""
 
 
-COARSE = Meshing(64, 4, np.radians(4.0), 30)
+COARSE = MeshSettings(64, 4, np.radians(4.0), 30)
 """The mesh that runs in."""
-FINE = Meshing(128, 6, np.radians(2.0), 24)
+FINE = MeshSettings(128, 6, np.radians(2.0), 24)
 """The mesh of the result; more around where the least gap is thin."""
 RESOLVED, MOST_AROUND = 0.3, 384
 """Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
 
 NEAR_HOLES = (
-    Meshing(192, 6, np.radians(2.0), 24, near_edges=True, cells=1.5),
-    Meshing(256, 8, np.radians(2.0), 24, near_edges=True, cells=2.0),
+    MeshSettings(192, 6, np.radians(2.0), 24, near_edges=True, cells=1.5),
+    MeshSettings(256, 8, np.radians(2.0), 24, near_edges=True, cells=2.0),
 )
 """Meshes that follow where every hole stays under the load: there all oil enters against the film's pressure,
 through the hole's edges, and the mesh at these edges decides how much."""
@@ -190,15 +198,15 @@ def supplied_orbit(
     sliding: Array,
     ratio: float,
     supply: Supply,
-    meshes: tuple[Meshing, ...] = (COARSE, FINE),
+    meshes: tuple[MeshSettings, ...] = (COARSE, FINE),
     mass: float = MASS,
     refined: bool = True,
-    near_holes: tuple[Meshing, ...] = (),
+    near_holes: tuple[MeshSettings, ...] = (),
 ) -> SuppliedOrbit:
     """March one case until it repeats, or until it is clear that it starves.
 
     Says how far it is by `templates.core.progress.report`, which may raise to cancel. The first call compiles
-    the kernel, or reads it from disk (`templates.physics.numerics.compiled`).
+    the kernel, or reads it from disk (`templates.physics.numerics.machine_code`).
 
     Parameters
     ----------
@@ -239,7 +247,7 @@ def supplied_orbit(
         state = start(mesh, duty) if not runs else transferred(runs[-1].mesh, mesh, runs[-1].states[-1])
         progress = _Progress(number, meshes)
         runs.append(run_in(mesh, duty, state, meshing.step, meshing.most, progress))
-        if runs[-1].ending is Ending.THINNING:
+        if runs[-1].ending is RunOutcome.THINNING:
             break
     return _measured(duty, runs)
 
@@ -253,7 +261,7 @@ def _cells(gap: float, times: float = 1.0) -> int:
 class _Progress:
     """Says how far a march is, a few times in a cycle."""
 
-    def __init__(self, number: int, meshes: tuple[Meshing, ...]) -> None:
+    def __init__(self, number: int, meshes: tuple[MeshSettings, ...]) -> None:
         self.number, self.meshes, self.last = number, meshes, -1.0
 
     def __call__(self, cycle: int, part: float) -> None:
@@ -294,7 +302,7 @@ def _require_return(duty: Duty) -> None:
     missed = return_error(duty)
     if not returns(missed):
         raise ValueError(
-            f"a pocket is {np.degrees(missed):.3g}° off its place in the frame after the cycle: "
+            f"a pocket is {np.degrees(missed):.3g}° away from its initial position after the cycle: "
             "sleeve and journal speed must turn it by whole turns relative to the frame"
         )
 
@@ -366,11 +374,11 @@ def _totals(duty: Duty, run: Run) -> Totals:
 
 def _verdict(run: Run, share: float) -> Verdict:
     """Return how the last run ended; `share` is the share of the cycle with all pockets under the load."""
-    if run.ending is Ending.REPEATING:
+    if run.ending is RunOutcome.REPEATING:
         return Verdict.REPEATING
-    if run.ending is Ending.THINNING or (run.ending is Ending.FAILED and share >= OFTEN):
+    if run.ending is RunOutcome.THINNING or (run.ending is RunOutcome.FAILED and share >= OFTEN):
         return Verdict.STARVED
-    wanders = run.ending is Ending.UNSETTLED and run.repeat_error <= WANDERS
+    wanders = run.ending is RunOutcome.UNSETTLED and run.repeat_error <= WANDERS
     return Verdict.WANDERING if wanders else Verdict.UNSETTLED
 
 

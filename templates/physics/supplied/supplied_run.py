@@ -1,13 +1,13 @@
-"""Cycles of a supplied film on one mesh, until they repeat or the film is seen to lose its oil.
+"""Cycles of a supplied film on one mesh, until they repeat or the film is found to lose its oil.
 
-A fed bearing forgets its start fast: most repeat after 3 to 6 cycles. Two kinds do not. Where all the oil
-must enter under the load, little does: the film thins like 1/sqrt(n) with the cycle n, or faster (`thins`).
-And where the journal crosses a space without oil and meets the film on the other side, the place of the
-impact may change from cycle to cycle by more than a step, although the least gap does not; so the mean of the
-change over the cycle is taken.
+A fed bearing soon forgets its initial state: most orbits repeat after 3 to 6 cycles. Two kinds do not. If all
+the oil must enter under the load, little enters: the film thins like 1/sqrt(n) with the cycle n, or faster
+(`thins`). And if the journal crosses a space without oil and meets the film on the other side, the position
+of the impact may change from cycle to cycle by more than a step, although the least gap does not change; so
+the test uses the mean change over the cycle.
 
-Where the mesh, and with it the oil, has made half a turn after a cycle, as with cycles of 360°, the film that
-the load meets is that of the last but one cycle: then two changes in a row must be small.
+If the mesh, and with it the oil, makes half a turn per cycle, as with cycles of 360°, the load meets the film
+of the last cycle but one: then two successive changes must be small.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ STARVING, EARLIEST = 0.15, 24
 _SAMPLES = 361
 
 
-class Ending(StrEnum):
+class RunOutcome(StrEnum):
     """End of a run on one mesh."""
 
     REPEATING = "repeating"
@@ -64,14 +64,14 @@ class Run:
     first [-]."""
     halvings: int
     """In the last cycle."""
-    ending: Ending
+    ending: RunOutcome
 
     @property
     def repeat_error(self) -> float:
         """Change of the least gap in the last cycle or, unless it repeats, the largest of recent ones."""
         if len(self.gaps) < 2:
             return np.inf
-        return change(self.gaps, 1 if self.ending is Ending.REPEATING else RECENT)
+        return change(self.gaps, 1 if self.ending is RunOutcome.REPEATING else RECENT)
 
 
 def run_in(
@@ -105,7 +105,7 @@ def run_in(
     for cycle in range(1, most + 1):
         new, halved, ended = marched(mesh, duty, states[-1], step, partial(say, cycle))
         if not ended:
-            return Run(mesh, states, gaps, drift, halvings, Ending.FAILED)
+            return Run(mesh, states, gaps, drift, halvings, RunOutcome.FAILED)
         states, halvings = new, halved
         theta, z = in_frame(duty, states)
         gaps.append(least_gap(theta[1:], 1 - np.abs(z[1:]), duty.load.period)[0])
@@ -113,11 +113,11 @@ def run_in(
         if before is not None:
             drift = float(np.mean(np.abs(sampled - before) / (1 - np.abs(sampled))))
             if len(gaps) > alternating and change(gaps, alternating) < REPEATS and drift < DRIFTS:
-                return Run(mesh, states, gaps, drift, halvings, Ending.REPEATING)
+                return Run(mesh, states, gaps, drift, halvings, RunOutcome.REPEATING)
         before = sampled
         if thins(gaps):
-            return Run(mesh, states, gaps, drift, halvings, Ending.THINNING)
-    return Run(mesh, states, gaps, drift, halvings, Ending.UNSETTLED)
+            return Run(mesh, states, gaps, drift, halvings, RunOutcome.THINNING)
+    return Run(mesh, states, gaps, drift, halvings, RunOutcome.UNSETTLED)
 
 
 def change(gaps: list[float], cycles: int) -> float:

@@ -1,7 +1,8 @@
 """Oil supply of a film over a cycle: holes, slots and grooves of either surface, and their pressure.
 
-Angles count in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0: a hole
-in the pin counts from the throw, a groove of the rod's bore from the rod's axis.
+Angles are positive in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0:
+the angle of a hole in the pin is measured from the throw, that of a groove in the rod's bore from the rod's
+axis.
 """
 
 from dataclasses import dataclass

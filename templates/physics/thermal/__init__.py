@@ -1,1 +1,1 @@
-"""Films whose viscosity differs from place to place: Dowson's equation and that of energy."""
+"""Films with varying viscosity: Dowson's equation and the energy equation."""

@@ -1,4 +1,4 @@
-r"""Integrals across a film whose viscosity differs from the sleeve to the journal (Dowson 1962).
+r"""Integrals across a film whose viscosity varies from the sleeve to the journal (Dowson 1962).
 
 With :math:`Y = y/h` from the sleeve (0) to the journal (1), and fluidity :math:`f = \eta_s/\eta`:
 
@@ -6,8 +6,8 @@ With :math:`Y = y/h` from the sleeve (0) to the journal (1), and fluidity :math:
     F_0 = \int f\,dY,\quad F_1 = \int Y f\,dY,\quad
     F_2 = \int Y\left(Y - F_1/F_0\right) f\,dY
 
-The flow is :math:`-F_2 h^3/\eta_s\,\nabla p + U h (1 - F_1/F_0)`. Fluidity is constant in each strip; with
-that every integral here is exact, so that strips and film carry the same oil.
+The flow is :math:`-F_2 h^3/\eta_s\,\nabla p + U h (1 - F_1/F_0)`. Fluidity is constant in each strip, so
+every integral is exact, and strips and film carry the same flow.
 
 References
 ----------

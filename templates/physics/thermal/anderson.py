@@ -1,4 +1,4 @@
-"""Anderson's acceleration of a fixed point: the next guess from the last few changes."""
+"""Anderson acceleration of a fixed-point iteration: the next guess from the last few changes."""
 
 import numpy as np
 

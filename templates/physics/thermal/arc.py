@@ -1,7 +1,8 @@
 """The mesh of a film between the two edges of its groove: around, and across half the width.
 
-Angles count from the load in the sense of rotation. The groove stands still, so the nodes do not move while
-the journal's place is looked for: the force has no steps. They are graded once to where the film is thin.
+Angles are measured from the load in the sense of rotation. The groove stands still, so the nodes do not move
+during the search for the journal's position, and the force is continuous. The nodes are graded once towards
+the thin film.
 """
 
 from dataclasses import dataclass

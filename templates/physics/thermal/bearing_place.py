@@ -1,15 +1,16 @@
-"""Position of a journal in a film of given, varying viscosity, by Newton's method with few films.
+"""Position of a journal in a film of given, varying viscosity, by Newton's method with few film solutions.
 
-Unknown is y, a vector along and ahead of the load as long as atanh(eps), so that near the wall a step of 1
-is one of the load's size. What is brought to zero is the logarithm of the force over the load and its angle
-from the load, which depend on y almost linearly. Slopes by differences once, then by Broyden's rule.
+The unknown is y, a vector along and ahead of the load with length atanh(eps), so that near the wall a step of
+1 changes the force by the order of the load. The residuals are the logarithm of force over load and the angle
+of the force from the load, which depend on y almost linearly. The first slopes come from differences, later
+ones from Broyden's update.
 """
 
 import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.thermal.arc import Arc
-from templates.physics.thermal.pressure import Gap, Pressed, gap_of, pressed
+from templates.physics.thermal.pressure import Gap, PressureSolution, gap_of, pressed
 
 FARTHEST = float(np.arctanh(0.9999))
 """Length of y beyond which no journal is looked for."""
@@ -27,7 +28,7 @@ class NoBalance(ArithmeticError):
     """No film was found that bears the load, or none whose heat is carried off."""
 
 
-class Placing:
+class PositionSearch:
     """The search on one mesh; it keeps the last film and the slopes for the next search.
 
     Parameters
@@ -49,7 +50,7 @@ class Placing:
         self.near: tuple[Array, Array] | None = None
         self.slopes: Array | None = None
 
-    def placed(self, fluidity: Array, accuracy: float) -> Pressed:
+    def placed(self, fluidity: Array, accuracy: float) -> PressureSolution:
         """Return the film that bears the load with a fluidity (n + 1, J).
 
         Raises
@@ -84,7 +85,7 @@ class Placing:
 
     def _nearer(
         self, fluidity: Array, step: Array, size: float, tries: int
-    ) -> tuple[Array, Pressed, Array] | None:
+    ) -> tuple[Array, PressureSolution, Array] | None:
         """Return the place after a step, or half of it and so on, at which less is lacking; with its film."""
         for _ in range(tries):
             y = self.y + step
@@ -104,7 +105,7 @@ class Placing:
             raise NoBalance("the force does not depend on the journal's position")
         return np.asarray(step * min(1.0, _LONGEST / size))
 
-    def _film(self, fluidity: Array, y: Array) -> Pressed:
+    def _film(self, fluidity: Array, y: Array) -> PressureSolution:
         """Return the film at a place, kept as the start of the next."""
         gap: Gap = gap_of(self.arc, y, fluidity, self.edges, self.feed)
         try:
@@ -117,7 +118,7 @@ class Placing:
         self.near = film.P, film.void
         return film
 
-    def _lack(self, film: Pressed) -> Array:
+    def _lack(self, film: PressureSolution) -> Array:
         """Return the logarithm of force over load, and the angle between them."""
         along, ahead = film.force
         size = float(np.hypot(along, ahead))

@@ -1,16 +1,16 @@
-r"""The energy equation of a film, around × across, for the mean over the width.
+r"""The energy equation of a film, around and across, averaged over the width.
 
 .. math::
     \rho c\,(u\,\partial_x T + v\,\partial_y T) = \partial_y(k\,\partial_y T)
     + \eta\left[(\partial_y u)^2 + (\partial_y w)^2\right]
 
-Temperature does not vary across the width, where measured ones differ by little (Dowson, Hudson, Hunter,
-March 1966). Every term is its mean there, so that dissipation is the power that journal and supply put in,
-and what carries it off adds up to it. In a cavity the oil stands in streamers of the film's height:
-everything there counts by their share. Conduction around is left out.
+The temperature is constant along the width, where measured temperatures differ little (Dowson, Hudson,
+Hunter, March 1966). Every term is averaged over the width, so the dissipation equals the power input of
+journal and supply, and the removed heat adds up to it. In a cavity the oil flows in streamers of the film's
+height: every term is multiplied by their share. Circumferential conduction is neglected.
 
 Finite volumes on the strips of `across`: upwind around, exponential across (Scharfetter, Gummel; Patankar).
-All of it is linear in T: one sparse solution, with the temperature of the groove and of the journal.
+The equations are linear in T: one sparse system also gives the temperatures of the groove and of the journal.
 
 In units of T: :math:`\delta = \eta_s\omega/(\rho c\,\psi^2)` for dissipation, :math:`\kappa = k/(\rho c\,
 \omega c_r^2)` for conduction across.
@@ -23,11 +23,11 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from templates.core.arrays import Array
-from templates.physics.thermal.pressure import Pressed
+from templates.physics.thermal.pressure import PressureSolution
 
 
 @dataclass(frozen=True)
-class Heating:
+class HeatSources:
     """What heats a film and what cools it; temperatures in K."""
 
     delta: float
@@ -47,7 +47,7 @@ class Heating:
 
 
 @dataclass(frozen=True)
-class Heated:
+class FilmHeat:
     """A film's temperatures, and where its heat goes: each over rho c U c_r B [K]."""
 
     T: Array
@@ -78,7 +78,7 @@ class Heated:
 
 
 @dataclass(frozen=True)
-class Carried:
+class StripFlows:
     """Oil that moves between the strips, over U c_r B, and what heats and cools them."""
 
     around: Array
@@ -95,7 +95,7 @@ class Carried:
     """(n − 1,) the same over the gap [rad]."""
 
 
-def carried(film: Pressed) -> Carried:
+def carried(film: PressureSolution) -> StripFlows:
     """Return the flows that conserve the oil of every strip, and the dissipation.
 
     The half cells at the groove count with the nodes beside them: so the groove mixes, and nothing else.
@@ -108,7 +108,9 @@ def carried(film: Pressed) -> Carried:
     share = nodes.by_pressure / -nodes.conductance[:, None]
     side = gain.sum(axis=1)[:, None] * share[1:-1]
     up = np.cumsum(gain - side, axis=1)[:, :-1]
-    return Carried(around, side, up, *(_inner(part) for part in (_dissipation(film, wet / H), wet, wet / H)))
+    return StripFlows(
+        around, side, up, *(_inner(part) for part in (_dissipation(film, wet / H), wet, wet / H))
+    )
 
 
 def _inner(values: Array) -> Array:
@@ -119,7 +121,7 @@ def _inner(values: Array) -> Array:
     return inner
 
 
-def _dissipation(film: Pressed, drag: Array) -> Array:
+def _dissipation(film: PressureSolution, drag: Array) -> Array:
     """Dissipation by drag, by the flow around and by that across; its sum is the work put in."""
     gap, arc = film.gap, film.gap.arc
     faces, nodes, step = gap.faces, gap.nodes, np.diff(arc.phi)
@@ -137,7 +139,7 @@ def _dissipation(film: Pressed, drag: Array) -> Array:
     return np.asarray(heat)
 
 
-def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
+def heated(film: PressureSolution, heating: HeatSources, edges: Array) -> FilmHeat:
     """Return the temperatures of a film.
 
     Raises
@@ -156,7 +158,7 @@ def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
 class _System:
     """The linear equations: T of the inner nodes' strips, then of the groove and of the journal."""
 
-    def __init__(self, flow: Carried, heating: Heating, edges: Array) -> None:
+    def __init__(self, flow: StripFlows, heating: HeatSources, edges: Array) -> None:
         self.flow, self.heating = flow, heating
         n, J = flow.around.shape
         self.n, self.J, self.size = n, J, (n - 1) * J + 2
@@ -231,7 +233,7 @@ class _System:
             self.add(self.journal, self.journal, self.to_journal.sum())
             self.add(self.journal, self.index[:, -1], -self.to_journal)
 
-    def read(self, solved: Array) -> Heated:
+    def read(self, solved: Array) -> FilmHeat:
         """Return the temperatures and where the heat goes."""
         flow, heat = self.flow, self.heating
         inner, groove, journal = solved[: self.groove].reshape(self.index.shape), *solved[self.groove :]
@@ -239,7 +241,7 @@ class _System:
         bush = self.share * heat.outside + (1 - self.share) * inner[:, 0]
         above = inner - heat.supply
         arriving = np.maximum(flow.around[-1], 0) @ above[-1] + np.maximum(-flow.around[0], 0) @ above[0]
-        return Heated(
+        return FilmHeat(
             T=T, bush=np.pad(bush, 1, mode="edge"), journal=float(journal), groove=float(groove),
             dissipated=float(heat.delta * flow.heat.sum()),
             by_side=float((flow.side * above).sum()),

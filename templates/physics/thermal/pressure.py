@@ -1,12 +1,12 @@
-r"""Dowson's generalised Reynolds equation with cavities that conserve the oil, on the arc of a film.
+r"""Dowson's generalised Reynolds equation with mass-conserving cavities, on the arc of a film.
 
 .. math::
     \nabla\cdot(12 F_2 H^3\nabla P) = 12\,\partial_\phi\left[(1-\lambda)(1 - F_1/F_0) H\right],\quad
     P \ge 0,\ \lambda \ge 0,\ P\lambda = 0
 
-P = p psi²/(eta_s omega) with the viscosity eta_s of the supply. The groove is full; over the lands at its
-ends its pressure falls evenly. The ends are at ambient pressure, which is that of the cavities. The method is
-`cavitation`'s.
+P = p psi²/(eta_s omega) with the viscosity eta_s of the supply. The groove is full; its pressure falls
+linearly over the lands at its ends. The ends are at ambient pressure, as are the cavities. The method is that
+of `cavitation`.
 
 References
 ----------
@@ -82,7 +82,7 @@ def gap_of(arc: Arc, y: Array, fluidity: Array, edges: Array, feed: tuple[float,
 
 
 @dataclass(frozen=True)
-class Pressed:
+class PressureSolution:
     """A solved film."""
 
     gap: Gap
@@ -120,7 +120,7 @@ class Pressed:
         return float(drag.sum() + (gap.H_faces * gap.faces.carried * pushed).sum())
 
 
-def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
+def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> PressureSolution:
     """Solve for pressure and void, from those (n + 1, m + 1) of a nearby film.
 
     Raises
@@ -133,7 +133,7 @@ def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
     solution = cavitation(_network(gap), near)
     P, void = solution.P.reshape(shape), solution.void.reshape(shape).copy()
     void[1:-1, -1] = void[1:-1, -2]
-    return Pressed(gap, P, void)
+    return PressureSolution(gap, P, void)
 
 
 def _network(gap: Gap) -> Network:

@@ -1,8 +1,9 @@
-"""A film and its temperatures in balance with the load: one temperature for all of it, or one at each place.
+"""Equilibrium of a film, its temperatures and the load: with one temperature, or with a temperature field.
 
-The temperatures are a fixed point: they set the viscosity, the viscosity sets the film that bears the load,
-and that film sets the temperatures. Anderson's acceleration takes some ten films. Beside it, on the same mesh
-and with the same feed, stands the film of one effective temperature as ISO 7902-1 has it.
+The temperatures are a fixed point: they determine the viscosity, the viscosity determines the film that
+carries the load, and that film determines the temperatures. Anderson acceleration needs some ten films. For
+comparison, the film with one effective temperature, as in ISO 7902-1, is solved on the same mesh and with the
+same feed.
 """
 
 from collections.abc import Callable
@@ -16,9 +17,9 @@ from templates.physics.films.film_map_inverse import mapped_eccentricity
 from templates.physics.thermal.across import strip_edges
 from templates.physics.thermal.anderson import Anderson
 from templates.physics.thermal.arc import Arc, groove_arc
-from templates.physics.thermal.bearing_place import NoBalance, Placing
-from templates.physics.thermal.energy import Heated, Heating, carried, heated
-from templates.physics.thermal.pressure import Pressed
+from templates.physics.thermal.bearing_place import NoBalance, PositionSearch
+from templates.physics.thermal.energy import FilmHeat, HeatSources, carried, heated
+from templates.physics.thermal.pressure import PressureSolution
 
 HOTTEST = 773.15
 """Highest temperature that is looked for [K]."""
@@ -45,7 +46,7 @@ class Bearing:
     """Of the supply, p psi²/(eta_s omega) [-]."""
     groove: tuple[float, float, float]
     """Angle of its middle from the load, width around [rad], and length over the bearing's width [-]."""
-    heating: Heating
+    heating: HeatSources
     fluidity: Callable[[Array], Array]
     """Viscosity of the supply over that at a temperature [K]."""
 
@@ -57,9 +58,11 @@ class Bearing:
             centre + width / 2, 2 * np.pi - width, (min(eps, _HEAVIEST), attitude), self.ratio, *mesh[:2]
         )
 
-    def placing(self, y: Array, mesh: tuple[int, int, int]) -> Placing:
+    def placing(self, y: Array, mesh: tuple[int, int, int]) -> PositionSearch:
         """Return a search on a mesh from a place."""
-        return Placing(self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y)
+        return PositionSearch(
+            self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y
+        )
 
     def start(self) -> Array:
         """Return the journal's position in a film of the supply's viscosity, fed along its widest gap."""
@@ -75,24 +78,24 @@ class OneTemperature:
 
     T: float
     """Effective temperature [K]."""
-    film: Pressed
-    placing: Placing
+    film: PressureSolution
+    placing: PositionSearch
 
 
 @dataclass(frozen=True)
 class Warm:
     """A film with its temperatures."""
 
-    film: Pressed
-    heated: Heated
+    film: PressureSolution
+    heated: FilmHeat
     rounds: int
     """Films until the temperatures stood."""
-    placing: Placing
+    placing: PositionSearch
     supply: float
     """Temperature of the fresh oil [K]."""
 
 
-def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -> OneTemperature:
+def one_temperature(bearing: Bearing, placing: PositionSearch, T: float, step: float) -> OneTemperature:
     """Return the effective temperature, by the secant from one guess [K] to another by at most `step` [K].
 
     Raises
@@ -102,7 +105,7 @@ def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -
     """
     shape = placing.arc.phi.size, placing.edges.size - 1
 
-    def missing(at: float) -> tuple[float, Pressed]:
+    def missing(at: float) -> tuple[float, PressureSolution]:
         fluidity = np.full(shape, float(bearing.fluidity(np.asarray(at))))
         film = placing.placed(fluidity, _FORCE)
         return _mean(film, bearing.heating) - at, film
@@ -121,7 +124,7 @@ def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -
     raise NoBalance("no film temperature below 500 degC balances the heat")
 
 
-def _mean(film: Pressed, heating: Heating) -> float:
+def _mean(film: PressureSolution, heating: HeatSources) -> float:
     """Return the mean of supply and outlet, by the heat that side flow and air carry off [K]."""
     flow = carried(film)
     side = float(flow.side.sum())
@@ -132,7 +135,7 @@ def _mean(film: Pressed, heating: Heating) -> float:
     return heating.supply + gained / (2 * side + air)
 
 
-def warm(bearing: Bearing, placing: Placing, T: Array) -> Warm:
+def warm(bearing: Bearing, placing: PositionSearch, T: Array) -> Warm:
     """Return the film with a temperature at each place, from a guess (n + 1, J) [K].
 
     Raises
@@ -179,7 +182,7 @@ def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm
     return last, (coarse, fine)
 
 
-def _carried_over(coarse: Warm, finer: Placing) -> Array:
+def _carried_over(coarse: Warm, finer: PositionSearch) -> Array:
     """Return the temperatures of one mesh at the nodes and strips of another."""
     T, arc = coarse.heated.T, coarse.placing.arc
     middle, new = (((edges[1:] + edges[:-1]) / 2) for edges in (coarse.placing.edges, finer.edges))

@@ -1,4 +1,4 @@
-"""A journal bearing with its groove, its oil and what surrounds it, in SI."""
+"""A journal bearing with its groove, its oil and its thermal surroundings, in SI."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.core.language.declare import units
 from templates.physics.journals.oil import viscosity_at
-from templates.physics.thermal.energy import Heating
+from templates.physics.thermal.energy import HeatSources
 from templates.physics.thermal.thermal_balance import Bearing
 
 
@@ -82,7 +82,7 @@ class ThermalCase:
         held, cooled = np.isfinite(self.held), np.isfinite(self.transfer) & np.isfinite(self.ambient)
         wall = self.transfer / (per_second * clearance) if cooled else 0.0
         outside = self.held if held else self.ambient if cooled else self.supply
-        heating = Heating(
+        heating = HeatSources(
             float(scale / self.heat_capacity), float(self.conductivity / (per_second * clearance**2)),
             np.inf if held else float(wall), float(outside), float(self.supply), float(self.journal),
             float(self.carry_over),

@@ -1,6 +1,6 @@
-"""A journal bearing under static load whose film has a temperature at every place, in SI and for many points.
+"""A journal bearing under static load with a temperature field in its film, in SI, for many points.
 
-Beside it stands what one effective temperature gives for the same bearing, by the same film.
+For comparison, the same film is also solved with one effective temperature.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -9,7 +9,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.thermal.mapped import mapped_values
+from templates.physics.thermal.one_temperature import mapped_values
 from templates.physics.thermal.thermal_balance import FIELD, FINE, OneTemperature, Warm, both
 from templates.physics.thermal.thermal_case import ThermalCase
 

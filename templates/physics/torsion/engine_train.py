@@ -1,4 +1,4 @@
-"""A train that cylinders excite: its parts from lists of inputs, its response, whether it is manageable."""
+"""A train excited by cylinders: its parts from lists of inputs, its response, and limits of its size."""
 
 from __future__ import annotations
 

@@ -4,10 +4,10 @@ For each speed and order, at the angular frequency w of the order,
 
     (K(1 + iη) + i w C − w² M) q = Bᵀ T,   angles = B q,
 
-where B makes all angles from those that no gear drives, and K, C, M are Bᵀ ( ) B; loss factor η and viscous
-damping are those of each shaft. Each matrix is scaled to a diagonal of about 1. Where the angles are more
-than `RESONANT` times what the torque would make of such a diagonal, a resonance without damping is hit: no
-digits are left, and the result is NaN.
+where B gives all angles from those that no gear drives, and K, C, M are Bᵀ ( ) B; each shaft has its loss
+factor η and its viscous damping. Each matrix is scaled to a diagonal of about 1. If the angles are more than
+`RESONANT` times those that the torque would cause on this diagonal alone, the order meets an undamped
+resonance: no digits are significant, and the result is NaN.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Results of a forced response: torque, stress and twist of the shafts, heat, angles, speeds.
 
-A vibratory value is half the swing of the curve that all orders make together. Adding their amplitudes gives
-more, by up to a factor of 2.5: they do not peak at one angle.
+A vibratory value is half the range of the curve that is the sum of all orders. The sum of their amplitudes is
+larger, by up to a factor of 2.5, because the orders do not peak at the same angle.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Harmonics of the torque of one cylinder, and the swing of a curve that is the sum of harmonics.
+"""Harmonics of the torque of one cylinder, and the range of a curve that is a sum of harmonics.
 
-A torque over one cycle is its mean plus Re Σ c e^{ihθ}, with orders h per turn of the crank: whole ones in
-two strokes, halves as well in four. The cylinder that fires at φ has the harmonics of the first one, which
-fires at φ₁, times e^{−ih(φ−φ₁)}.
+A torque over one cycle is its mean plus Re Σ c e^{ihθ}, with orders h per turn of the crank: whole orders in
+two-stroke engines, half orders as well in four-stroke ones. The cylinder that fires at φ has the harmonics of
+the first one, which fires at φ₁, times e^{−ih(φ−φ₁)}.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Topology of a train: how inertias, shafts and gears are joined, and how fast each inertia turns.
+"""Topology of a train: the connections of inertias, shafts and gears, and the speed ratio of each inertia.
 
 Inertias are numbered from 1; a shaft to 0 ends at the ground. A gear makes the angle of its second inertia
 `ratio` times that of its first, so all angles are B q with one q for each inertia that no gear drives.

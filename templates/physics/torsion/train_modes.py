@@ -1,8 +1,8 @@
 """Free vibration of a train with branches and gears: natural frequencies and shapes of its modes.
 
-Undamped. With K = Dᵀ k D, D the twists by the free angles, and M diagonal, the angular frequencies are the
-singular values of k^(1/2) D M^(-1/2): forming K would lose the small ones. Shafts without stiffness, as the
-ring of a viscous damper has, leave modes at 0.
+Undamped. With K = Dᵀ k D, where D gives the twists from the free angles and M is diagonal, the angular
+frequencies are the singular values of k^(1/2) D M^(-1/2): forming K would lose the small ones. Shafts without
+stiffness, such as that of a viscous damper's ring, give modes at 0.
 """
 
 from __future__ import annotations

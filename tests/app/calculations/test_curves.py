@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 from serving import API
 
-from app.calculations.curves import MOST_ROWS, read_curves
+from app.calculations.curves import MOST_ROWS, curves_of
 from app.calculations.tables import MOST_FAULTS
 from app.cli.main import main
 from templates.bearing_load.bearing_load_v1 import BearingLoad
@@ -21,7 +21,7 @@ ANGLE = {"value": [0.0, 180.0, 360.0, 540.0], "unit": "deg"}
 def faults(text):
     body = text if isinstance(text, bytes) else text.encode()
     with pytest.raises(InvalidInputs) as refusal:
-        read_curves(body)
+        curves_of(body)
     return [(fault.name, fault.code) for fault in refusal.value.faults]
 
 
@@ -39,10 +39,10 @@ class TestReading:
         ],
     )
     def test_property_forms_of_one_table(self, text):
-        assert read_curves(text.encode()) == {"crank_angle": ANGLE, "pressure": PRESSURE}
+        assert curves_of(text.encode()).curves == {"crank_angle": ANGLE, "pressure": PRESSURE}
 
     def test_property_number_without_unit(self):
-        assert read_curves(b"load factor [-]\n0.5\n")["load_factor"] == {"value": [0.5], "unit": "1"}
+        assert curves_of(b"load factor [-]\n0.5\n").curves["load_factor"] == {"value": [0.5], "unit": "1"}
 
     @pytest.mark.parametrize(
         ("text", "expected"),
@@ -78,7 +78,7 @@ class TestReading:
             body = bytes(rng.choice(letters, rng.integers(0, 60)))
             header = b"p [bar]\n" if rng.random() < 0.7 else b""
             try:
-                curves = read_curves(header + body)
+                curves = curves_of(header + body).curves
             except InvalidInputs as refusal:
                 faulty = refusal.faults
             else:

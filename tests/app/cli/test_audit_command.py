@@ -132,7 +132,7 @@ def test_a_database_server_that_does_not_answer_is_named(run, tmp_path):
     pytest.importorskip("psycopg", reason="needs the extra team")
     for url, words in {
         "postgresql+psycopg://x@127.0.0.1:1/nothing": "Connection refused",
-        "mysql://x@127.0.0.1:1/nothing": "names an unknown kind of database",
+        "mysql://x@127.0.0.1:1/nothing": "names an unsupported kind of database",
     }.items():
         done = run("verify", DATABASE_URL=url)
         assert (done.exit_code, words in done.output) == (CANNOT_READ, True), done.output

@@ -6,8 +6,8 @@ from study_helpers import FILM, done, rows
 from test_report import on_paper, read
 
 from templates.core.paper.expressions import DEEPEST_ON_PAPER
+from templates.core.units.evaluation import depth_of
 from templates.core.units.relation import parse
-from templates.core.units.walking import depth_of
 
 DESIGNS = f"{API}/designs"
 WIDTH = "= if film.minimum_film_thickness < 3 um then 22 mm else 20 mm"

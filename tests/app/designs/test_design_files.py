@@ -287,10 +287,10 @@ def test_single_part_models_are_one_part(http, design):
     bearing = created(http, paper(name="Ball"))
     assembly = get(http, bearing, "model.step").content
     assert [name for _, name, _ in products(assembly)] == [
-        "Ball_model_r1",
+        "Ball_model",
         "inner_ring",
         "outer_ring",
         "ball",
     ]
-    assert [id for id, _, _ in products(assembly)][1] == "Ball_model_r1_inner_ring"
+    assert [id for id, _, _ in products(assembly)][1] == "Ball_model_inner_ring"
     assert verified(http, assembly)["intact"] is True

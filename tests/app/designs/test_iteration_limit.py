@@ -9,7 +9,7 @@ from app.designs import regeneration
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
 from app.designs.regeneration import Regeneration
-from app.designs.service import Prepared
+from app.designs.service import DocumentCalculation
 from app.reference import Reference
 
 MOST = 50
@@ -49,7 +49,7 @@ def settle(monkeypatch):
         document = SimpleNamespace(iterations=list(iterations))
         assumed = {Reference.parse(one.through): 1.0 for one in iterations}
         calculation = SimpleNamespace(graph=None, assumed=assumed)
-        return Circling()._settled(Prepared(document, calculation), context=None)
+        return Circling()._settled(DocumentCalculation(document, calculation), context=None)
 
     return settle
 

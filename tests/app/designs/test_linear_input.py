@@ -8,7 +8,7 @@ from starlette.requests import cookie_parser
 
 from app.api.responses import patience
 from app.calculations.bodies import OIL_FILM, EvaluateIn
-from app.calculations.curves import read_curves
+from app.calculations.curves import curves_of
 from app.calculations.tables import _NUMBER, LONGEST_LINE
 from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
@@ -150,7 +150,7 @@ class TestCurves:
         def make(length):
             return b"p [bar]\n" + 20 * ((piece * length)[:length] + "z\n").encode()
 
-        assert_linear(read_curves, make, LONGEST_LINE // 4 - 1)
+        assert_linear(curves_of, make, LONGEST_LINE // 4 - 1)
 
     @pytest.mark.parametrize("piece", CELLS.values(), ids=CELLS)
     def test_a_number(self, piece):
@@ -158,21 +158,21 @@ class TestCurves:
 
     @pytest.mark.parametrize("piece", CELLS.values(), ids=CELLS)
     def test_a_header(self, piece):
-        assert_linear(read_curves, lambda n: (piece * n)[:n].encode() + b"\n1\n", LONGEST_LINE // 4 - 1)
+        assert_linear(curves_of, lambda n: (piece * n)[:n].encode() + b"\n1\n", LONGEST_LINE // 4 - 1)
 
     @pytest.mark.parametrize("piece", [*CELLS.values(), "\xff"], ids=[*CELLS, "no UTF-8"])
     @pytest.mark.sampled(3)
     def test_a_line_beyond_the_bound(self, piece):
-        assert_linear(read_curves, lambda n: b"p [bar]\n" + piece.encode("latin-1") * n, 250_000)
+        assert_linear(curves_of, lambda n: b"p [bar]\n" + piece.encode("latin-1") * n, 250_000)
 
     @pytest.mark.parametrize("line", ["1\n", "1,2\n", "x\n", "#\n", "\n", "\r", "\f", "\u2028", '"\n'])
     @pytest.mark.sampled(3)
     def test_lines(self, line):
-        assert_linear(read_curves, lambda n: b"p [bar]\n" + line.encode() * n, 4000)
+        assert_linear(curves_of, lambda n: b"p [bar]\n" + line.encode() * n, 4000)
 
     @pytest.mark.parametrize("line", ["\n", "\r\n", "#\n", "\f"])
     def test_lines_beyond_the_bound(self, line):
-        assert_linear(read_curves, lambda n: line.encode() * n, 250_000)
+        assert_linear(curves_of, lambda n: line.encode() * n, 250_000)
 
 
 class TestDesigns:

@@ -237,7 +237,7 @@ def test_too_many_values_are_left_to_a_study(monkeypatch):
     monkeypatch.setattr(module, "MOST_VALUES", 100)
     chain = asked(PETROV, "loss")
     assert chain.sensitivities == []
-    assert "13 rows of lists this long would take too long; a study" in chain.reason
+    assert "13 rows with lists of this length would take too long; a study" in chain.reason
 
 
 def test_a_literal_follows_from_nothing():

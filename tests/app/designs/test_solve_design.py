@@ -112,8 +112,31 @@ def test_a_tolerance_confirms_at_another_level_than_that_of_the_curve():
     assert solution.curve.level == "fit"
     assert solution.roots[0].level == "map"
     assert solution.roots[0].error <= 1e-3
+    [finer] = solution.finer
+    assert (finer.level, solution.levels["film"], solution.finer_levels["film"]) == ("map", "fit", "map")
+    assert len(finer.x.value) == len(solution.curve.x.value) + 1
+    assert np.interp(solution.roots[0].value, finer.x.value, finer.y.value) == pytest.approx(2, rel=1e-9)
     finest = asked(FILMS, "clearance", "20 um", "60 um", THIN, "2 um", tolerance=1e-3)
     assert solution.roots[0].value == pytest.approx(finest.roots[0].value, rel=1e-8)
+
+
+def test_a_tolerance_that_the_level_of_the_design_misses_is_said():
+    """The design names level fit, which states 3 % or so there."""
+    fixed = {**FILMS, "steps": {"film": {**FILMS["steps"]["film"], "level": "fit"}}}
+    question = ("clearance", "20 um", "60 um", THIN, "2 um")
+    [warning] = asked(fixed, *question, tolerance=1e-3).warnings
+    assert warning.code == "tolerance_unmet"
+    assert warning.detail.endswith("not within the tolerance of 0.1 %: the design names level fit for film")
+    assert asked(fixed, *question, tolerance=0.5).warnings == []
+
+
+def test_criteria_that_follow_from_unknown_errors_are_named():
+    """Petroff's power states an error near its solution only where a load is given."""
+    design = {**PETROFF, "criteria": {"cool": {"require": "idle.power_loss <= 1 kW"}}}
+    [unknown] = asked(design, "speed", "100 rpm", "20000 rpm", "idle.power_loss", "100 W").roots
+    assert (unknown.verdicts["cool"], "cool" in unknown.error_unknown) == ("met", True)
+    [known] = asked(FILMS, "clearance", "20 um", "60 um", THIN, "2 um").roots
+    assert (known.verdicts["thick"], known.error_unknown) == ("met", [])
 
 
 def test_what_is_out_of_reach_says_what_can_be_reached():

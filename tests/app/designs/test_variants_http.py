@@ -247,7 +247,7 @@ class TestFiles:
         assert 'filename="Kafig_3_main_2_r1.step"' in answer.headers["content-disposition"]
         assert bore_of(answer.content) == pytest.approx(32, abs=1e-9)
         text = answer.content.decode("latin-1")
-        assert "'Kafig_3_main_2_r1'" in text
+        assert "'Kafig_3_main_2'" in text
         assert "variant main_2" in text
         with_model = http.get(f"{DESIGNS}/{design['id']}/variants/main_2/models/shell/model.step")
         assert with_model.content == answer.content

@@ -17,7 +17,7 @@ FORMS = sorted(
     if "POST" in (getattr(context.original_route, "methods", None) or ())
     and not context.path.startswith("/api")
 )
-PLAIN = ["/tables"]
+PLAIN = ["/tables", "/verdicts"]
 """Asked by scripts of a page with JSON; nothing changes."""
 URLENCODED = {"Content-Type": "application/x-www-form-urlencoded"}
 MULTIPART = {"Content-Type": "multipart/form-data; boundary=cut"}

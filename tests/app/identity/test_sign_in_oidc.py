@@ -210,7 +210,7 @@ def test_the_audience_and_what_has_to_be_there(browser, provider, claims, status
 def test_a_token_of_several_services_is_refused_with_the_reason(browser, provider):
     provider.claims = {"aud": ["crank", "another"]}
     page = brought_back(browser, provider)
-    assert "does not say which of them asked for it" in page.text
+    assert "does not name the one that requested it" in page.text
     assert browser.get("/designs").status_code in (303, 401), "nobody has signed in"
 
 

@@ -48,7 +48,7 @@ def test_the_page_of_a_design_leads_to_the_form_that_offers_what_was_brought(htt
         ({"source": "page_bolt:77"}, "it has versions 1"),
         ({"source": "page_bolt:" + 5000 * "9"}, "version"),
         ({"component": ""}, "components.0.name"),
-        ({"id": "ball_bearing"}, "ball_bearing is the id of"),
+        ({"id": "ball_bearing"}, "ball_bearing is already the id of"),
         ({"id": ""}, "id"),
         ({"design": "x" * 3000}, "design"),
     ],

@@ -17,7 +17,7 @@ from app.jobs.events import (
     are_events_kept,
     events_above,
     newest_numbers,
-    note_event,
+    note_events,
 )
 from app.storage.clock import now
 from app.storage.tables import DesignRow, EventRow, JobRow
@@ -108,10 +108,10 @@ class TestRows:
 
     def test_one_event_by_itself_has_its_number(self, database, events):
         written = [
-            database.write(lambda session: note_event(session, TOPIC, "revision", {"revision": 7}))
+            database.write(lambda session: note_events(session, Event(TOPIC, "revision", {"revision": 7})))
             for _ in range(3)
         ]
-        assert written == [1, 2, 3]
+        assert [event.number for (event,) in written] == [1, 2, 3]
         with database.read() as session:
             (last,) = events_above(session, TOPIC, 2)
         assert last == Event(TOPIC, "revision", {"revision": 7}, 3)

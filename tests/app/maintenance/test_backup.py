@@ -252,7 +252,7 @@ class TestRestore:
     def test_no_entry_leads_elsewhere(self, backup, tmp_path, name):
         entries = self.entries(backup)
         entries.insert(2, (tarfile.TarInfo(name), b"evil"))
-        assert "no backup of Crankwright puts there" in self.refused(
+        assert "a Crankwright backup never contains" in self.refused(
             self.written(tmp_path / "x.tar", entries), tmp_path
         )
         assert not (tmp_path / "evil").exists()

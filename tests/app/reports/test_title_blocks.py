@@ -97,8 +97,19 @@ def test_a_text_of_signs_that_do_not_print_leaves_the_field_as_it_is(http, place
 
 
 def test_only_drawings_have_a_title_block(http, place):
-    answer = http.get(f"{place}.step", params={"drawing_number": "1"})
-    assert "have a title block" in problem(answer, 422, "invalid-inputs")["errors"][0]["detail"]
+    for kind, field in (("glb", "drawing_number"), ("step", "drawing_title")):
+        answer = http.get(f"{place}.{kind}", params={field: "1"})
+        assert "have a title block" in problem(answer, 422, "invalid-inputs")["errors"][0]["detail"]
+
+
+def test_a_step_file_takes_the_number_of_its_part_and_its_revision(http, place):
+    answer = http.get(f"{place}.step", params={"drawing_number": "PN-100", "drawing_revision": "C"})
+    text = answer.content.decode()
+    assert "PRODUCT('PN-100'" in "".join(text.split())
+    assert "PRODUCT_DEFINITION_FORMATION('C'" in "".join(text.split())
+
+
+def test_a_drawing_number_has_at_most_80_letters(http, place):
     assert http.get(f"{place}.dxf", params={"drawing_number": "x" * 81}).status_code == 422
 
 

@@ -10,7 +10,7 @@ from app.designs import repository as designs
 from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.jobs import repository as jobs
-from app.jobs.events import events_above, note_event
+from app.jobs.events import Event, events_above, note_events
 from app.jobs.turns import UNFINISHED
 from app.retention import rows, service
 from app.retention.files import Sweep
@@ -118,7 +118,7 @@ class TestRows:
         put(database, "queued")
         for days in (0, 1, 2.5, 3):
             set_present(database, days)
-            database.write(lambda session: note_event(session, topic_of(session), "running", {}))
+            database.write(lambda session: note_events(session, Event(topic_of(session), "running", {})))
         set_present(database, 4)
         assert retention.run()["events"] == 2
         with database.read() as session:

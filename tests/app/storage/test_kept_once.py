@@ -9,7 +9,7 @@ from app.catalogue.discovery import find_templates
 from app.designs.engine.steps import Memory
 from app.designs.graph import Block
 from app.designs.regeneration import Regeneration
-from app.designs.service import CalculationCache, Designs, Prepared
+from app.designs.service import CalculationCache, Designs, DocumentCalculation
 from app.storage.artifacts import ArtifactStore
 from templates.core.language.evaluate import evaluate
 
@@ -64,7 +64,7 @@ def test_a_job_looks_for_the_calculation_of_its_document_where_the_save_has_kept
     calculation_cache = CalculationCache()
     saving = Designs(None, None, None, calculation_cache)
     job = Regeneration(None, None, None, None, None, calculation_cache)
-    calculation = Prepared(None, None)
+    calculation = DocumentCalculation(None, None)
     saving.calculation_cache.keep({"name": "a"}, calculation)
     assert job.calculation_cache.find({"name": "a"}) is calculation
     assert job.calculation_cache.find({"name": "b"}) is None

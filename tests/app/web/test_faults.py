@@ -100,6 +100,6 @@ def test_what_is_wrong_with_a_cell_of_a_model_is_said_in_words(open_design):
     expect(cell.locator(".field-error")).to_contain_text("model.inner_diameter is in mm")
     field.fill("")
     expect(cell.locator(".tag")).to_have_text("missing")
-    expect(cell.locator(".field-error")).to_have_text("set it, or map it to an output")
+    expect(cell.locator(".field-error")).to_have_text("set it, or link it to an output")
     field.fill("50 mm")
     expect(cell.locator(".field-error")).to_have_count(0)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.crank_chain import CASES, GIVEN, RESULTS, compared, one, shaft
-from cad.analysis.chain import Chain, in_series, turned
+from benchmarks.crank_chain import CASES, GIVEN, RESULTS, compared, in_series, one, shaft
+from cad.analysis.chain import Chain, turned
 from cad.analysis.chain_answers import OF_THE_CHAIN, SolvedThrows, chain_answers, judged
 from cad.analysis.levels import LEVELS
 from cad.analysis.throw_matrix import ThrowMatrix, relative_motion

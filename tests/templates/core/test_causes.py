@@ -42,7 +42,7 @@ def test_a_fillet_too_small_to_draw_is_one_fault_at_the_fillet(fillet):
 def test_rules_that_one_input_breaks_are_one_fault(changes, cause):
     (fault,) = refused(THROW, **changes)
     assert fault.name == cause
-    assert fault.detail.count(", but ") > 1
+    assert fault.detail.count("; required: ") > 1
 
 
 def test_two_causes_are_two_faults():

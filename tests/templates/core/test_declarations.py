@@ -53,7 +53,7 @@ class TestInputs:
                 {"outer_diameter": "50 mm"},
                 "bore",
                 "inconsistent",
-                "outer_diameter = 50 mm, bore = 50 mm; make the",
+                "outer diameter 50 mm is not above bore 50 mm; required: The outside is larger",
             ),
         ],
     )
@@ -110,7 +110,8 @@ class TestLimits:
         np.testing.assert_allclose(answer["wall"].value, [5, np.nan, 10])
         assert list(answer["wall"].reasons) == [
             None,
-            "The outside is larger than the bore: make the outside larger",
+            "outer diameter is not above bore; "
+            "required: The outside is larger than the bore; make the outside larger",
             None,
         ]
         assert answer["largest_load"].value == pytest.approx(3000)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from templates.core.language import parsing
+from templates.core.language import syntax_trees
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def test_threads_that_parse_at_once_all_get_their_tree(eager_switches):
             for _ in range(50):
                 _Noisy()
             try:
-                parsing.parse(source)
+                syntax_trees.parse(source)
             except SystemError as fault:
                 faults.append(fault)
 
@@ -63,7 +63,7 @@ def test_a_child_forked_while_another_thread_parses_does_not_wait():
     entered, leave = threading.Event(), threading.Event()
 
     def hold() -> None:
-        with parsing._ONE_AT_A_TIME:
+        with syntax_trees._ONE_AT_A_TIME:
             entered.set()
             leave.wait()
 
@@ -72,7 +72,7 @@ def test_a_child_forked_while_another_thread_parses_does_not_wait():
     entered.wait()
     child = os.fork()
     if child == 0:
-        os._exit(0 if len(parsing.parse("a = 1\nb = 2").body) == 2 else 1)
+        os._exit(0 if len(syntax_trees.parse("a = 1\nb = 2").body) == 2 else 1)
     leave.set()
     holder.join()
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
@@ -86,6 +86,6 @@ def test_all_code_of_the_service_parses_under_the_lock():
         for folder in ("app", "cad", "templates")
         for path in sorted((root / folder).rglob("*.py"))
         for name in ("ast.parse(", "getsourcelines(")
-        if name in path.read_text(encoding="utf-8") and path.name != "parsing.py"
+        if name in path.read_text(encoding="utf-8") and path.name != "syntax_trees.py"
     ]
     assert elsewhere == []

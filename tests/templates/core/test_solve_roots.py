@@ -225,10 +225,41 @@ class TestLevels:
         assert {root.level for root in result.roots} == {"fine"}
         assert result.curve.level == "cheap"
 
+    def test_property_a_level_of_few_points_is_drawn_about_its_solutions(self):
+        """A sample of the scan to both sides of each solution, with the height at level fine."""
+        result = self.solved("0 m", "3 m", level="fine")
+        [finer] = result.finer
+        assert (finer.level, finer.x.size) == ("fine", 6)
+        assert finer.y == pytest.approx(np.sin(finer.x), rel=1e-12)
+        for root in result.roots:
+            place = int(np.flatnonzero(finer.x == root.value)[0])
+            assert finer.x[place - 1] < root.value < finer.x[place + 1]
+            assert finer.y[place] == root.output
+
+    def test_property_a_level_of_many_points_is_drawn_whole(self, monkeypatch):
+        monkeypatch.setattr(Rungs, "most_points", {"fine": SAMPLES})
+        result = self.solved("0 m", "3 m", level="fine")
+        [finer] = result.finer
+        assert set(result.curve.x) <= set(finer.x)
+        assert np.interp(found(result), finer.x, finer.y) == pytest.approx([0.5, 0.5], rel=1e-8)
+        assert np.interp(found(result), result.curve.x, result.curve.y) != pytest.approx([0.5, 0.5], rel=1e-2)
+
+    def test_property_what_the_level_refuses_beside_a_solution_says_why(self):
+        """Level fine ends at 8 m; its solution lies at 6.81 m, the sample above it at 8.2 m."""
+        [finer] = self.solved("6 m", "36 m", level="fine").finer
+        below, solution, above = zip(finer.y, finer.reasons, strict=True)
+        assert (below[1], solution[1]) == (None, None)
+        assert solution[0] == pytest.approx(0.5, rel=1e-8)
+        assert np.isnan(above[0])
+        assert above[1]
+
+    def test_property_one_level_has_one_curve(self):
+        assert self.solved("0 m", "3 m", level="cheap").finer == []
+
     def test_property_an_expensive_level_is_asked_a_few_times(self):
         result = self.solved("0 m", "7.5 m", level="fine")
         assert len(result.roots) == 3
-        assert Rungs.calls <= 3 * 9 + 1
+        assert Rungs.calls <= 3 * (9 + 2) + 1
 
     def test_property_most_roots_stay_at_the_level_of_the_scan(self, monkeypatch):
         """Of many solutions the first are calculated again; the others say that they were not."""

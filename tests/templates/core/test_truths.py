@@ -1,19 +1,22 @@
 """Truths: against what an error was measured, and which levels are nearer to the same truth."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from templates.core.criteria.bands import CONVENTION
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.level_choice import reachable
-from templates.core.language.levels import Accuracy, absolute_error, accuracy, next_levels, truth_of
+from templates.core.language.levels import Accuracy, accuracy, next_levels
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.oil_film.slider_bearing_v1 import SliderBearing
 
+ROOT = Path(__file__).parents[3]
 MEASURED = [cls for cls in built_in() if accuracy(cls)]
 
 
@@ -85,9 +88,17 @@ class TestTruth:
         measured = accuracy(cls)
         for level, tables in measured.errors.items():
             for output, cells in tables.items():
-                truth = truth_of(cls, level, output)
+                truth = measured.truth(level, output)
                 assert truth or not np.isfinite(cells).any(), (level, output)
                 assert truth is None or measured.content["truths"][truth]
+
+    @pytest.mark.parametrize("cls", MEASURED, ids=lambda cls: f"{cls.id}_{cls.version}")
+    def test_property_every_table_is_relative_to_the_truth(self, cls):
+        """And the script that wrote it measures so."""
+        content = accuracy(cls).content
+        assert content["convention"] == CONVENTION
+        script = ROOT / f"{content['made_by'].split()[2].replace('.', '/')}.py"
+        assert "CONVENTION" in script.read_text(encoding="utf-8")
 
     def test_property_two_conventions_of_friction_are_two_truths(self):
         """Power loss of the example: `map` 657.9 W by shear all around, `mass_conserving` 530.7 W."""
@@ -98,14 +109,14 @@ class TestTruth:
         values = [one.outputs["power_loss"].value for one in loss.values()]
         bands = [one.error["power_loss"] for one in loss.values()]
         assert values[0] * (1 - bands[0]) > 1.2 * values[1] * (1 + bands[1])  # no band explains it
-        truths = [truth_of(OilFilm, level, "power_loss") for level in loss]
+        truth = accuracy(OilFilm).truth
+        truths = [truth(level, "power_loss") for level in loss]
         assert truths == ["Swift-Stieber, shear all around", "Swift-Stieber, shear where oil is"]
-        assert {truth_of(OilFilm, level, "minimum_film_thickness") for level in loss} == {"Swift-Stieber"}
+        assert {truth(level, "minimum_film_thickness") for level in loss} == {"Swift-Stieber"}
 
     def test_property_nothing_is_named_where_nothing_is_measured(self):
-        assert truth_of(OilFilm, "map", "density") is None
-        assert truth_of(OilFilm, "map", "no_such_output") is None
-        assert truth_of(CycleHeatBalance, "mobility", "minimum_film_thickness") is None
+        assert accuracy(OilFilm).truth("map", "density") is None
+        assert accuracy(OilFilm).truth("map", "no_such_output") is None
 
 
 class TestNextLevels:
@@ -164,37 +175,6 @@ class TestConditions:
         assert evaluate(Rungs, raw, outputs=["size"], level="rough").error["size"] == 0.1
 
 
-class TestProfiles:
-    def test_property_error_of_a_curve_through_zero(self, table):
-        """It is a share of the largest absolute value, the same at every place, zero included."""
-        table()
-        points = rung("fine", length={"value": [5, 8], "unit": "m"})
-        error = accuracy(Rungs).of(points, ["wave"])["wave"]
-        assert absolute_error(points, "wave", error).tolist() == [
-            pytest.approx([0.3] * 3),
-            pytest.approx([0.48] * 3),
-        ]
-        assert absolute_error(points, "size", np.array([0.01, 0.1])) == pytest.approx([0.0505, 0.808])
-        assert absolute_error(rung("fine"), "wave", 0.5) == pytest.approx([2.0] * 3)
-
-
-class TestSizes:
-    def test_property_what_errors_are_relative_to(self):
-        """An angle to 90°, a stiffness to the largest of its four, a size to itself."""
-        film = OilFilm.from_quantities(OilFilm.example)
-        assert absolute_error(film, "attitude_angle", 0.01) == pytest.approx(np.radians(0.9))
-        largest = max(abs(getattr(film, f"k_{xy}")) for xy in ("xx", "xy", "yx", "yy"))
-        assert absolute_error(film, "stiffness_yy", 0.01) == pytest.approx(0.01 * largest)
-        assert absolute_error(film, "power_loss", 0.01) == pytest.approx(0.01 * film.P)
-
-    def test_property_a_size_that_is_no_output_is_unknown(self):
-        pad = SliderBearing.from_quantities(SliderBearing.example)
-        assert np.isnan(absolute_error(pad, "pressure_gradient", 0.01))
-        assert absolute_error(pad, "pressure", 0.01) == pytest.approx(
-            np.full(np.shape(pad.p), 0.01 * np.abs(pad.p).max())
-        )
-
-
 class TestReachable:
     def test_property_nothing_beyond_a_default_level_without_errors(self):
         assert reachable(CycleHeatBalance, CycleHeatBalance.levels) == ("mobility_short", "mobility")
@@ -206,4 +186,6 @@ def test_property_texts_have_no_truth():
     texts = {cls: [n for n, f in cls.formulas.items() if isinstance(f, Text)] for cls in MEASURED}
     assert any(texts.values())
     for cls, names in texts.items():
-        assert {truth_of(cls, level, name) for level in accuracy(cls).errors for name in names} <= {None}
+        assert {accuracy(cls).truth(level, name) for level in accuracy(cls).errors for name in names} <= {
+            None
+        }

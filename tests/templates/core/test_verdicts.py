@@ -107,7 +107,7 @@ def test_a_violated_rule_never_prints_its_opposite():
         "warning", "A beam of any width is short, or high"
     ]
     assert not flat.holds
-    assert flat.violation == "height 12 mm is below span / 10 = 90 mm"
+    assert flat.violation == "span 900 mm is above 200 mm; height 12 mm is below span / 10 = 90 mm"
 
 
 class Limited(Template):

@@ -8,7 +8,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.units.units import require_same_kind, unit
 from templates.door import built_in
 from templates.library.choices import CHOICES
-from templates.library.reading import Source, UnusableTable, read_rows, read_sources
+from templates.library.csv_tables import Source, UnusableTable, read_rows, read_sources
 from templates.library.tables import UnknownTable, fills, limits_of, table, tables
 from templates.physics.journals.oil_grades import grades
 

@@ -14,7 +14,7 @@ from templates import get
 from templates.core.criteria.evaluation import Absent
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
-from templates.core.language.levels import accuracy, truth_of
+from templates.core.language.levels import accuracy
 from templates.core.language.spec import Profile, Text
 
 MISSES = 0.02
@@ -77,11 +77,12 @@ def test_property_bands_of_two_levels_overlap(name, version, drawn, count):
     stating = [
         level for level in cls.levels if accuracy(cls).states_any(level) and level != "mass_conserving"
     ]
+    truth_of = accuracy(cls).truth
     answers = {level: of_level(cls, raw, level) for level in stating}
     pairs = 0
     for one, other in combinations(stating, 2):
         for output in answers[one].keys() & answers[other].keys():
-            if (truth := truth_of(cls, one, output)) is None or truth != truth_of(cls, other, output):
+            if (truth := truth_of(one, output)) is None or truth != truth_of(other, output):
                 continue
             (low, high), (least, most) = answers[one][output], answers[other][output]
             known = ~(np.isnan(low) | np.isnan(high) | np.isnan(least) | np.isnan(most))

@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
-from templates.physics.fatigue.counting import by_rainflow, counted
 from templates.physics.fatigue.endurance import size_factor, surface_factor
 from templates.physics.fatigue.findley import critical_planes, findley_coefficient, uniaxial_equivalent
+from templates.physics.fatigue.rainflow import by_rainflow, counted
 from templates.physics.fatigue.smallest_circle import radii_of_smallest_circles
 from templates.physics.fatigue.tensors import as_matrices, leading_tensor, signed_von_mises, von_mises_1913
 from templates.stiffness.fatigue_life_v1 import FatigueLife

@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 sys.path.insert(0, str(Path(__file__).parents[2] / "imported_models"))
 
 from freecad_files import bush, needs_freecad
+from serving import API, heard
 
 
 def sent(page, id, content, file):
@@ -40,3 +41,15 @@ def test_a_form_without_a_file_is_explained(http):
     answer = http.post("/models/import", data={"id": "nothing"})
     assert answer.status_code == 422
     assert "choose a file" in answer.text
+
+
+def test_a_job_of_another_kind_leads_to_the_form(http):
+    shape = {"parameters": {"inner_diameter": "30 mm"}}
+    path = f"{API}/models/thrust_washer/versions/1/build"
+    job = http.post(path, json=shape, headers={"Prefer": "wait=0"}).headers["Location"].rpartition("/")[2]
+    with http.stream("GET", f"{API}/jobs/{job}/events") as stream:
+        assert any(event == "done" for event, _ in heard(stream))
+    for page in ("/models/import", "/worksheets/import"):
+        answer = http.get(page, params={"job": job})
+        assert answer.status_code == 200
+        assert f'action="{page}"' in answer.text

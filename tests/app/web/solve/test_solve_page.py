@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from patience import patient, until
 from serving import API, created
 
@@ -64,6 +65,35 @@ def test_a_solution_that_misses_a_criterion_says_so(http):
     design = created(http, PETROFF)["id"]
     assert "slow: not met" in solved(http, design, value="150 W")
     assert "slow: not met" not in solved(http, design, value="50 W")
+
+
+def test_a_criterion_that_is_met_by_a_value_of_unknown_error_is_counted_apart(http):
+    """Petroff's power states no error without a load, and the speed is exact."""
+    criteria = {**PETROFF["criteria"], "cool": {"require": "idle.power_loss <= 1 kW"}}
+    design = created(http, {**PETROFF, "criteria": criteria})["id"]
+    page = solved(http, design, value="50 W")
+    assert re.search(r"3 met, \d+ not checked, error unknown of 2 met", page)
+
+
+@pytest.mark.slow
+def test_both_levels_are_drawn_and_named(http):
+    """The tolerance of the design takes level fit, that of the question level map."""
+    inputs = http.get(f"{API}/templates/oil_film/versions/2").json()["example"]
+    step = {"template": "oil_film", "version": 2, "tolerance": 0.05, "inputs": inputs}
+    design = created(http, {"name": "film", "steps": {"film": step}})["id"]
+    own = {"unknown": "film.diametral_clearance", "low": "40 um", "high": "60 um"}
+    film = {"output": "film.minimum_film_thickness", "value": "2.7 um"}
+    figures = []
+    for tolerance in ("", "0.001"):
+        page = solved(http, design, **own, **film, tolerance=tolerance)
+        figures.append(re.search(r'<figure class="chart">(.*?)</figure>', page, re.DOTALL)[1])
+    one, both = figures
+    assert "at level fit; the dashed line" in one
+    assert ">level fit<" not in one
+    assert "the curve at level fit was searched, and the curve at level map confirmed the solutions" in both
+    assert ">level fit<" in both
+    assert ">level map<" in both
+    assert both.count("<path") > one.count("<path")
 
 
 def test_out_of_reach_says_what_can_be_reached(http):

@@ -104,6 +104,20 @@ def test_every_root_is_listed_and_none_preferred(http):
     assert page.count("Calculate with it") == len(answer["roots"]) + len(answer["touching"])
 
 
+@pytest.mark.slow
+def test_points_of_a_level_that_takes_few_are_drawn_and_named(http):
+    """Level map is searched; level reynolds confirms two solutions, with a point to both sides of each."""
+    example = http.get(f"{API}/templates/oil_film/versions/2").json()["example"]
+    typed = {name: text for name, text in example.items() if isinstance(text, str)}
+    asked = {"?unknown": "diametral_clearance", "?low": "3 um", "?high": "0.5 mm", "@level": "reynolds"}
+    asked |= {"?output": "minimum_film_thickness", "?value": "2 um"}
+    page = page_of(http, "/templates/oil_film/2/solve", **typed, **asked)
+    figure = re.search(r'<figure class="chart">(.*?)</figure>', page, re.DOTALL)[1]
+    assert "level map was searched, and points at level reynolds confirmed the solutions" in figure
+    assert figure.count("<circle") == 6 + 2
+    assert ">level reynolds<" in figure
+
+
 def test_a_jump_is_shown_in_american_units():
     side = {"value": 25.4, "unit": "um"}
     jump = Jump.model_validate({"value": 25.4, "unit": "mm", "before": side, "after": side}).in_units("us")

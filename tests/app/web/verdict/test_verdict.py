@@ -9,7 +9,7 @@ from judging import CRITERIA, MET, UNCHECKED, UNDECIDED, WORST, verdict
 from playwright.sync_api import expect
 from serving import API
 
-from app.presentation.criteria import compared, line, margin, step_of, title, tone
+from app.presentation.criteria import line, margin, step_of, title, tone
 from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.responses import jinja
 from app.web.verdict import banner as verdict_of_page
@@ -72,16 +72,27 @@ def two_steps(http):
 
 
 def test_a_violated_limit_is_worded_as_violated():
-    assert compared(criterion(WORST)) == "1.53 µm < smallest permissible film 2 µm"
+    assert line(criterion(WORST)).sentence == (
+        "minimum film thickness 1.53 µm is below smallest permissible film 2 µm: not met"
+    )
     assert margin(criterion(WORST)) == "−0.47 µm (−0.52 … −0.42)"
-    above = criterion(MET, verdict="not_met", value={"value": 120.0, "unit": "degC"})
-    assert compared(above) == "120 °C > 110 °C"
+    above = criterion(
+        MET, verdict="not_met", value={"value": 120.0, "unit": "degC"}, margin={"value": -10.0, "unit": "K"}
+    )
+    assert line(above).sentence.startswith("film temperature 120 °C is above 110 °C: not met")
     assert title(above) == "film temperature"
 
 
 def test_a_value_just_below_its_limit_is_not_shown_equal_to_it():
     near = {"value": 2.0 - 1e-7, "unit": "um"}
-    assert compared(criterion(WORST, value=near)) == "1.9999999 µm < smallest permissible film 2 µm"
+    sentence = line(criterion(WORST, value=near)).sentence
+    assert "1.9999999 µm is below smallest permissible film 2 µm" in sentence
+
+
+def test_the_sentence_follows_the_units_that_are_shown():
+    american = criterion(WORST).in_units("us")
+    assert american.sentence == line(american).sentence
+    assert "0.06024 mil is below smallest permissible film 0.07874 mil: not met" in american.sentence
 
 
 def test_two_criteria_of_one_value_are_told_apart():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.core.criteria.bands import Estimate, band, relative_width, value_and_bounds
+from templates.core.criteria.bands import Estimate, band, relative_error, relative_width, value_and_bounds
 from templates.core.units.relation import parse
 
 INF, NAN = math.inf, math.nan
@@ -48,6 +48,22 @@ def test_property_the_band_holds_every_truth_of_that_error_and_no_other():
     assert ((low <= truth + slack) & (truth - slack <= high)).all()
     for end in (low, high):  # each end is itself a truth that is off by exactly the error
         np.testing.assert_allclose(np.abs(value - end), error * np.abs(end), rtol=1e-9, atol=1e-15)
+
+
+def test_analytic_measured_error_is_of_the_truth():
+    assert relative_error(2.0, 1.0) == 1.0
+    assert relative_error(0.5, 1.0) == 0.5
+    assert relative_error(0.3, 0.2, scale=math.pi / 2) == pytest.approx(0.2 / math.pi)
+    assert relative_error(0.0, 0.0) == 0.0
+    assert relative_error(1.0, 0.0) == INF
+
+
+def test_property_the_band_of_a_measured_error_ends_at_the_truth():
+    random = np.random.default_rng(seeded(2))
+    value, truth = random.uniform(0.1, 3, size=(2, 500))
+    low, high = band(value, relative_error(value, truth))
+    nearest = np.where(truth <= value, low, high)
+    np.testing.assert_allclose(nearest, truth, rtol=1e-9)
 
 
 def test_analytic_error_of_an_angle_is_of_a_right_angle():

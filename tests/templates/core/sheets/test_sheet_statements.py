@@ -6,7 +6,7 @@ import pytest
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.sheets import SheetRefused, read, run_tests
-from templates.examples.listing import examples
+from templates.examples.index import examples
 
 BEARING = """# Journal bearing, first cut
 > Steady load, **aligned** journal.

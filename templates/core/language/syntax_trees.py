@@ -1,9 +1,9 @@
-"""Python source as a syntax tree, one thread at a time.
+"""Parse Python source into a syntax tree, in one thread at a time.
 
 CPython 3.11 counts the depth of a syntax tree in one number of the interpreter. While one thread parses, a
-collection of garbage may let another thread run. If that one parses too, one of them stops with "SystemError:
+garbage collection may let another thread run. If that thread parses too, one of them fails with "SystemError:
 AST constructor recursion depth mismatch" (python/cpython issue 106905). A server parses in several threads,
-so Crankwright makes every syntax tree here, under one lock.
+so Crankwright builds every syntax tree here, under one lock.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Oil supply of a bearing as on a drawing: a groove and a hole in the sleeve, a hole in the pin.
+"""Oil supply of a bearing as drawn: a groove and a hole in the sleeve, a hole in the pin.
 
-Angles count in the sense x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: a hole in
-the pin counts from the throw, groove and hole of a rod's bore from the rod's axis.
+Angles are positive from x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: the angle of
+a hole in the pin is measured from the throw, the angles of groove and hole in a rod's bore from the rod's
+axis.
 """
 
 from collections.abc import Iterator
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Mask, Truth
 from templates.core.language.declare import units
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
-from templates.physics.orbits.turning import turning
+from templates.physics.orbits.rotation import turning
 from templates.physics.supplied.supply import LONGEST, Pocket, Supply
 
 UNDER_LOAD = np.pi / 3
@@ -25,7 +26,7 @@ AROUND = 2 * np.pi * (1 - 1e-9)
 
 
 @dataclass(frozen=True)
-class Feeding:
+class SupplyGeometry:
     """Groove and holes of some points, SI, each midway across; NaN where there is none."""
 
     D: Array
@@ -96,7 +97,7 @@ class Feeding:
             yield tuple(pockets)
 
 
-def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
+def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]:
     """Return the `Supply` of each point, (...).
 
     None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
@@ -110,7 +111,7 @@ def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
     return supplies.reshape(shape)
 
 
-def supply_kind(feeding: Feeding) -> str:
+def supply_kind(feeding: SupplyGeometry) -> str:
     """Return the kind of supply of all points; empty where they differ."""
     half = np.abs(feeding.groove_extent - np.pi) <= HALF + 1e-9
     kinds = {
@@ -123,6 +124,22 @@ def supply_kind(feeding: Feeding) -> str:
         "pin_hole": (feeding.count == 1) & feeding.pin_holed,
     }
     return next((kind for kind, holds in kinds.items() if np.all(holds)), "")
+
+
+def sleeve_motion(duty: Duty) -> str:
+    """Return how the sleeve of all points moves in the block: fixed, swinging, or empty if otherwise.
+
+    A swinging one, such as a rod, comes to rest in the mean. The crank turns with the journal, in the mean,
+    and the load's axes do not turn.
+    """
+    journal, sleeve = (np.mean(np.atleast_1d(speed), axis=-1) for speed in (duty.omega_J, duty.omega_B))
+    slow = 1e-3 * duty.Omega
+    if np.any(duty.omega_F) or not np.all(
+        (np.abs(np.abs(journal) - duty.Omega) <= slow) & (np.abs(sleeve) <= slow)
+    ):
+        return ""
+    swings = np.ptp(np.atleast_1d(duty.omega_B), axis=-1) > slow
+    return "swinging" if np.all(swings) else "" if np.any(swings) else "fixed"
 
 
 def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
@@ -146,7 +163,7 @@ def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
     return np.asarray(~needed | np.isfinite(turned.turns.reshape(points)))[()]
 
 
-def feed_under_load(duty: Duty, feeding: Feeding) -> Array:
+def feed_under_load(duty: Duty, feeding: SupplyGeometry) -> Array:
     """Return share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
 
     NaN where there is none. A groove or slot longer than that is never under the load as a whole.

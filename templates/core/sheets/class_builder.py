@@ -21,11 +21,11 @@ from templates.core.language.spec import (
     Requirement,
 )
 from templates.core.sheets.body import RuleBody, TreeBody
-from templates.core.sheets.built import RULE, Built
 from templates.core.sheets.clauses import meaning_of, said_in, words_of
+from templates.core.sheets.contents import RULE, Built
 from templates.core.sheets.criteria import criterion_of
 from templates.core.sheets.curves import curve_of, points_of
-from templates.core.sheets.expecting import test_of
+from templates.core.sheets.expectations import test_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault, Refusal
 from templates.core.sheets.functions import function_of
@@ -33,7 +33,7 @@ from templates.core.sheets.grammar import ParsedStatement, declared_by, name_of,
 from templates.core.sheets.linear import MOST_UNKNOWNS, LinearBody, system_of
 from templates.core.sheets.lines import Chunk
 from templates.core.sheets.names import FUEL, Names, sort_of
-from templates.core.sheets.solving import SolveBody, equation_of
+from templates.core.sheets.single_equation import SolveBody, equation_of
 from templates.core.units.conformity import declared_kind, turns_remark
 from templates.core.units.nodes import EITHER, Kind, kind_of
 from templates.core.units.sorts import Sort

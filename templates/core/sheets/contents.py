@@ -1,4 +1,4 @@
-"""The contents of a worksheet's statements, before they are a class."""
+"""The contents of a worksheet's statements, before they become a class."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from templates.core.language.spec import Choice, Declaration, Derived, Formula, 
 from templates.core.sheets.faults import SheetFault
 from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.names import KnownName
-from templates.core.sheets.testing import SheetTest
+from templates.core.sheets.worksheet_tests import SheetTest
 
 Part = Declaration | Requirement
 RULE = "line"

@@ -15,7 +15,7 @@ from templates.core.sheets.clauses import words_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault
 from templates.core.sheets.grammar import ParsedStatement
-from templates.core.sheets.testing import ExpectedResult, SheetTest
+from templates.core.sheets.worksheet_tests import ExpectedResult, SheetTest
 from templates.core.units.rules import is_number
 from templates.core.units.units import difference_in, unit
 

@@ -99,7 +99,7 @@ def _records(path: Path) -> Iterator[dict[str, str]]:
 def _each_once(path: Path, keys: Iterable[str]) -> None:
     for key, times in Counter(keys).items():
         if times > 1:
-            raise UnusableTable(path, f"{key!r} is there {times} times")
+            raise UnusableTable(path, f"{key!r} occurs {times} times")
         if not _ROW.fullmatch(key):
             raise UnusableTable(path, f"{key!r} is not a name")
 
@@ -109,7 +109,7 @@ def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -
         raise UnusableTable(path, f"{record['id']} is not confirmed; remove the row until it is")
     values = dict(_values(path, record, sources))
     if not (values and record["words"]):
-        raise UnusableTable(path, f"{record['id']} has no value, or no words")
+        raise UnusableTable(path, f"{record['id']} has no value or no description")
     source = _citation(path, record, "source", sources)
     return Row(record["id"], record["words"], values, source, record["note"])
 

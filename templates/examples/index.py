@@ -1,4 +1,4 @@
-"""The example worksheets, each a file `<id>.sheet`."""
+"""The example worksheets, one file `<id>.sheet` each."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Angles of sleeve and journal in the frame of the load, from their speeds over the cycle.
 
-The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. What the cycle brings back to
-its place turns whole times in the frame; a groove in anything else is elsewhere in every cycle.
+The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. A part returns to its
+position after each cycle only if it makes whole turns in the frame; a groove in any other part is elsewhere
+in every cycle.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ CLOSED = np.radians(2.0)
 
 
 @dataclass(frozen=True)
-class Turning:
+class PartRotation:
     """The angle of a part in the frame of some cases: even turning, and a swing that repeats."""
 
     turns: Array
@@ -25,16 +26,16 @@ class Turning:
     swing: Array
     """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
 
-    def of(self, cases: Mask) -> "Turning":
+    def of(self, cases: Mask) -> "PartRotation":
         """Return the same object for a subset of the cases."""
-        return Turning(self.turns[cases], self.period, self.swing[cases])
+        return PartRotation(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:
         """Return the angle at crank angles, with the swing there, (C, K) [rad]."""
         return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
 
 
-def turning(angle: Array, period: float, speed: Array) -> Turning:
+def turning(angle: Array, period: float, speed: Array) -> PartRotation:
     """Return the turning of a part by its speed in the frame over that of the crank.
 
     Parameters
@@ -62,4 +63,4 @@ def turning(angle: Array, period: float, speed: Array) -> Turning:
     past = np.cumsum(steps, axis=-1) - steps
     swing = past - whole[:, None] * (angle - angle[0]) / period
     start = [np.interp(0.0, angle, row, period=period) for row in swing]
-    return Turning(turns, period, swing - np.array(start)[:, None])
+    return PartRotation(turns, period, swing - np.array(start)[:, None])

@@ -1,4 +1,4 @@
-"""`solve x from a to b so that … == …`: the root between two bounds, at all points at once."""
+"""`solve x from a to b so that … == …`: find the root between two bounds, at all points at once."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from templates.core.sheets.body import names_in, operations_seconds, unequal_len
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import ParsedStatement
 from templates.core.units.closures import closure
+from templates.core.units.evaluation import nodes_of
 from templates.core.units.operations import Apply
-from templates.core.units.walking import nodes_of
 
 NEAR = (
     1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more

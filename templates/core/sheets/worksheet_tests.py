@@ -1,4 +1,4 @@
-"""Tests that a worksheet holds: inputs, and what must come out."""
+"""Tests in a worksheet: inputs, and the expected outputs."""
 
 from __future__ import annotations
 

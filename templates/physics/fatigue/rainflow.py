@@ -1,6 +1,6 @@
-"""Cycles of a stress that repeats: rainflow by ASTM E1049, from its highest point round to itself.
+"""Cycles of a periodic stress: rainflow counting by ASTM E1049, starting from the highest point.
 
-A history that begins anywhere else leaves half cycles open which the next turn of the engine closes.
+A history that begins anywhere else leaves half cycles that only the next engine cycle closes.
 
 References
 ----------

@@ -1,13 +1,13 @@
-"""The level of one temperature: the heat balance of ISO 7902-1 with the film map, for many points at once.
+"""The one-temperature level: the heat balance of ISO 7902-1 with the film map, for many points at once.
 
-Without groove and supply pressure; air behind the bush counts. It is what `oil_film` does.
+It ignores groove and supply pressure, but includes cooling by air behind the bush, as `oil_film` does.
 """
 
 import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.films.film_map import NARROWEST, WIDEST
-from templates.physics.journals.heat_balance import Running, heat_balance
+from templates.physics.journals.heat_balance import OperatingPoint, heat_balance
 from templates.physics.journals.static_journal import static_film_at
 from templates.physics.thermal.thermal_case import ThermalCase
 
@@ -15,7 +15,7 @@ from templates.physics.thermal.thermal_case import ThermalCase
 def mapped_values(case: ThermalCase) -> dict[str, Array]:
     """Return the values of `WarmFilm` that one temperature has; eps infinite where there is no balance."""
     area = np.pi * case.D * case.W
-    running = Running(
+    running = OperatingPoint(
         F=case.F, D=case.D, W=case.W, psi=case.psi, omega_m=case.omega, omega_s=case.omega, A=case.A,
         B=case.B, a=case.a, b=case.b, offset=case.offset, eta=case.eta, rho_ref=case.rho_ref,
         T_ref=case.T_ref, heat_capacity=case.heat_capacity, T_supply=case.supply, T_ambient=case.ambient,

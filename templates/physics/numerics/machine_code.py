@@ -1,9 +1,9 @@
 """Functions compiled to machine code by numba when they are first called.
 
-The machine code is kept beside the module, or, where that folder cannot be written, in numba's folder for
-the user (`NUMBA_CACHE_DIR` sets another); where neither can be written it is compiled in every process. Numba
-looks for changes in the file of a function alone: functions that call each other belong in one module.
-Importing numba takes a second, so a module of compiled functions is imported by the function that needs it.
+The machine code is kept beside the module, or, where that folder cannot be written, in numba's folder for the
+user (`NUMBA_CACHE_DIR` sets another); where neither can be written, every process compiles it. Numba looks
+for changes only in the file of the function: functions that call each other belong in one module. Importing
+numba takes a second, so a module of compiled functions is imported by the function that needs it.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""The matrix of the film equations in banded form, and its solution where the film bears pressure."""
+"""The matrix of the film equations in banded form, and its solution on the nodes of the film."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +12,7 @@ from templates.physics.films.film_equations import Equations
 
 
 @dataclass(frozen=True)
-class Banded:
+class BandedMatrix:
     """The symmetric matrix A of the unknown nodes by its lower diagonals; the axial index runs fastest."""
 
     diagonals: Array
@@ -43,7 +43,7 @@ class Banded:
         ArithmeticError
             If the matrix is not positive definite.
         """
-        return Resumed(self).solve(inside, b)
+        return IncrementalSolver(self).solve(inside, b)
 
     def write(self, bands: Array, film: Mask, start: int) -> None:
         """Write the bands from an unknown on; rows and columns outside the film are those of the unit matrix.
@@ -66,13 +66,13 @@ class Banded:
                 np.multiply(diagonal[:end], inside[:end] & inside[offset:], out=bands[offset, :end])
 
 
-class Resumed:
+class IncrementalSolver:
     """Solutions on one film after another, each factorised from where it differs from the one before.
 
     The unknowns run in the sense of rotation, and films differ where they rupture: near the end.
     """
 
-    def __init__(self, matrix: Banded) -> None:
+    def __init__(self, matrix: BandedMatrix) -> None:
         self.matrix = matrix
         shape = matrix.offsets[-1] + 1, matrix.diagonals.shape[1]
         self._factors = np.empty(shape, order="F")  # as LAPACK has it: another order would be copied
@@ -129,7 +129,7 @@ def _lower(size: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return row, column
 
 
-def banded(equations: Equations) -> Banded:
+def banded(equations: Equations) -> BandedMatrix:
     """Order the unknowns and fill the diagonals."""
     n, m = equations.around.size, equations.zeta.size - 1
     order = _ring_order(n) if equations.ring else np.arange(1, n)
@@ -146,7 +146,7 @@ def banded(equations: Equations) -> Banded:
         _couple_ring(diagonals[2:], order, around)
     else:
         diagonals[2, : (n - 2) * m] = -around[1:-1].ravel()
-    return Banded(diagonals, offsets, order, (n + 1, m + 1))
+    return BandedMatrix(diagonals, offsets, order, (n + 1, m + 1))
 
 
 def _couple_ring(diagonals: Array, order: NDArray[np.intp], around: Array) -> None:

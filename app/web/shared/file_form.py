@@ -1,0 +1,108 @@
+"""A form by which a user sends a file that a job imports: the form, the wait for the job, and the refusal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+from pydantic import BaseModel
+
+from app.storage.idempotency import Once
+from app.web.shared.design_answers import job_of
+from app.web.shared.multipart import parts_of
+from app.web.shared.responses import go, show
+from app.web.shared.services import PageServices, Refused
+
+MISSED = (409, 415, 422, 429, 503)
+"""Errors that the form explains, because the user can correct them, or send the file again later."""
+_JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
+
+
+class Upload(BaseModel):
+    """The id of what a file becomes, and the name of the file."""
+
+    id: str
+    file: str
+
+
+async def _nothing(services: PageServices) -> dict[str, object]:
+    return {}
+
+
+@dataclass(frozen=True)
+class FileForm:
+    """The page of such a form.
+
+    Parameters
+    ----------
+    path, page
+        The address of the page, and its file.
+    choose
+        The sentence that asks for a file.
+    upload
+        The model that checks id and name.
+    begin
+        The service that begins the import.
+    address
+        Returns that of what the import made, by the result of its job; None for a job of another kind.
+    context
+        Returns what else the form shows.
+    """
+
+    path: str
+    page: str
+    choose: str
+    upload: type[Upload]
+    begin: Callable[[PageServices], Callable[[bytes, str, str, Once], str]]
+    address: Callable[[str], str | None]
+    context: Callable[[PageServices], Awaitable[dict[str, object]]] = _nothing
+
+    async def show(self, request: Request, services: PageServices, job: str, id: str) -> Response:
+        """Return the form for a file; while its job runs, the progress; then the result or the refusal."""
+        if not _JOB.fullmatch(job):
+            return await self._form(request, services, id)
+        work = await job_of(services, job)
+        if work.problem is not None:
+            return await self._form(request, services, id, work.problem.detail, work.problem.status)
+        if work.state == "done":
+            address = self.address(work.result or "")
+            return go(address) if address else await self._form(request, services, id)
+        answer = show(request, self.page, notice="", waiting=work)
+        answer.headers["Refresh"] = "1"  # the page needs no script to wait
+        return answer
+
+    async def send(self, request: Request, services: PageServices) -> Response:
+        """Send the chosen file; where it is refused at once, the form again with the reason."""
+        parts = await parts_of(request)
+        id = parts["id"].text.strip() if "id" in parts else ""
+        chosen = parts.get("file")
+        if chosen is None or not chosen.content:
+            return await self._form(request, services, id, f"choose a file: {self.choose}", 422)
+        name = "".join(sign for sign in (chosen.file or "") if sign.isprintable())[-200:].strip()
+        try:
+            job = await self.begun(services, chosen.content, id, name)
+        except Refused as refused:
+            if refused.status not in MISSED:
+                raise
+            return await self._form(request, services, id, refused.sentence, refused.status)
+        return go(f"{self.path}?job={job}&id={id}")
+
+    async def begun(self, services: PageServices, content: bytes, id: str, name: str) -> str:
+        """Begin the import of a file, and return its job.
+
+        Raises
+        ------
+        Refused
+            If the file is refused at once.
+        """
+        given = services.read(self.upload, {"id": id, **({"file": name} if name else {})})
+        begin = self.begin(services)
+        return await services.ask(services.threads.run(begin, content, given.id, given.file, services.once))
+
+    async def _form(
+        self, request: Request, services: PageServices, id: str, notice: str = "", status: int = 200
+    ) -> Response:
+        context = await self.context(services)
+        return show(request, self.page, status, typed_id=id, notice=notice, waiting=None, **context)
