@@ -1,7 +1,7 @@
 """The service keeps what /openapi.json promises: all checks of schemathesis, on requests made up from it.
 
 CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails. The quick lane asks
-a third of the operations, the slow lane all others. There test_contract_all_at_length.py also asks what covers
+a third of the operations, the slow lane all others. Besides, test_contract_all_at_length.py asks what covers
 each keyword of each schema, some 8 000 requests, and test_contract_at_length.py many more at random.
 """
 

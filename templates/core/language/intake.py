@@ -20,7 +20,7 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
-from templates.core.language.violations import relations, stated_case, violation
+from templates.core.language.violations import relations, required, stated_case, violation
 from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
@@ -416,7 +416,7 @@ def _violation(self: Calculation, rule: Requirement) -> Fault:
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     case = stated_case(self, rule) or values
-    return Fault(name, BROKEN, f"{case}; required: {rule.sentence}; {rule.remedy}", tuple(also))
+    return Fault(name, BROKEN, f"{case}; {required(rule)}", tuple(also))
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
@@ -424,13 +424,10 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
-    required = f"required: {rule.sentence}; {rule.remedy}"
-    cases = relations(self, rule)
-    points = np.logical_or.reduce(
-        [np.broadcast_to(where, holds.shape) for where, _ in cases] or [holds & False]
-    )
-    masks = [Mask(names, np.broadcast_to(where, holds.shape), f"{text}; {required}") for where, text in cases]
-    return [*masks, *([Mask(names, ~holds & ~points, required)] if (~holds & ~points).any() else [])]
+    cases = [(np.broadcast_to(where, holds.shape), text) for where, text in relations(self, rule)]
+    points = np.logical_or.reduce([where for where, _ in cases] or [holds & False])
+    masks = [Mask(names, where, f"{text}; {required(rule)}") for where, text in cases]
+    return [*masks, *([Mask(names, ~holds & ~points, required(rule))] if (~holds & ~points).any() else [])]
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:

@@ -38,6 +38,11 @@ def violation(template: Calculation, rule: Requirement, name: str) -> str:
     return "; ".join(_given(template, one) for one in rule.names)
 
 
+def required(rule: Requirement) -> str:
+    """Return what a rule requires, as refusals say it behind the case."""
+    return f"required: {rule.sentence}; {rule.remedy}"
+
+
 def stated_case(template: Calculation, rule: Requirement) -> str:
     """Return the comparisons that do not hold, in words with their numbers; empty where one has none."""
     with np.errstate(all="ignore"):
