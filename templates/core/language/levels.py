@@ -150,6 +150,25 @@ class Accuracy:
         """Return the error of an output that the active conditions add."""
         return sum(one.added(template, output) for one in self._conditions if one.holds(template))
 
+    def seconds(self, template: Template, level: str) -> float | None:
+        """Return the processor time to expect of all points at a level [s].
+
+        `expected_seconds` of the table has that of a point by level and case: one number, or one in each cell
+        of `grids` over the axes. None where it states none.
+        """
+        by_level = self.content.get("expected_seconds", {}).get(level, {})
+        stated = by_level.get("cases", {}).get(template.measured_case() if self.cases else "")
+        if stated is None:
+            return None
+        table = np.array(stated, dtype=float)
+        if table.ndim:
+            values = np.broadcast_arrays(*(np.asarray(getattr(template, axis), float) for axis in self.axes))
+            grids = (np.array(grid) for grid in by_level["grids"])
+            (rows, is_row), (columns, is_column) = map(_places, grids, values)
+            table = np.where(is_row & is_column, table[rows, columns], np.nan)
+        each = np.broadcast_to(table, template.shape_of_points())
+        return float(each.sum()) if np.isfinite(each).all() else None
+
     def truth(self, level: str, output: str) -> str | None:
         """Return the name of the solution against which an output was measured; None if none is stated."""
         truths: Mapping[str, str] = self.content.get("levels", {}).get(level or SINGLE, {}).get("truth", {})
