@@ -151,6 +151,7 @@ class Law:
 
 
 NONE = Law(None, {}, {})
+FEWEST_TIMED = 9  # duties of a band whose times have a median of their own
 Laws = dict[str, dict[str, dict[str, Law]]]
 
 
@@ -345,6 +346,7 @@ def write() -> None:
         "cases": by_output(stated, lambda law: [[law.factor]]),
         "powers": by_output(stated, lambda law: law.powers),
         "within": {case: levels[CHEAP[1]][SMALLEST].within for case, levels in stated.items()},
+        "expected_seconds": {"supplied": expected_seconds(first)},
     }
     FILE.write_text(json.dumps(page, indent=None, ensure_ascii=False) + "\n", encoding="utf-8")
     for case, levels in held.items():
@@ -382,6 +384,27 @@ def costs(level: str) -> dict[str, float]:
             seconds.append((process_time() - begin) / points)
         measured[name] = float(f"{min(seconds):.2g}")
     return measured if count > 1 else {"single": measured["single"]}
+
+
+def expected_seconds(lines: list[Line]) -> dict[str, Any]:
+    """Return the median processor time of a march by case and band of load and width [s].
+
+    A band with fewer than `FEWEST_TIMED` duties has the median of its case.
+    """
+    cases: dict[str, list[list[float]]] = {}
+    for kind, motion in product(KINDS, MOTIONS):
+        case = f"{kind}, {motion}"
+        own = [line for line in lines if case_of(line) == case]
+        cases[case] = [
+            [_median([x for x in own if band(x["S"], x["b"]) == (i, j)], own) for j in range(len(WIDTHS) - 1)]
+            for i in range(len(LOADS) - 1)
+        ]
+    return {"grids": [LOADS, WIDTHS], "cases": cases}
+
+
+def _median(lines: list[Line], rest: list[Line]) -> float:
+    times = [line["seconds"] for line in (lines if len(lines) >= FEWEST_TIMED else rest)]
+    return float(f"{np.median(times):.2g}")
 
 
 def ratios() -> None:

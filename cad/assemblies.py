@@ -51,7 +51,7 @@ class Component:
     holds: tuple[str, ...] = ()  # ids of the models that it is made of
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
-        """Its place as parameters of the assembly, with the numbers that hold unless a design sets them."""
+        """Return its position as parameters of the assembly, with their default values."""
         for key in (*SHIFTS, *TURNS):
             unit, bound = ("mm", FARTHEST) if key in SHIFTS else ("deg", 360.0)
             words = f"{self.name} {key.replace('_', ' about ')}".replace("_", " ")
@@ -92,7 +92,7 @@ class AssemblyModel(ImportedModel):
     imported: ClassVar[AssemblyDescription]
 
     def build(self) -> tuple[Part, ...]:
-        """Return the parts of its model, and its fixed parts where they stand."""
+        """Return the parts of its model, and its fixed parts at their positions."""
         if _PARTS not in vars(self):
             built = tuple(self._built())
             self._require_known(built)
@@ -101,7 +101,7 @@ class AssemblyModel(ImportedModel):
         return parts
 
     def bounding_box(self) -> Box:
-        """Return the box of its model, and those of its fixed parts."""
+        """Return the bounding box of its model and of its fixed parts."""
         from cad.inspect import bounding_box
         from cad.step import Body
 
@@ -153,7 +153,7 @@ class AssemblyModel(ImportedModel):
         return None
 
     def _allows(self, one: str, other: str) -> bool:
-        """Return whether the fixed part of one solid may take space of the other, by part or by solid."""
+        """Return whether the fixed part of one solid may interfere with the other, by part or by solid."""
         name = self.component_of(one)
         component = next((c for c in self.imported.components if c.name == name), None)
         if component is None:
@@ -162,12 +162,12 @@ class AssemblyModel(ImportedModel):
         return not {other, self.component_of(other), *parts}.isdisjoint(component.may_overlap)
 
     def _require_known(self, parts: Sequence[Part]) -> None:
-        """Refuse a `may_overlap` that names no part, but for a part of the model with usual parameters.
+        """Refuse a `may_overlap` that names no part, except parts that the model has with other parameters.
 
         Raises
         ------
         GeometryError
-            `may_overlap`, with the nearest names and all that there are.
+            `may_overlap`, with the nearest names and all existing ones.
         """
         wanted = {name: one.name for one in self.imported.components for name in one.may_overlap}
         known = dict.fromkeys(one.name for one in self.imported.components)
@@ -233,7 +233,7 @@ class AssemblyModel(ImportedModel):
 
 
 def _solids_of(component: Component, step: bytes) -> list[Part]:
-    """Return the solids of a fixed part: under its name if there is one, else each with a name of its own."""
+    """Return the solids of a fixed part: a single one under its name, several under separate names."""
     try:
         parts = list(parts_of_step(step))
     except UnreadableStep as error:
@@ -251,7 +251,7 @@ def base_of(base: tuple[str, int]) -> type[CadModel]:
 
 
 def assembly_of(read: Mapping[str, Any]) -> AssemblyDescription:
-    """Return the description from its JSON, of which the parameters are read already."""
+    """Return the description from its JSON, whose parameters are already read."""
     components = tuple(_component(one) for one in read["components"])
     base = read["base"]
     return AssemblyDescription(

@@ -41,7 +41,7 @@ class Ring:
 
     @property
     def _segment(self) -> float:
-        """Return the area of the circular segment that the groove takes [mm²]."""
+        """Return the area of the circular segment that the groove removes [mm²]."""
         half = self._half_angle
         return self.groove_radius**2 * (half - sin(half) * cos(half))
 
@@ -60,7 +60,7 @@ class Ring:
         return 2 * pi * (area * pitch_radius + side * moment)
 
     def _outline(self, place: Callable[[float, float], Vector]) -> Face:
-        """Return the section as a face; `place` puts (s, z) into space."""
+        """Return the section as a face; `place` maps (s, z) to space."""
         half, edge = self.width / 2, self.groove_radius * sin(self._half_angle)
         ends = place(self.shoulder, -edge), place(self.shoulder, edge)
         corners = [
@@ -147,6 +147,6 @@ class BallRow(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the outside of the outer ring; nothing stands out of the width."""
+        """Return the bounding box of the outer ring, which contains all parts."""
         radius, half = mm(self.D) / 2, mm(self.B) / 2
         return Box((-radius, -radius, -half), (radius, radius, half))

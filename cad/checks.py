@@ -77,7 +77,7 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
 def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
     """Return clearances and overlaps between the fixed parts of an assembly and all other parts.
 
-    Where more than `MOST_NAMED` pairs interfere, the rest is not compared: `check_clearances` refuses them.
+    If more than `MOST_NAMED` pairs interfere, the comparison stops: `check_clearances` refuses them.
     """
     between = list[Clearance]()
     wrong = 0
@@ -95,7 +95,7 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     Raises
     ------
     GeometryError
-        `interference`, naming the parts and the volume that they share.
+        `interference`, naming the parts and their shared volume.
     """
     wrong = [one for one in between if _interferes(model, one)]
     if wrong:
@@ -107,7 +107,7 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
     """Return each fixed part's least distance [mm] from all other parts, and the shared space [mm³].
 
-    The distance is 0 where it touches or overlaps one. A part that is compared with none has neither.
+    The distance is 0 if it touches or overlaps a part. A part without comparisons has neither value.
     """
     measures: dict[str, float] = {}
     for one in between:
@@ -124,7 +124,7 @@ def _interferes(model: CadModel, one: Clearance) -> bool:
 
 
 def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body]) -> None:
-    """Check that the fixed parts of an assembly stand in the file where they were placed.
+    """Check that the fixed parts of an assembly are at their specified positions in the file.
 
     Raises
     ------
@@ -146,11 +146,9 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
 
 
 def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
-    """Compare every parameter that the solid shows with the one requested; return them by API name.
+    """Compare every parameter that the solid shows with the requested value; return them by API name.
 
-    Of a list each item is; where one number stands for all items, each of them is that number.
-
-    Raises
+    For a list each item is compared; a single number applies to all items. Raises
     ------
     GeometryError
         `dimension`, naming the parameters that are not as requested.

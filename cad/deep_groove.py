@@ -128,6 +128,6 @@ class Cage:
         return Solid.makeCylinder(self.pocket, 1.1 * self.outside - start, along * start, along)
 
     def volume(self) -> float:
-        """Return the ring less what the pockets take [mm³]."""
+        """Return the ring minus the volume of its pockets [mm³]."""
         ring = pi * (self.outside**2 - self.inside**2) * self.width
         return ring - self.balls * drilled_volume(self.pocket, self.outside, self.inside)

@@ -36,7 +36,7 @@ def with_deflection(kind: str, raw: str) -> str:
     Raises
     ------
     InvalidInputs
-        If it is no length above 0, or the kind has no facets.
+        If it is not a length above 0, or the kind has no facets.
     """
     if kind not in MESHES:
         detail = f"only {' and '.join(MESHES)} are made of facets; leave it out for {kind}"
@@ -99,5 +99,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """The largest diagonal of a body's box [mm]: the number of its positions does not matter."""
+    """Return the largest diagonal of a body's box [mm], whatever the number of its positions."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

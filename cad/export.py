@@ -43,7 +43,7 @@ def derive(step: bytes, kind: str) -> bytes:
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape, or validation properties find no part of their own.
+        If the bytes are not a STEP file or hold no shape, or validation properties match no part.
     KeyError
         If no such kind can be derived.
     InvalidInputs

@@ -90,9 +90,9 @@ class Files(StaticFiles):
     """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
 
     def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
-        """Return the file of a path: of a page's folder only its style sheets, scripts and pictures.
+        """Return the file for a path; from a page's folder only style sheets, scripts and pictures.
 
-        The system's calls raise on a null byte instead of finding nothing.
+        System calls raise an error for a null byte.
         """
         is_sent = "\0" not in path and Path(path).suffix in SENT
         return super().lookup_path(path) if is_sent else ("", None)
@@ -104,7 +104,7 @@ class Files(StaticFiles):
         scope: Scope,
         status_code: int = 200,
     ) -> Response:
-        """Return the file, or that it is still the same."""
+        """Return the file, or 304 if the browser already has it."""
         response = super().file_response(full_path, stat_result, scope, status_code)
         response.headers["Cache-Control"] = "no-cache"
         response.headers["X-Content-Type-Options"] = "nosniff"

@@ -27,15 +27,15 @@ class Limits:
 
 
 def shares_process(function: Callable[..., object], args: tuple[object, ...]) -> bool:
-    """Return whether the process in which a function runs may serve another job after it, see `may_share`."""
+    """Return whether the process of a function may serve another job afterwards, see `may_share`."""
     is_shared: Callable[..., bool] | None = getattr(function, _SHARED, None)
     return is_shared is not None and is_shared(*args)
 
 
 def may_share(when: Callable[[*Ts], bool]) -> Callable[[Callable[[*Ts], T]], Callable[[*Ts], T]]:
-    """Mark a function that leaves nothing behind that another job could notice, where `when` says so.
+    """Mark a function whose process may serve another job afterwards, if `when` allows it.
 
-    `when` gets the arguments. Functions without the mark have a process that ends with their job.
+    `when` is called with the arguments. The process of an unmarked function ends with its job.
     """
 
     def mark(function: Callable[[*Ts], T]) -> Callable[[*Ts], T]:
@@ -75,12 +75,12 @@ class Batch(Protocol):
         Raises
         ------
         WorkerError
-            The function did not come to its end; the kind of error says why.
+            If the function did not finish; the class of the error gives the reason.
         """
         ...
 
     def close(self) -> None:
-        """End what runs and let no more run."""
+        """End all running functions and accept no more."""
         ...
 
 
@@ -103,9 +103,9 @@ class BatchWorker(Worker, Protocol):
         ...
 
     def batch(self, lane: Lane = GEOMETRY) -> Batch:
-        """Run several functions of a lane in one process, as long as each comes to its end.
+        """Run several functions of a lane in one process, as long as each one succeeds.
 
-        What crashes, takes too long, wants too much memory, is cancelled or raises ends the process with it,
-        and the next function has a new one. Close the batch in the end.
+        If a function crashes, takes too long, uses too much memory, is cancelled or raises, its process ends,
+        and the next function gets a new one. Close the batch at the end.
         """
         ...

@@ -35,9 +35,9 @@ def use(pid: int | None = None) -> Use:
 
 
 def kill(seconds: float = 1.0) -> None:
-    """Kill every descendant of this process, and wait until none lives, for at most this time [s].
+    """Kill every descendant of this process, and wait at most this time [s] until all have ended.
 
-    What loses its parent meanwhile becomes a child of this process, so that it is seen in the next round.
+    Orphans become children of this process, so the next round finds them.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1)

@@ -33,7 +33,7 @@ def main(
 ) -> NoReturn:
     """Import the modules, then fork a job process for each pair of connections that the channel brings.
 
-    `prepare`, if there is one, is called before the imports.
+    `prepare`, if given, is called before the imports.
     """
     try:
         hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
@@ -58,10 +58,10 @@ def main(
 
 
 def load(name: str) -> ModuleType | None:
-    """Import a module, or all modules of a package; the kernel is only loaded.
+    """Import a module, or all modules of a package; the kernel is loaded but not used.
 
-    Once used, it has threads of its own, and a fork that lacks them would wait for them for ever. So a module
-    may have a function `rehearse`, which each fork calls by itself while it waits for its job.
+    Once used, the kernel has threads, which a fork lacks and would wait for forever. So a module may have a
+    function `rehearse`, which each fork calls while it waits for its job.
     """
     try:
         module = importlib.import_module(name)
@@ -74,7 +74,7 @@ def load(name: str) -> ModuleType | None:
 
 
 def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]) -> None:
-    """Fork and collect by turns: no death is handled in the middle of anything else."""
+    """Alternate between forking and collecting dead children, so that no death interrupts other work."""
     nursery: Nursery = {}
     deaths, knell = socket.socketpair()
     with deaths, knell, selectors.DefaultSelector() as selector:
@@ -108,7 +108,7 @@ def _fork(
     nursery: Nursery,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
-    """Fork a job process in a process group of its own and send its id."""
+    """Fork a job process in a separate process group and send its id."""
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:

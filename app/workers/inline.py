@@ -42,4 +42,4 @@ class Inline:
         return True
 
     def close(self) -> None:
-        """Do nothing: there is nothing to end."""
+        """Do nothing, since nothing needs to be closed."""

@@ -43,8 +43,8 @@ def serve_jobs(
 ) -> NoReturn:
     """Wait for a request, answer it, and end the process, unless another request may follow.
 
-    Meanwhile it rehearses, so that the job finds ready what is loaded at first use. It ends without cleaning
-    up: destructors of geometry kernels may crash when the work is long done.
+    While it waits it rehearses, so that modules loaded at first use are ready. It exits without cleaning up,
+    because destructors of geometry kernels may crash after the work is done.
     """
     exit_code = 1
     try:
@@ -81,7 +81,7 @@ def _die_with(parent: int) -> None:
 
 
 def _answer(packed: PackedMessage, connection: Connection) -> tuple[PackedMessage, bool]:
-    """Run a pickled request; the pickled message that says how it ended, and whether another may follow."""
+    """Run a pickled request; return its pickled outcome, and whether another request may follow."""
     reusable = False
     try:
         request = packed.unpacked()
@@ -119,7 +119,7 @@ def _packed_result(result: object) -> PackedMessage:
 
 
 def _portable(error: BaseException) -> BaseException:
-    """Return the exception, or a RemoteError if it would be lost on the way; a note says where it arose."""
+    """Return the exception, or a RemoteError if it cannot be sent; a note names its origin."""
     where = "".join(traceback.format_exception(error))
     try:
         pickle.loads(pickle.dumps(error))
@@ -130,10 +130,10 @@ def _portable(error: BaseException) -> BaseException:
 
 
 def _limit(limits: Limits) -> None:
-    """Let the kernel hold this process to its limits, even if the server can no longer do so.
+    """Set the limits of this process in the kernel, which enforces them even without the server.
 
-    These are soft limits: a process that takes another request raises them. The kernel counts the processor
-    time of all its requests together, and ends it at the soft limit too.
+    These are soft limits, which a process raises for its next request. The kernel counts the processor time
+    of all requests together, and ends the process at the soft limit.
     """
     used = resource.getrusage(resource.RUSAGE_SELF)
     seconds = math.ceil(used.ru_utime + used.ru_stime + limits.deadline * (os.cpu_count() or 1)) + 1
@@ -150,7 +150,7 @@ def _set_soft(kind: int, wanted: int) -> None:
 
 
 def _has_grown(limits: Limits) -> bool:
-    """Return whether the process has kept so much memory that the next request could lack it."""
+    """Return whether the process has kept so much memory that the next request could run out."""
     if sys.platform != "linux":
         return False
     return _mapped_bytes() - _mapped_at_start() > limits.memory_mb * 2**20 / _GROWTH
@@ -163,6 +163,6 @@ def _mapped_at_start() -> int:
 
 
 def _mapped_bytes() -> int:
-    """Return the address space that the process takes [bytes]."""
+    """Return the address space of the process [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

@@ -21,7 +21,7 @@ class Lifeline:
         self.reader, self._writer = os.pipe()
 
     def close_reader(self) -> None:
-        """Close the server's copy of the other end, once it has been handed on."""
+        """Close the server's copy of the other end after it was passed on."""
         os.close(self.reader)
 
     def cut(self) -> None:

@@ -49,13 +49,13 @@ class LocalProcesses:
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:
-        """Run the function in a process of its own; see `Worker.run`."""
+        """Run the function in a separate process; see `Worker.run`."""
         return cast(T, self.outcome(Request.of(function, args, limits), on_progress, cancelled).result())
 
     def outcome(
         self, request: Request, on_progress: Reporter | None, cancelled: threading.Event | None
     ) -> Outcome:
-        """Run a packed function in a process of its own; see `JobProcess.finish`."""
+        """Run a packed function in a separate process; see `JobProcess.finish`."""
         return self.started(request).finish(request.limits, on_progress, cancelled)
 
     def batch(self, lane: Lane = GEOMETRY) -> "Batch":
@@ -63,7 +63,7 @@ class LocalProcesses:
         return Batch(self.started, self)
 
     def capacity(self, lane: Lane) -> int:
-        """Return no bound: the queue has as many threads as this machine runs jobs."""
+        """Return no limit: the queue has as many threads as this machine runs jobs."""
         return UNLIMITED
 
     def answers(self) -> bool:
@@ -78,7 +78,7 @@ class LocalProcesses:
         return self._spare.is_born()
 
     def close(self) -> None:
-        """Kill all processes; jobs that still run end with JobCrashed."""
+        """Kill all processes; running jobs end with JobCrashed."""
         self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
             self._closed = True
@@ -93,7 +93,7 @@ class LocalProcesses:
             return self._kept.pop() if self._kept else None
 
     def keep(self, used: "IdleProcess") -> None:
-        """Keep the process of a job for the next one, or end it if another one waits already."""
+        """Keep the process of a job for the next one, or end it if another process is already waiting."""
         with self._lock:
             if len(self._kept) < MOST_KEPT and not self._closed:
                 self._kept.append(used)
@@ -101,7 +101,7 @@ class LocalProcesses:
         used.process.kill()
 
     def started(self, request: Request) -> JobProcess:
-        """Give the job to the process that waits for it, and have the next one forked meanwhile."""
+        """Give the job to the waiting process, and fork the next one meanwhile."""
         with self._lock:
             process, self._spare = self._spare, self._forkserver.fork()
         try:
@@ -169,7 +169,7 @@ class Batch:
     ) -> Outcome:
         """Run a packed, reusable function as `run` does; see `JobProcess.finish`.
 
-        `is_shared` says whether its process may serve other batches as well.
+        `is_shared` states whether its process may serve other batches as well.
         """
         self._is_shared = self._is_shared and is_shared
         if (process := self._taken() or self._lent()) is not None:
@@ -188,7 +188,7 @@ class Batch:
         return self._finished(self._started(request), request.limits, on_progress, cancelled)
 
     def close(self) -> None:
-        """Leave the process, if one waits, to the next batch; end it if it may not serve another."""
+        """Leave a waiting process to the next batch; end it if it may not serve another."""
         if (process := self._taken()) is None:
             return
         if self._keeper is not None and self._is_shared:
@@ -217,7 +217,7 @@ class Batch:
     ) -> Outcome:
         """Return the outcome of a process.
 
-        It is kept if it returned a result and may run another function.
+        The process is kept if it returned a result and may run another function.
         """
         outcome = process.finish(limits, on_progress, cancelled)
         self._count += 1

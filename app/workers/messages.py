@@ -31,7 +31,10 @@ class PackedMessage:
         return pickle.loads(self.message, buffers=self.pieces)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
-        """Return the parts to pickle; within another message, large parts go beside it and are not copied."""
+        """Return the parts to pickle.
+
+        Within another message, large parts are sent separately without a copy.
+        """
         message = PickleBuffer(self.message) if len(self.message) > PIECE else self.message
         return PackedMessage, (message, tuple(map(PickleBuffer, self.pieces)))
 
@@ -52,7 +55,7 @@ class Request:
         limits: Limits,
         reusable: bool = False,
     ) -> Self:
-        """Return the request to call a function; raises what pickle raises."""
+        """Return the request to call a function; raises the errors of pickle."""
         return cls(pack((function, args)), limits, reusable)
 
 
@@ -84,7 +87,7 @@ class ErrorMessage:
     reusable: bool = False
 
     def result(self) -> NoReturn:
-        """Raise what the function raised."""
+        """Return the result, or raise the function's exception."""
         error = self.error.unpacked()
         assert isinstance(error, BaseException), "a process packs nothing else here"
         raise error
@@ -94,21 +97,21 @@ Outcome = ResultMessage | ErrorMessage
 
 
 def pack(message: object) -> PackedMessage:
-    """Pickle a message; raises what pickle raises."""
+    """Pickle a message; raises the errors of pickle."""
     pieces: list[PickleBuffer] = []
     packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)
     return PackedMessage(packed, tuple(pieces))
 
 
 def send(connection: Connection, packed: PackedMessage) -> None:
-    """Send a message: how many pieces follow, itself, the pieces."""
+    """Send a message: the number of pieces, the message, the pieces."""
     connection.send_bytes(_COUNT.pack(len(packed.pieces)) + packed.message)
     for piece in packed.pieces:
         connection.send_bytes(piece)
 
 
 def receive(connection: Connection) -> PackedMessage:
-    """Receive a message; blocks. Raises EOFError if the other end closes before all of it has come."""
+    """Receive a message; blocks. Raises EOFError if the other end closes before the message is complete."""
     head = connection.recv_bytes()
     (count,) = _COUNT.unpack_from(head)
     return PackedMessage(head[_COUNT.size :], tuple(connection.recv_bytes() for _ in range(count)))

@@ -52,7 +52,7 @@ class WarmProcesses:
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:
-        """Run the function in a process that has nothing else to do; see `Worker.run`."""
+        """Run the function in an idle process; see `Worker.run`."""
         process = self._started(Request.of(function, args, limits, reusable=True))
         try:
             outcome = process.finish(limits, on_progress, cancelled)
@@ -72,7 +72,7 @@ class WarmProcesses:
         return False
 
     def close(self) -> None:
-        """Kill all processes; what still runs ends with JobCrashed."""
+        """Kill all processes; running functions end with JobCrashed."""
         self._closed = True
         self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
@@ -86,7 +86,7 @@ class WarmProcesses:
         return process
 
     def _started(self, request: Request) -> JobProcess:
-        """Give the request to a process that waits; one that died meanwhile is replaced."""
+        """Give the request to a waiting process; replace one that has died."""
         with self._lock:
             process = self._idle.pop() if self._idle else self._forked()
         try:

@@ -24,17 +24,17 @@ _started: dict[tuple[str, ...], ForkServer] = {}
 
 
 def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) -> None:
-    """Fork a fork server for these modules; it ends with this process, whether or not it is taken.
+    """Fork a fork server for these modules in advance; it ends with this process, used or not.
 
-    Where this process has threads already, and elsewhere than on Linux, nothing happens: who asks gets a new
-    process.
+    If this process already has threads, or is not on Linux, nothing is forked: callers get a new process
+    later.
 
     Parameters
     ----------
     preload
-        The modules, as `fork_server` is asked for them.
+        The modules, in the form that `fork_server` needs.
     prepare
-        What the new process calls before it imports what is missing.
+        A function that the new process calls before it imports missing modules.
     """
     if not _may_fork():
         return
@@ -52,12 +52,12 @@ def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) ->
 
 
 def is_forked(preload: Sequence[str]) -> bool:
-    """Return whether a fork server was forked ahead for these modules, and waits for who takes it."""
+    """Return whether a fork server for these modules was forked in advance and is unused."""
     return tuple(preload) in _started
 
 
 def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkServer:
-    """Return the fork server that was started ahead for these modules, else a new one."""
+    """Return the fork server that was forked in advance for these modules, else a new one."""
     return _started.pop(tuple(preload), None) or ForkServer(preload, environment)
 
 
@@ -107,7 +107,7 @@ class ForkedProcess:
 
 
 def _may_fork() -> bool:
-    """Return whether this process has one thread: a fork lacks the others, and waits for what they hold."""
+    """Return whether this process has one thread: a fork lacks the others, and would wait for their locks."""
     return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
 
 
@@ -118,7 +118,7 @@ def _become_fork_server(
     environment: Mapping[str, str],
     prepare: Callable[[], object] | None,
 ) -> NoReturn:
-    """Turn a fork of the server into a fork server, with what a new process would have."""
+    """Turn a fork of the server into a fork server, in the state of a new process."""
     try:
         from app.workers.forkserver import main
 
@@ -134,9 +134,9 @@ def _become_fork_server(
 
 
 def _keep_only(*descriptors: int) -> None:
-    """Close what the server has open, and read from nowhere.
+    """Close all other files and sockets of the server.
 
-    A copy of the end of another fork server's lifeline would keep that one alive when the server has gone.
+    A copy of another fork server's lifeline would keep that one alive after the server's death.
     """
     for descriptor in map(int, os.listdir("/proc/self/fd")):
         if descriptor > 2 and descriptor not in descriptors:

@@ -28,12 +28,12 @@ def share_fairly() -> None:
 
 
 def give_way() -> None:
-    """Let the other processes of the session, above all the server, come before this one."""
+    """Lower the priority of this process below the others of the session, above all the server."""
     os.nice(_NICENESS)
 
 
 def _set_slice(nanoseconds: int) -> bool:
-    """Ask for a slice; whether the system takes the request, which older ones then ignore."""
+    """Request a time slice; return whether the system accepts the request, which older systems ignore."""
     number = _SCHED_SETATTR.get(platform.machine())
     if sys.platform != "linux" or number is None:
         return False

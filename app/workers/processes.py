@@ -53,12 +53,12 @@ class JobProcess:
     def finish(
         self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None
     ) -> Outcome:
-        """Wait for the end of the job; what it raises itself is an outcome.
+        """Wait for the end of the job and return its outcome, which includes its own exceptions.
 
         Raises
         ------
         DeadlineExceeded, JobCancelled, JobCrashed
-            The process was ended, or ended by itself.
+            If the process was ended, or exited by itself.
         """
         cancelled = cancelled or threading.Event()
         try:
@@ -69,7 +69,7 @@ class JobProcess:
                 self.kill()
 
     def kill(self) -> None:
-        """End the process, and those which it has started; one not born yet ends by itself when it is."""
+        """End the process and its children; one that is not forked yet ends itself later."""
         if self._status.closed:
             return
         with suppress(ProcessLookupError, JobCrashed):
@@ -88,7 +88,7 @@ class JobProcess:
     def is_born(self) -> bool:
         """Return whether the forkserver has forked the process.
 
-        Reads nothing, so its owner may use it meanwhile.
+        It reads nothing, so its owner may use the connection meanwhile.
         """
         try:
             return "_pid" in self.__dict__ or self._status.poll()
@@ -163,9 +163,9 @@ Launch = Callable[[Sequence[str], int, int, Mapping[str, str]], Process]
 
 
 def launch(preload: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]) -> Process:
-    """Start the process of a fork server, which takes what it is asked from the channel.
+    """Start the process of a fork server, which receives its requests over the channel.
 
-    What the operator has set in the server's own environment prevails over `environment`.
+    The server's own environment takes precedence over `environment`.
     """
     return subprocess.Popen(
         [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(channel), str(lifeline), *preload],
@@ -198,12 +198,12 @@ class ForkServer:
         self._start(begin or launch)
 
     def fork(self) -> JobProcess:
-        """Ask for a process; it may come to life later, and takes its job even before.
+        """Request a process; it may start later, but accepts its job at once.
 
         Raises
         ------
         JobCancelled
-            The forkserver has been closed.
+            If the fork server has been closed.
         """
         connection, theirs = Pipe()
         status, exits = Pipe(duplex=False)

@@ -16,12 +16,12 @@ NAME = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f][^\x00-\x1f\x7f]*$"
 
 
 def storable(text: str) -> str:
-    """Return a text that the database can keep.
+    """Return a text that the database can store.
 
     Raises
     ------
     ValueError
-        If it is too long, or has a character that is not text.
+        If it is too long, or contains an invalid character.
     """
     if (size := len(text.encode("utf-8"))) > LONGEST_TEXT:
         raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
@@ -32,12 +32,12 @@ def storable(text: str) -> str:
 
 
 def legible(name: str) -> str:
-    """Return a name of a person that can be read.
+    """Return a legible name of a person.
 
     Raises
     ------
     ValueError
-        If it has no letter and no digit, as a name of blanks that nobody sees.
+        If it contains neither a letter nor a digit, and would look empty.
     """
     if not any(map(str.isalnum, name)):
         raise ValueError("a name needs a letter or a digit, like A. Weber")
@@ -60,7 +60,7 @@ EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
 
 
 def _examples(**example: JsonValue) -> ConfigDict:
-    """Return the configuration of a body with an example that can be sent as it is."""
+    """Return the configuration of a body with a valid example."""
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
 
 

@@ -19,6 +19,7 @@ from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.ledger import Notice
 from templates.core.language.spec import Requirement
 from templates.core.language.template import Template
+from templates.core.language.violations import required
 from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import describe
 from templates.core.sheets import Sheet, SheetRefused, Statement, read, run_tests
@@ -35,7 +36,7 @@ ROUNDS = 4
 def checked(text: str, id: str | None) -> bytes:
     """Return the answer to `check` as JSON.
 
-    Where statements are faulty, the lines show what the others give without them.
+    The lines show the results of valid statements without the faulty ones.
     """
     try:
         answer = _sound(read(text), id or UNNAMED)
@@ -59,9 +60,9 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """Return the sheet that the sound statements make, each in its line; None where even these make none.
+    """Return the sheet of the valid statements, each in its line; None if there is none.
 
-    Statements that use a faulty one are faulty without it, so the text is read at most `ROUNDS` times more.
+    Statements that use a faulty one become faulty too, so the text is read up to `ROUNDS` more times.
     """
     for _ in range(ROUNDS):
         try:
@@ -134,7 +135,7 @@ def _example(cls: type[Template]) -> _Example:
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
-    """Return inputs and outputs of an evaluation by name, as answers hold them."""
+    """Return inputs and outputs of an evaluation by name, as in answers."""
     answer = json_values.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 
@@ -177,8 +178,7 @@ def _of_value(name: str, example: _Example) -> _Result:
 def _of_rule(rule: Requirement | None, example: _Example) -> _Result:
     if rule is None:
         return _Result()
-    refusal = f"{rule.sentence}, but "
-    broken = next((fault.detail for fault in example.faults if fault.detail.startswith(refusal)), None)
+    broken = next((fault.detail for fault in example.faults if required(rule) in fault.detail), None)
     if broken is None and example.faults:
         return _Result(verdict="not_checked", message="the example is refused")
     return _Result(verdict="not_met" if broken else "met", message=broken)

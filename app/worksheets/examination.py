@@ -65,7 +65,7 @@ def tried(id: str, version: int, text: str) -> TestRun:
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:
-    """Yield what a template needs and the language does not demand."""
+    """Yield the missing parts that a template needs but the language does not require."""
     if not cls.formulas:
         yield "it gives nothing: write a formula"
     required = [name for name, declared in cls.inputs.items() if declared.required]
@@ -77,7 +77,7 @@ def _unusable(cls: type[Template]) -> Iterator[str]:
 def as_released(
     source: SheetSource, digest: str | None, golden: Mapping[str, object] | None
 ) -> type[Template] | str:
-    """Return the class of a released text, or why it is not that of its release any more."""
+    """Return the class of a released text, or why it no longer equals its release."""
     try:
         cls = class_of(source)
     except TemplateError as error:

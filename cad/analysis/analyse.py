@@ -47,7 +47,7 @@ class AnalysisResult:
 def analyse(
     step: bytes, shaft: Shaft, request: AnalysisRequest, outputs: Collection[str], report: Report
 ) -> AnalysisResult:
-    """Compute the requested outputs, and nothing else.
+    """Compute only the requested outputs of an analysis.
 
     Raises
     ------

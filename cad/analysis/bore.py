@@ -68,12 +68,12 @@ class BoredSolid:
 
 
 def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
-    """Read the solids of a STEP file, join them, and halve them.
+    """Read the solids of a STEP file, join them, and keep one half.
 
     Raises
     ------
     AnalysisError
-        `no_bore` if they do not mirror themselves in z = 0, or a face is not where it should be.
+        `no_bore` if they are not symmetric about z = 0, or a face is missing at its position.
     """
     with TemporaryDirectory() as folder:
         path = Path(folder, "model.step")
@@ -117,7 +117,7 @@ def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return the name of a face (mirror, bore, held or free), by the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free) from the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR
@@ -136,12 +136,12 @@ def _points(edge: Any) -> Iterator[tuple[float, float, float]]:
 
 
 def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
-    """Return the tetrahedra, still straight.
+    """Return the tetrahedra with straight edges.
 
     Raises
     ------
     AnalysisError
-        `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
+        `mesh` if Netgen fails, or the mesh is too large for a job.
     """
     radius = solid.place.radius
     for face in solid.shape.faces:
@@ -178,10 +178,10 @@ def compliance_on(
     report: Callable[[float], None] = lambda done: None,
     functions: Sequence[Any] = (),
 ) -> tuple[Array, int]:
-    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
+    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and the number of unknowns.
 
-    A solid that nothing holds rests on a soft spring [N/mm⁴] at each of its points, which bears the load as
-    the inertia of a free body does. Other functions in space than the modes may be given, scaled alike.
+    A solid without supports rests on a soft spring [N/mm⁴] at each of its points, which carries the load like
+    the inertia of a free body. Other spatial functions than the modes may be given, with the same scaling.
     """
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")

@@ -31,7 +31,7 @@ class Chain:
         return END * (len(self.throws) + 1) + PIN * len(self.throws)
 
     def assembled(self, name: str) -> Array:
-        """Return the `stiffness` or the `mass` of the chain, in axes that are those of the first section."""
+        """Return the `stiffness` or the `mass` of the chain in the axes of the first section."""
         whole = np.zeros((self.size, self.size))
         pins = END * (len(self.throws) + 1)
         for k, (throw, angle) in enumerate(zip(self.throws, self.angles, strict=True)):
@@ -41,21 +41,21 @@ class Chain:
         return whole
 
     def free_to_move(self, *, guided: bool) -> Array:
-        """Return the numbers of the freedoms that are not held."""
+        """Return the numbers of the free degrees of freedom."""
         held = [*range(END)]
         if guided:
             held += [END * k + d for k in range(1, len(self.throws) + 1) for d in (0, 1)]
         return np.setdiff1d(np.arange(self.size), held)
 
     def stiffness(self, *, guided: bool) -> float:
-        """Return the torque at the last section for its rotation [N m/rad], the first one held."""
+        """Return the torque at the last section per rotation [N m/rad], with the first one held."""
         return float(1e-3 / self._rotations(guided=guided)[-1])
 
     def throw_stiffnesses(self, *, guided: bool) -> Array:
-        """Return stiffness of each throw in its place [N m/rad]: torque for the rotation between its mains.
+        """Return the stiffness of each throw in the chain [N m/rad]: torque per rotation between its mains.
 
-        In series they are the stiffness of the chain. Of guided mains they hold what the guides and the
-        neighbours do to a throw; a free one is alone.
+        In series they give the stiffness of the chain. With guided mains they include the effect of the
+        guides and the neighbours on a throw.
         """
         between: Array = np.diff(self._rotations(guided=guided), prepend=0.0)
         return 1e-3 / between
@@ -70,7 +70,7 @@ class Chain:
         return np.asarray(moved[np.searchsorted(free, mains)])
 
     def frequency(self, *, guided: bool) -> float:
-        """Return the frequency [Hz] of the mode with the largest inertia about z, the first section held."""
+        """Return the frequency [Hz] of the mode with the largest inertia about z; one end is held."""
         free = self.free_to_move(guided=guided)
         K, M = (self.assembled(name)[np.ix_(free, free)] for name in ("stiffness", "mass"))
         squares, shapes = eigh(K, M)
@@ -78,12 +78,12 @@ class Chain:
         return sqrt(float(squares[np.argmax(moved**2)])) / (2 * pi)
 
     def inertia(self) -> float:
-        """Return the inertia of the whole about z as a rigid body [kg m²]."""
+        """Return the inertia of the whole shaft about z as a rigid body [kg m²]."""
         r = self._rotation()
         return float(r @ self.assembled("mass") @ r) * 1e-3
 
     def _rotation(self) -> Array:
-        """Return the freedoms when the whole turns by 1 rad about z."""
+        """Return the degrees of freedom when the whole shaft rotates by 1 rad about z."""
         mains = np.tile([0.0, 0, 0, 0, 0, 1], len(self.throws) + 1)
         pins = [
             throw.throw * way

@@ -117,9 +117,9 @@ class System:
 
 
 def _by_order(form: Any, space: Any) -> Any:
-    """Return an approximate inverse of an assembled form: exact in second order.
+    """Return an approximate inverse of an assembled form, which is exact in second order.
 
-    The rest is inverted by edges and faces.
+    Higher orders are inverted by edges and faces.
 
     The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """

@@ -36,7 +36,7 @@ class Level:
     typical: float  # the error that is usually reported, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
-        """Return the relative error to tell of a value, from that of one order less."""
+        """Return the estimated relative error of a value, from the value of the next lower order."""
         change = abs(low - high) / high
         if is_sharp:
             return self.sharp_factor * change + self.sharp_floor

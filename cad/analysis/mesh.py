@@ -67,12 +67,12 @@ class Grid:
 def make_grid(
     solid: Solid, fineness: Fineness, near: Iterable[Near] = (), edges: Edges | None = None
 ) -> Grid:
-    """Mesh a solid; where several meshes of one fineness are made, `edges` are its `sharp_edges`.
+    """Mesh a solid; for several meshes of one fineness, `edges` are its `sharp_edges`.
 
     Raises
     ------
     AnalysisError
-        `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
+        `mesh` if Netgen fails, or the mesh is too large for a job.
     """
     edges = sharp_edges(solid, fineness) if edges is None else edges
     parameters = MeshingParameters(
@@ -139,7 +139,7 @@ def curve(mesh: Any, order: int) -> Any:
 
 
 def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
-    """Return the coordinates of the points of straight elements, which are those of their corners."""
+    """Return the coordinates of the points of straight elements, interpolated from their corners."""
     corners = np.array([vertex.point for vertex in mesh.vertices])
     vectors = []
     for values in corners.T:
@@ -198,7 +198,7 @@ def _turning(edge: Any) -> float:
 
 
 def _ball(near: Near) -> Iterable[tuple[float, float, float]]:
-    """Yield the points that fill a ball, so close that the size holds between them."""
+    """Yield points that fill a ball so densely that the size applies between them."""
     count = max(1, ceil(near.reach / near.size))
     line = np.linspace(-near.reach, near.reach, 2 * count + 1)
     grid = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

@@ -34,7 +34,7 @@ class Mode:
 def torsional_mode(response: Response) -> Mode:
     """Return the mode with the largest effective inertia about z.
 
-    As many are computed as it takes to be sure.
+    Modes are computed until this is certain.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _mass(response: Response) -> Any:
 
 
 def _guided(response: Response, u: Any) -> Any:
-    """Return a displacement with the forces of the guide added that keep the end in its place."""
+    """Return a displacement with added forces of the guide that keep the end in its place."""
     if response.guides:
         off = np.array([ng.InnerProduct(guide, u) for guide in response.guides])
         for reaction, w in zip(np.linalg.solve(response.gram, off), response.guided, strict=True):

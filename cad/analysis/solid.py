@@ -46,17 +46,17 @@ class Solid:
 
     @property
     def parts(self) -> int:
-        """Return the number of these that make the whole."""
+        """Return the number of such parts in the whole solid."""
         return 2 if self.mirror else 1
 
 
 def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -> Solid:
-    """Read the one solid of a STEP file, halved by the first of the planes in which it mirrors itself.
+    """Read the single solid of a STEP file, halved by the first plane of symmetry.
 
     Raises
     ------
     AnalysisError
-        `no_shaft` if it is not one solid, `no_end` if no face lies where it is held or loaded.
+        `no_shaft` if it is not one solid, `no_end` if there is no face at the held or loaded end.
     """
     whole = _only_solid(step)
     mirror, shape = next(_halves(whole, mirrors), ("", whole))

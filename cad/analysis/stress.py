@@ -97,7 +97,7 @@ def greatest_stress(
     edges = sharp_edges(solid, START)
 
     def places_on_mesh() -> Places:
-        """Return those of the next mesh, which is given up on return, so that two are never held at once."""
+        """Return the places on the next mesh, which is released on return, so that only one is in memory."""
         grid = make_grid(solid, START, near, edges)
         system = System(grid, ORDER, material, load, few_forces=True)
         return _places_on(respond(system, boundary), measure)

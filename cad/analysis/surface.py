@@ -47,7 +47,7 @@ class Surface:
     load: str
 
     def as_json(self) -> dict[str, Any]:
-        """Return it as it is written in JSON: six significant digits, a unit beside every field."""
+        """Return the field for JSON: six significant digits, with a unit beside every field."""
         fields = {"points": (self.points, "mm"), "displacement": (self.displacement, "mm")}
         if self.twist is not None:
             fields["twist"] = (self.twist, "deg")
@@ -57,7 +57,7 @@ class Surface:
 
 
 def surface(response: Response) -> Surface:
-    """Return the surface of the whole solid, the ends by which it is held and loaded included."""
+    """Return the surface of the whole solid, including the held and the loaded end."""
     system = response.system
     mesh, mirror = system.grid.mesh, system.grid.solid.mirror
     region = mesh.Boundaries(f"{FREE}|{HELD}|{LOADED}")
@@ -104,13 +104,13 @@ def _division(elements: int) -> int:
 
 
 def _lattice(division: int) -> Integers:
-    """Return the points of a divided triangle, as whole weights of its three corners."""
+    """Return the points of a divided triangle, as integer weights of its three corners."""
     steps = range(division + 1)
     return np.array([(i, j, division - i - j) for i, j in product(steps, steps) if i + j <= division])
 
 
 def _rule(lattice: Integers, division: int) -> Any:
-    """Return the points of a lattice where NGSolve wants them: the weights of the first two corners."""
+    """Return the points of a lattice in NGSolve's form: the weights of the first two corners."""
     points = [(i / division, j / division) for i, j, _ in lattice.tolist()]
     return ng.IntegrationRule(points, [0.0] * len(points))
 
@@ -140,7 +140,7 @@ def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
 
 
 def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
-    """Return both halves: the image of the one is the other; points within the mirror plane are shared."""
+    """Return both halves: one is the image of the other, and they share the points of the mirror plane."""
     image = np.where(np.arange(3) == normal, -1.0, 1.0)
     moved = -image if antisymmetric else image
     apart = np.abs(half.points[:, normal]) > _NEAR

@@ -110,7 +110,7 @@ def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
 
 
 def _mass(system: System, held: float, moved: list[Any]) -> Array:
-    """Return mass products [14, 14] of the rigid motions of the held end and of the responses to loads."""
+    """Return mass products [14, 14] of the rigid motions of the held end and the responses to loads."""
     u, v = system.space.TnT()
     form = ng.BilinearForm(system.space, symmetric=False)
     form += system.material.density * 1e-12 * ng.InnerProduct(u, v) * ng.dx

@@ -61,7 +61,7 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """Return the share of a force at mid-pin that the support of the loaded end bears."""
+        """Return the share of a force at mid-pin that the support of the loaded end carries."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:
@@ -79,7 +79,7 @@ class LoadedThrow:
         Raises
         ------
         AnalysisError
-            `no_pin` if the pin has no plain cylinder where it is said to be.
+            `no_pin` if the pin has no plain cylinder at its stated position.
         """
         unit = ng.CF(tuple(float(axis == direction) for axis in range(3)))
         v = self.system.space.TestFunction()
@@ -127,9 +127,9 @@ class LoadedThrow:
 
 
 def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
-    """Return tensors of all unit loads at the fillets: in each sector of each, at the point stressed most.
+    """Return tensors of all unit loads at the most stressed point of each sector of the fillets.
 
-    "Most" is the largest von Mises stress under any of the loads, each as a share of its own largest one.
+    The measure is the largest von Mises stress under any of the loads, each relative to its own maximum.
     `before` is called with the name of each load before it is solved.
 
     Raises

@@ -27,7 +27,7 @@ def has_throws(cls: type[CadModel]) -> bool:
 
 
 def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
-    """Return the throws of a shaft; None if the model is none."""
+    """Return the throws of a shaft; None if the model has none."""
     if not has_throws(type(shape)):
         return None
     drawn = getattr(shape, "drawn")()  # noqa: B009 - the base of models does not declare it
@@ -35,9 +35,9 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
 
 
 def sizes_of_throw(whole: WholeShaft) -> Crank | None:
-    """Return the plain sizes of a shaft's throws, which differ in their counterweights alone.
+    """Return the plain sizes of a shaft's throws, which differ only in their counterweights.
 
-    None of split pins.
+    The result is None for split pins.
     """
     if whole.split:
         return None
@@ -46,12 +46,12 @@ def sizes_of_throw(whole: WholeShaft) -> Crank | None:
 
 
 def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
-    """Return the first throw of a shaft alone."""
+    """Return only the first throw of a shaft."""
     return throws_apart(replace(whole, throws=whole.throws[:1]))
 
 
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
-    """Return all throws of a shaft; throws alike are drawn once.
+    """Return all throws of a shaft; equal throws are drawn once.
 
     Raises
     ------
@@ -74,9 +74,9 @@ def throws_apart(whole: WholeShaft) -> ThrowsApart:
 
 
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
-    """Return a throw of a shaft, counted from 0: its STEP file, its ends, and where its pin is.
+    """Return one throw of a shaft, numbered from 0: its STEP file, its ends, and its pin position.
 
-    z = 0 is half way between the mains; x points to the pin, of split pins to the front one.
+    z = 0 is half way between the mains; x points to the pin, with split pins to the front one.
     """
     throw = whole.throws[number]
     half = whole.like.journal_length / 2
@@ -106,7 +106,7 @@ def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
 
 
 def _standing(part: Shape, half: Half) -> Shape:
-    """Return a part where its half of the throw stands; as it is drawn if that is there."""
+    """Return a part at the position of its half of the throw."""
     return part if half == Half(0.0, 0.0) else placed(part, half)
 
 

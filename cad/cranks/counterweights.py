@@ -15,7 +15,7 @@ def count(angles: Array) -> Array:
 
 @units("m", "1", returns="1")
 def webs_of(radii: Array, throws: Array) -> Array:
-    """Return the number of webs that have radii: all, if there is one number."""
+    """Return the number of webs with radii: all, if there is one number."""
     return 2 * throws if np.ndim(radii) == 0 else np.asarray(float(np.shape(radii)[-1]))
 
 
@@ -27,7 +27,7 @@ def there_is_none(radii: Array) -> Truth:
 
 @units("m", "m", returns="1")
 def stand_out(radii: Array, least: Array) -> Truth:
-    """Return whether each counterweight that is one reaches so far."""
+    """Return whether each counterweight reaches at least this far."""
     if np.ndim(radii) == 0:
         return (radii <= 0) | (radii >= least)
     return np.asarray(np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1), dtype=bool)

@@ -32,18 +32,18 @@ class ThrowReadback:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Return the angles of the pins beside its front and its rear web, from x towards y [rad]."""
+        """Return the angles of the pins next to its front and its rear web, from x towards y [rad]."""
         first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
         return first, last
 
     @property
     def pin_spans(self) -> list[tuple[float, float]]:
-        """Return from where to where its pins reach, with their fillets."""
+        """Return the start and end of its pins, with their fillets."""
         return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
 
     @property
     def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return from where to where its webs reach, the middle one left out."""
+        """Return the start and end of its webs, without the middle one."""
         return self.faces[:2], self.faces[-2:]
 
 
@@ -56,21 +56,21 @@ class ShaftReadback:
 
     @cached_property
     def beside(self) -> list[Surface]:
-        """Return the cylinders along the shaft that do not turn about its axis."""
+        """Return the cylinders parallel to the shaft but not about its axis."""
         return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
 
     @cached_property
     def throws(self) -> list[ThrowReadback]:
         """Return the throws, from front to rear.
 
-        Each has four planes across the shaft, six with split pins. Before them lie the end of the nose and
-        its shoulder, if it has one; behind them at most three: shoulder of the flange, bottom of its holes,
-        its end.
+        Each has four planes across the shaft, six with split pins. In front of them are the end of the nose
+        and its shoulder, if any; behind them at most three planes: the shoulder of the flange, the bottom of
+        its holes, and its end.
 
         Raises
         ------
         LookupError
-            If there is none, or one without a pin.
+            If there is no throw, or a throw without a pin.
         """
         levels = self.seen.levels(Z)
         first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
@@ -135,7 +135,7 @@ class ShaftReadback:
         return [front, *inner, rear]
 
     def _gaps(self) -> list[tuple[float, float]]:
-        """Return from where to where the main journals between two throws reach, with their fillets."""
+        """Return the start and end of the main journals between two throws, with their fillets."""
         pairs = zip(self.throws[:-1], self.throws[1:], strict=True)
         return [(before.faces[-1], behind.faces[0]) for before, behind in pairs]
 
@@ -211,7 +211,7 @@ class ShaftReadback:
                 yield normal, first.dot(normal) + side
 
     def middle_web(self) -> dict[str, float]:
-        """Return the thickness of the middle webs, and their width, which is that of their round ends."""
+        """Return the thickness of the middle webs, and their width, which equals that of their round ends."""
         spans = [throw.faces[2:4] for throw in self.throws]
         ends = [c for low, high in spans for c in self._beside_within(low, high)]
         thick = (self.seen.apart(Z, low, high) for low, high in spans)
@@ -274,7 +274,7 @@ class ShaftReadback:
         """Return the angle of all counterweights [deg]; flanks of several throws may lie on one plane.
 
         A flank is a plane through the axis. The half angle is one at which each throw with a counterweight
-        has both flanks; of several such, which is rare, the one nearest to that wanted [deg].
+        has both flanks; of several such angles, which is rare, the one nearest to the expected angle [deg].
 
         Raises
         ------
@@ -305,7 +305,7 @@ class ShaftReadback:
         return abs(remainder(angle, pi))
 
     def bolts(self) -> dict[str, float]:
-        """Return holes in the flange: how many, their diameter, circle and depth; none if there are none."""
+        """Return the holes in the flange: number, diameter, circle and depth; none if there are none."""
         end = self.seen.levels(Z)[-1]
         behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
@@ -328,12 +328,12 @@ class ShaftReadback:
 
 
 def _leans(normal: Vector) -> bool:
-    """Return whether a normal lies neither along the shaft nor across it."""
+    """Return whether a normal is neither along the shaft nor across it."""
     return min(hypot(normal.x, normal.y), abs(normal.z)) > _CLEAR
 
 
 def _across(width: float, sides: Sequence[Surface]) -> Size:
-    """Return a width between planes that lie on both sides of the axis."""
+    """Return a width between planes on both sides of the axis."""
     normal = sides[0].direction
     ahead = [p for p in sides if p.along(normal) and p.point.dot(normal) > 0]
     behind = [p for p in sides if p.along(normal) and p.point.dot(normal) < 0]
@@ -346,7 +346,7 @@ def _spans(cylinder: Surface, low: float, high: float) -> bool:
 
 
 def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
-    """Return whether a plane has this normal, either way round, at this distance from the origin."""
+    """Return whether a plane has this normal, in either direction, and this distance from the origin."""
     return plane.along(normal) and abs(plane.point.dot(normal) - distance) < _CLEAR
 
 

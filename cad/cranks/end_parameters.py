@@ -105,7 +105,7 @@ class EndParameters(CrankRules):
     @require("bolt_circle_diameter", "bolt_hole_diameter", "journal_bore",
              remedy="make the circle larger, the holes or the bore smaller, or 0 for none")  # fmt: skip
     def bolts_clear_bore(self) -> Truth:
-        """Bolt holes keep off the axis and the journals' bore by 2 % of the bolt circle."""
+        """Bolt holes clear the axis and the journals' bore by at least 2 % of the bolt circle."""
         return (self.d_b <= 0) | (0.98 * self.D_b >= self.d_j + self.d_b)
 
     @require("bolt_circle_diameter", "bolt_hole_diameter", "bolt_holes",

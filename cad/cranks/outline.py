@@ -94,7 +94,7 @@ class Outline:
         return first, [side, ((-h, h), (-h, h * tan(a)))] if self.counterweight > 0 else [side], last
 
     def _flank(self, foot: Point) -> tuple[Run, Run]:
-        """The flank of the counterweight at +y, outwards from its foot, and the rim from flank to flank."""
+        """Return the flank of the counterweight at +y, from its foot outwards, and the rim between flanks."""
         rim = tuple(
             _on_circle(self.counterweight, angle) for angle in (self.half_angle, 0.0, -self.half_angle)
         )
@@ -118,7 +118,7 @@ def edge(run: Run, z: float) -> Edge:
 
 
 def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
-    """Return a line or an arc; `place` puts its points into space."""
+    """Return a line or an arc; `place` maps its points to space."""
     points = [place(*point) for point in run]
     return segment(*points) if len(points) == 2 else Edge.makeThreePointArc(*points)
 
@@ -129,7 +129,7 @@ def _on_circle(radius: float, angle: float) -> Point:
 
 
 def reach(outline: Outline, direction: float) -> float:
-    """Return the farthest point of a web in a direction [rad] from x, counted from the journal's axis."""
+    """Return the farthest extent of a web in a direction [rad] from x, measured from the journal's axis."""
     across = abs(sin(direction)) * outline.half_width
     along = cos(direction)
     if outline.rectangular:

@@ -174,7 +174,10 @@ class CrankParameters(CadModel):
         return np.cos(self.beta) * self.L_w - np.sin(self.beta) * (self.x_1 - self.x_b)
 
     def throw_drawn(self, counterweight: float) -> Throw:
-        """Return the throw as radii, lengths and angles; `counterweight` is the radius of its own [mm]."""
+        """Return the throw as radii, lengths and angles.
+
+        `counterweight` is its own counterweight radius [mm].
+        """
         return Throw(
             outline=Outline(
                 throw=mm(self.R),

@@ -66,7 +66,7 @@ class CrankRules(CrankParameters):
         remedy="make the journal's bore smaller, or 0 for none, or the throw larger",
     )  # fmt: skip
     def journal_bore_clears_pin(self) -> Truth:
-        """The journal's bore leaves its web beside the pin and its fillet, 2 % of the pin's radius off."""
+        """The journal's bore clears the pin and its fillet in the web by at least 2 % of the pin's radius."""
         return (self.d_j <= 0) | (self.R - self.d_j / 2 >= 0.51 * self.D_c + self.r_f)
 
     @require(
@@ -74,7 +74,7 @@ class CrankRules(CrankParameters):
         remedy="make the pin's bore smaller, or 0 for none, or the throw larger",
     )  # fmt: skip
     def pin_bore_clears_journal(self) -> Truth:
-        """The pin's bore leaves its web beside the journal and its fillet, 4 % of the radius off."""
+        """The pin's bore clears the journal and its fillet in the web by at least 4 % of the radius."""
         return (self.d_c <= 0) | (self.R - self.d_c / 2 >= 0.52 * self.D_j + self.r_f)
 
     @require("throw", "journal_diameter", remedy="make the throw larger")
@@ -104,7 +104,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller or the journal longer",
     )  # fmt: skip
     def drilling_opens_in_journal(self) -> Truth:
-        """The mouth of the oil drilling keeps within the journal, off its fillet and its end by 10 %."""
+        """The mouth of the oil drilling is within the journal, 10 % away from its fillet and its end."""
         return (self.d_o <= 0) | (self.m_j <= 0.9 * (self.L_s / 2 - self.r_f))
 
     @require(
@@ -112,7 +112,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller, or the pin shorter or thicker",
     )  # fmt: skip
     def drilling_stays_in_pin(self) -> Truth:
-        """The oil drilling enters the web from within the pin, 2 % of its radius off its underside."""
+        """The oil drilling enters the web from within the pin, 2 % of its radius from its underside."""
         return (self.d_o <= 0) | (self.x_1 - self.e_o >= self.R - 0.49 * self.D_c)
 
     @require(
@@ -120,7 +120,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller, or the journal shorter or thicker",
     )  # fmt: skip
     def drilling_stays_in_journal(self) -> Truth:
-        """The oil drilling leaves the web within the journal, 2 % of its radius off its upper side."""
+        """The oil drilling leaves the web within the journal, 2 % of its radius from its upper side."""
         return (self.d_o <= 0) | (self.x_2 + self.e_o <= 0.49 * self.D_j)
 
     @require(
@@ -155,7 +155,7 @@ class CrankRules(CrankParameters):
 
     @require("face_inclination", "web_thickness", remedy="make the inclination smaller or the web thicker")
     def inclined_web_keeps_an_end(self) -> Truth:
-        """An inclined web is at its end at least a tenth as thick as elsewhere."""
+        """The end of an inclined web is at least a tenth as thick as the rest."""
         return self.L_e >= 0.1 * self.L_w
 
     @require("face_inclination", "throw", "web_width", remedy="make the throw or the web's width larger")

@@ -79,7 +79,7 @@ class SplitParameters(CrankRules):
 
     @require("pin_split", remedy="use 0 for pins that are not split")
     def split_is_drawable(self) -> Truth:
-        """Split pins stand at least 1° apart."""
+        """Split pins are at least 1° apart."""
         return undivided(self.delta) | (np.abs(shortest(self.delta)) >= _LEAST)
 
     @require("middle_web_width", "pin_diameter", "fillet",
@@ -91,13 +91,13 @@ class SplitParameters(CrankRules):
     @require("middle_web_width", "journal_bore", "pin_split", "throw",
              remedy="make the journal's bore smaller, or 0 for none, or the middle web narrower")  # fmt: skip
     def middle_web_clears_bore(self) -> Truth:
-        """The journal's bore passes the middle web, 2 % of its radius off."""
+        """The journal's bore clears the middle web by 2 % of its radius."""
         clear = self.R * np.abs(np.cos(self.delta / 2)) - self.W_m / 2
         return undivided(self.delta) | (self.d_j <= 0) | (clear >= 0.51 * self.d_j)
 
     @require("oil_drilling_diameter", "pin_angles", "pin_split",
              remedy="make the oil drillings narrower, or 0 for none, or the pins further apart")  # fmt: skip
     def drillings_keep_apart(self) -> Truth:
-        """Two oil drillings that end in one journal keep apart by a tenth of their diameter."""
+        """Two oil drillings that end in one journal are at least a tenth of their diameter apart."""
         gap = least_gap(self.psi, self.delta, self.R + self.D_c / 2, self.D_j / 2, self.h_o)
         return undivided(self.delta) | (self.d_o <= 0) | (gap >= 1.1 * self.d_o)

@@ -82,10 +82,10 @@ class Throw:
         return cut(plate, self._wedge()) if self.inclination > 0 else plate
 
     def _bores(self) -> Iterator[Solid]:
-        """Yield the solids that the bores and the drilling take away; each ends in the air.
+        """Yield the solids that the bores and the drilling remove; each extends beyond the part.
 
-        Bores go through the whole, not through its parts: where a bore crosses from part to part it would
-        have an edge, and a drilling that touches such an edge came out wrong.
+        Bores are cut from the whole throw, not from its parts: otherwise a bore would have an edge between
+        parts, and a drilling that touches such an edge would come out wrong.
         """
         if self.journal_bore > 0:
             yield bore(self.journal_bore, self.journal_end + self.journal, 0.0)
@@ -95,9 +95,9 @@ class Throw:
             yield self.drill()
 
     def _wedge(self) -> Solid:
-        """Return the wedge that the inclination takes off the web on +z.
+        """Return the wedge that the inclination removes from the web on +z.
 
-        It stands out into the air elsewhere.
+        Elsewhere it extends beyond the web.
         """
         room, slope, start = self.outline.half_width / 4, tan(self.inclination), self.incline_start
         left, right = start - room, self.outline.tip + room
@@ -122,7 +122,7 @@ class Throw:
         )
 
     def journal_solid(self, end: End | None) -> Shape:
-        """Return the journal on +z, with what lies beyond it."""
+        """Return the journal on +z with its adjoining parts."""
         z, top, radius = self.outer, self.journal_end, self.journal
         root = fillet_run(radius, self.fillet, z, 1)
         beyond = (
@@ -141,7 +141,7 @@ class Throw:
         )
 
     def drill(self) -> Solid:
-        """Return the solid that the oil drilling takes away, from beyond the pin to beyond the journal."""
+        """Return the solid that the oil drilling removes, from beyond the pin to beyond the journal."""
         top, bottom = self.drilled
         way = bottom - top
         lean = way.z / -way.x
@@ -162,9 +162,9 @@ def bore(radius: float, reach: float, x: float) -> Solid:
 
 
 def turned(runs: Sequence[Run], x: float, side: int) -> Solid:
-    """Return a closed outline of (distance from the axis, z) turned about the axis through x along z.
+    """Return a closed outline of (distance from the axis, z), revolved about the axis through x along z.
 
-    Its seam lies on that side of the axis, towards x or against it: away from the mouth of the drilling.
+    Its seam is on the given side of the axis, away from the mouth of the drilling.
     """
     real = [run for run in runs if run[0] != run[-1]]
     closing = (real[-1][-1], real[0][0])

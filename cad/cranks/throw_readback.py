@@ -42,7 +42,7 @@ class Webs:
 
 
 def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return the pin diameter, bore and throw; the pin stands between the webs."""
+    """Return the pin diameter, bore and throw; the pin is between the webs."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
     within = [c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR]
@@ -75,7 +75,7 @@ def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
 
 
 def counterweight(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
+    """Return the radius of the counterweight, and its angle [deg] if there is one."""
     width = seen.length(Y)
     spans = webs.faces[:2], webs.faces[2:]
     within = [c for c in seen.about(Z) if any(_lies_within(c, span) for span in spans)]
@@ -91,12 +91,12 @@ def counterweight(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
 
 
 def fillet(seen: PartSurfaces) -> float:
-    """Return the radius of the fillets, all of which are alike; 0 if there are none.
+    """Return the common radius of the fillets; 0 if there are none.
 
     Raises
     ------
     LookupError
-        If there are any, but not four that are alike.
+        If there are fillets, but not four equal ones.
     """
     if seen.tori and len(seen.tori) != 4:
         raise LookupError(f"a throw must have four fillets; the file has {len(seen.tori)}")
@@ -104,13 +104,13 @@ def fillet(seen: PartSurfaces) -> float:
 
 
 def drilling(seen: PartSurfaces) -> float:
-    """Return the diameter of the cylinder that runs askew; 0 if there is none."""
+    """Return the diameter of the oblique cylinder; 0 if there is none."""
     askew = [c for c in seen.cylinders if not c.along(Z)]
     return Size.diameter(askew) if askew else 0.0
 
 
 def inclination(seen: PartSurfaces) -> float:
-    """Return the angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
+    """Return the angle [deg] of the planes inclined to the shaft; 0 if there are none."""
     leaning = [p for p in seen.planes if _askew(p.direction)]
     if not leaning:
         return 0.0

@@ -21,7 +21,7 @@ def volume(throw: Throw) -> float:
 
 
 def web(t: Throw) -> float:
-    """Return a plate with two holes, less what its inclined face takes off."""
+    """Return a plate with two holes, minus the volume that its inclined face removes."""
     slope = tan(t.inclination)
     at_pin = t.web_thickness - slope * max(t.outline.throw - t.incline_start, 0.0)
     bores = pi * (t.journal_bore**2 * t.web_thickness + t.pin_bore**2 * at_pin)
@@ -49,7 +49,7 @@ def fillet(radius: float, size: float) -> float:
 
 
 def drilling(t: Throw) -> float:
-    """Return the volume that the oil drilling takes out of pin, web and journal."""
+    """Return the volume that the oil drilling removes from pin, web and journal."""
     if t.drilling == 0:
         return 0.0
     top, bottom = t.drilled
@@ -60,7 +60,7 @@ def drilling(t: Throw) -> float:
 def _slice(angle: float, t: Throw) -> float:
     """Return both sides' section of the drilling at y = a sin(angle), along x, times dy/d(angle) [mm³].
 
-    The sine takes the square root's end out of the integrand.
+    The sine removes the singularity of the square root from the integrand.
     """
     y = t.drilling * sin(angle)
     pin, journal, pin_bore, journal_bore = (

@@ -72,19 +72,19 @@ class WholeShaft:
 
     @property
     def like(self) -> Throw:
-        """Return a throw: all are alike but for their counterweights."""
+        """Return a throw; throws differ only in their counterweights."""
         return self.throws[0].front
 
     @property
     def pitch(self) -> float:
-        """Return the distance from the middle of a main journal to that of the next one."""
+        """Return the distance between the middles of neighbouring main journals."""
         t = self.like
         if self.split:
             return 2 * (t.pin_length + t.web_thickness) + self.split.thickness + t.journal_length
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Return angle and position of a throw's front and rear half; throws count from 0.
+        """Return angle and position of a throw's front and rear half; throws are numbered from 0.
 
         Both halves are equal with an undivided pin.
         """
@@ -167,7 +167,7 @@ class WholeShaft:
             yield placed(behind, rear if last or not self.split else self._seam_behind(number))
 
     def _seam_behind(self, number: int) -> Half:
-        """How a journal between split throws stands: its seam away from the mouths of both drillings."""
+        """Return the rotation of a journal between split throws, with its seam away from both drillings."""
         (_, rear), (front, _) = self.halves(number), self.halves(number + 1)
         return Half(rear.angle + remainder(front.angle - rear.angle, 2 * pi) / 2, rear.middle)
 
@@ -201,12 +201,12 @@ class WholeShaft:
 
 
 def placed(part: Shape, half: Half) -> Shape:
-    """Return a part of a throw, drawn about the middle of its pin, where that half of it stands."""
+    """Return a part of a throw, drawn about the middle of its pin, at the position of its half."""
     return part.rotate(*_AXIS, degrees(half.angle)).translate(Vector(0, 0, half.middle))
 
 
 def _tools_of_half(t: Throw) -> Iterator[Shape]:
-    """Yield what is cut from the rear half of a throw with split pins: the bore ends at the middle web."""
+    """Yield the cuts of the rear half of a throw with split pins: the bore ends at the middle web."""
     if t.pin_bore > 0:
         yield t.blind_bore()
     if t.drilling > 0:
@@ -216,7 +216,7 @@ def _tools_of_half(t: Throw) -> Iterator[Shape]:
 def _journal(t: Throw) -> Shape:
     """Return the journal on +z of a throw, up to the next web.
 
-    Its seam lies away from the mouth of the drilling.
+    Its seam is away from the mouth of the drilling.
     """
     low, high = t.outer, t.journal_end
     edge = t.journal + t.fillet

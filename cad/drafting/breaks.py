@@ -31,7 +31,7 @@ class Break:
     depth: float
 
     def solid(self, plane: Plane, reach: float) -> Solid:
-        """Return the box that is taken off."""
+        """Return the removed box."""
         corner = plane.toWorldCoords((*self.low, self.depth))
         placed = Location(Plane(corner, plane.xDir, plane.zDir))
         return Solid.makeBox(self.high[0] - self.low[0], self.high[1] - self.low[1], reach).moved(placed)
@@ -45,7 +45,7 @@ class Break:
         return list(placed.intersect(shape).Faces())
 
     def bounds(self, curve: Curve) -> bool:
-        """Return whether a line lies on a side of the box."""
+        """Return whether a line is on a side of the box."""
         (x, y), (u, v) = self.low, self.high
         for along, side, ends in ((0, x, (y, v)), (0, u, (y, v)), (1, y, (x, u)), (1, v, (x, u))):
             if all(
@@ -80,7 +80,7 @@ def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> lis
 
 
 def _is_across(cylinder: Surface, plane: Plane) -> bool:
-    """Return whether an axis lies level or upright in a plane of the view."""
+    """Return whether an axis is horizontal or vertical in a plane of the view."""
     along = (abs(cylinder.direction.dot(axis)) for axis in (plane.xDir, plane.yDir))
     return max(along) > 1 - 1e-9
 
@@ -93,7 +93,7 @@ def _ends(cylinder: Surface, plane: Plane) -> tuple[Point, Point]:
 
 
 def _is_hollow(hole: Surface, shapes: Sequence[Shape]) -> bool:
-    """Return whether the middle of a cylinder is empty, and what surrounds it is not, all the way round."""
+    """Return whether the middle of a cylinder is empty and its surroundings are solid, all the way round."""
     foot = hole.point - hole.direction * hole.point.dot(hole.direction)
     middle = foot + hole.direction * (sum(hole.reach) / 2)
     across = hole.direction.cross(
@@ -150,7 +150,7 @@ def _region(
 def _is_within(
     place: float, axis: int, reach: tuple[float, float], depth: float, shapes: Sequence[Shape], plane: Plane
 ) -> bool:
-    """Return whether points of a side lie in the material."""
+    """Return whether points of a side are inside the material."""
     for number in range(_SAMPLES):
         across = reach[0] + (reach[1] - reach[0]) * (number + 0.5) / _SAMPLES
         point = (place, across) if axis == 0 else (across, place)
@@ -167,14 +167,14 @@ def _box(shapes: Sequence[Shape], plane: Plane) -> tuple[Point, Point]:
 
 
 def opened(shape: Shape, cuts: Sequence[Break], plane: Plane, reach: float) -> Shape:
-    """Return a shape without what broken-out sections take off it."""
+    """Return a shape without the material that broken-out sections remove."""
     for cut in cuts:
         shape = shape.cut(cut.solid(plane, reach))
     return shape
 
 
 def zigzag(line: Polyline, scale: float) -> Polyline:
-    """Return a straight line with zigzags, one for each 60 mm on paper; a short one stays as it is."""
+    """Return a straight line with zigzags, one for each 60 mm on paper; a short line stays straight."""
     (x, y), (u, v) = line[0], line[-1]
     size = ((u - x) ** 2 + (v - y) ** 2) ** 0.5
     count = int(size * scale // 60) or int(size * scale > 8)

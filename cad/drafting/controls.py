@@ -67,7 +67,7 @@ class Controls:
         self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
     def _stems(self, placed: PlacedDimension) -> Iterator[tuple[Rectangle, Symbol]]:
-        """Yield the places of a datum's letter: in line with a dimension line, or about what is measured."""
+        """Yield possible positions of a datum's letter: in line with a dimension line, or nearby."""
         if placed.ends is None:
             tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
             starts = [(tip, turn) for turn in turns]
@@ -82,7 +82,7 @@ class Controls:
                 yield around(middle, _HIGH, _HIGH), symbol
 
     def _frame(self, placed: PlacedDimension, control: Control) -> None:
-        """A frame: sign, width, datum."""
+        """Draw a frame: sign, width, datum."""
         frame = Frame(control.form, control.width, control.to, TEXT)
         width, height = frame.width, frame.height
         target = self._target(placed)
@@ -109,7 +109,7 @@ class Controls:
         return (x, y + _INTO) if measure.sort == "length" else (x, y)
 
     def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
-        """Return the nearest free place about a target, which is taken."""
+        """Return the nearest free place about a target, and occupy it."""
         tries = (
             _beside(target, away, radians(turn), width)
             for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)

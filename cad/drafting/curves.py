@@ -69,7 +69,7 @@ class Curve:
     arc: Round | None = None
 
     def moved(self, shift: Point) -> Curve:
-        """Return the line at another place."""
+        """Return the line at another position."""
         points = [(x + shift[0], y + shift[1]) for x, y in self.points]
         if self.arc is None:
             return Curve(points)
@@ -158,7 +158,7 @@ def smoothed(points: Polyline) -> Polyline:
 
 
 def joined(curves: Iterable[Curve], without: Sequence[Curve] = ()) -> list[Curve]:
-    """Return the pieces of one line or circle as one, each once; without what others show already."""
+    """Return the pieces of each line or circle joined, without curves that others already show."""
     lines, arcs, rest = _Spans(), _Spans(), []
     for curve, is_kept in [*((c, True) for c in curves), *((c, False) for c in without)]:
         if curve.arc is not None:

@@ -88,7 +88,7 @@ class DrawingDeclaration:
 
 
 def _sizes(model: type[CadModel], header: Header, seen: Mapping[str, PartSurfaces]) -> dict[str, Size]:
-    """Return the dimensions that the faces of a solid carry; none of a file that the model did not make."""
+    """Return the dimensions that the faces of a solid carry; none for a file from another source."""
     try:
         read = model.from_quantities(header.parameters).dimensions(seen)
     except (InvalidInputs, LookupError):

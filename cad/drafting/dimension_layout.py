@@ -91,16 +91,14 @@ class DimensionLayout:
         return placed
 
     def within(self, one: Dimension, along: float, high: float) -> PlacedDimension:
-        """Return an upright dimension whose line runs within a view, as across a web.
-
-        Its words stand above that.
+        """Return a vertical dimension whose line runs within a view, with its text above the view.
 
         Parameters
         ----------
         one
             The dimension.
         along
-            Where its line runs [mm].
+            The position of its line [mm].
         high
             The upper side of the view [mm].
         """
@@ -242,7 +240,7 @@ class DimensionLayout:
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
     def _distances(self) -> Iterator[float]:
-        """From what is measured to its words [mm on paper]: on a large sheet views are large too."""
+        """Return the distances from features to texts [mm on paper]: on a large sheet views are large too."""
         away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
         while away < farthest:
             yield away
@@ -262,7 +260,7 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """The middle of words on a dimension line: between its ends, or beyond that which fewer lines cross."""
+    """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
         return (low + high) / 2

@@ -25,7 +25,7 @@ class Label:
 
     @property
     def mtext(self) -> str:
-        """Return the words as DXF has them: deviations one above the other."""
+        """Return the text as DXF needs it: deviations one above the other."""
         stack = f" {{\\H{SMALL}x;\\S{self.upper}^ {self.lower};}}" if self.upper else ""
         return f"{self.text}{stack}"
 
@@ -41,7 +41,7 @@ class Label:
 
 
 def label_of(dimension: Dimension) -> Label:
-    """Ø before a diameter, the count before what several have, in brackets what is for reference only."""
+    """Return the label: Ø before a diameter, the count of a repeated size, brackets for reference sizes."""
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
@@ -72,7 +72,7 @@ def read_stack(mtext: str) -> tuple[str, str, str]:
 
 
 def deviations(limits: Limits) -> tuple[str, str]:
-    """Return the upper and lower deviation [mm] in equal decimals; `±0.1` and nothing if they are alike."""
+    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
     texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
     digits = max(1, *(len(text.partition(".")[2]) for text in texts))
     if limits.upper == -limits.lower:
@@ -82,5 +82,5 @@ def deviations(limits: Limits) -> tuple[str, str]:
 
 
 def number_of(value: float, digits: int) -> str:
-    """Return a number with at most so many decimals."""
+    """Return a number with at most this many decimals."""
     return f"{value:.{digits}f}".rstrip("0").rstrip(".")

@@ -46,7 +46,7 @@ class Lanes:
 
     @staticmethod
     def sorted(dimensions: Iterable[Dimension], section: View, end: View) -> Lanes:
-        """Return every dimension on the side that is nearest to what it measures."""
+        """Return every dimension on the side nearest to its feature."""
         sides = Lanes(section, end, [], [], [], [], [], [], [], [])
         (left, low), (right, high) = section.box
         middle = (left + right) / 2, (low + high) / 2
@@ -73,7 +73,7 @@ class Lanes:
         return self.local, 0
 
     def _is_high(self, one: Dimension) -> bool:
-        """Return whether what the end view shows of a width lies nearer to the top of that view."""
+        """Return whether the width in the end view is nearer to the top of that view."""
         (_, low), (_, high) = self.end.box
         reaches = [_edge_at(one, self.end, number) for number in (0, 1)]
         tops, feet = [high - end for _, end in reaches], [start - low for start, _ in reaches]
@@ -115,9 +115,9 @@ def _from_its_edges(one: Dimension, view: View, out: int) -> Dimension:
 
 
 def _edge_at(one: Dimension, view: View, number: int) -> tuple[float, float]:
-    """From where to where edges or axes run through a point of a dimension, across what it measures.
+    """Return the extent of edges or axes through a point of a dimension, across its direction.
 
-    A diameter takes those only that hold its point, for at the foot of a circle others may end.
+    A diameter uses only those that contain its point, because others may end at the foot of a circle.
     """
     along, point = int(one.measure.form == "up"), one.measure.points[number]
     at, across = point[along], point[1 - along]

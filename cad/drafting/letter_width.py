@@ -31,7 +31,7 @@ def width_of(text: str, height: float) -> float:
 
 
 def clipped(text: str, width: float, height: float) -> str:
-    """Return a text as one line that is not wider than that; what is left out shows as `…`."""
+    """Return a text as one line of at most this width; omitted text shows as `…`."""
     line = "".join(sign if sign.isprintable() else " " for sign in text)
     if width_of(line, height) <= width:
         return line

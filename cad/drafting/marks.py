@@ -39,7 +39,7 @@ class Centres:
 
 
 def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -> Centres:
-    """Return those of both views."""
+    """Return the centre lines of both views."""
     over = _OVER / plan.scale
     (left, _), (right, _) = section.box
     (end_left, low), (end_right, high) = end.box
@@ -60,7 +60,7 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
 
 
 def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]]:
-    """Return the circles about the shaft on which holes lie and that a dimension gives."""
+    """Return the dimensioned circles about the shaft on which holes are arranged."""
     return [
         ((one.right, 0.0), one.dimension.measure.value / 2)
         for one in placed
@@ -69,7 +69,7 @@ def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]
 
 
 def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
-    """Yield the axes of cylinders that lie in the plane of the section, but for the shaft's own."""
+    """Yield the axes of cylinders in the plane of the section, except the shaft's own."""
     normal = view.frame.towards
     for body in bodies:
         seen = look_at([body])[body.name]
@@ -131,7 +131,7 @@ def _longer(segment: Segment, over: float) -> Segment:
 
 
 def _on_one_line(one: Segment, other: Segment) -> bool:
-    """Return whether a segment lies on the line of another."""
+    """Return whether two segments are on the same line."""
     (x, y), (u, v) = other
     size = hypot(u - x, v - y) or 1.0
     return all(abs((u - x) * (b - y) - (v - y) * (a - x)) / size < 1e-3 for a, b in one)
@@ -151,9 +151,9 @@ def _right(point: Point, away: float) -> Point:
 
 
 def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
-    """The line along which a section is cut, in the end view: thick at its ends, with arrows and letters.
+    """Draw the line along which a section is cut, in the end view: thick ends, arrows and letters.
 
-    The eye stands to the right of the end view: the arrows point left, as the view in first angle does.
+    The viewer is to the right of the end view: the arrows point left, as in first-angle projection.
     """
     if not section.cut:
         return
@@ -172,7 +172,7 @@ def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
 
 
 def section_label(page: Page, section: View, room: Room) -> None:
-    """A–A over the section, above what stands there."""
+    """Draw the label A–A over the section, above other texts."""
     if not section.cut:
         return
     (left, _), (right, high) = section.box

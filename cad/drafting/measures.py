@@ -76,7 +76,7 @@ def lengths(sizes: Iterable[Size], seen: Mapping[str, PartSurfaces], section: Vi
 
 
 def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Iterator[Surface]:
-    """Yield every surface where its part stands."""
+    """Yield every surface at the positions of its part."""
     for body in bodies:
         for place in body.places:
             if place.wrapped.IsIdentity():
@@ -111,7 +111,7 @@ def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Meas
 
 
 def alike(cylinder: Surface, seen: PartSurfaces) -> int:
-    """Return the number of equal cylinders in a pattern with one: at its place along parallel axes."""
+    """Return the number of equal cylinders in a pattern: at the same position along parallel axes."""
     axis = cylinder.direction
     feet = {
         (
@@ -175,7 +175,7 @@ def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
 
 
 def _within(cylinder: Surface, normal: Vector) -> bool:
-    """Return whether the axis lies in the plane of the section."""
+    """Return whether the axis is in the plane of the section."""
     return abs(cylinder.point.dot(normal)) < _CLEAR and abs(cylinder.direction.dot(normal)) < _CLEAR
 
 
@@ -218,7 +218,7 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
 
 
 def _spans(levels: Sequence[float]) -> list[tuple[float, float]]:
-    """From each level to the next, between two that lie alike on either side of the origin, and the whole."""
+    """Yield the spans from each level to the next, between mirrored levels, and the whole."""
     ends = (levels[0], levels[-1]) if levels else ()
     return [
         (low, high)
@@ -238,7 +238,7 @@ def _foot(section: View, z: float) -> float:
 
 
 def _of_axes(cylinders: Iterable[Surface], section: View) -> Iterator[Measure]:
-    """Yield the distances of axes along the shaft that lie in the section from the shaft's own."""
+    """Yield the distances of axes parallel to the shaft, in the section, from the shaft's own."""
     heights = defaultdict[float, list[Surface]](list)
     for cylinder in cylinders:
         if _within(cylinder, section.frame.towards):
@@ -291,13 +291,13 @@ def _of_slopes(section: View, standing: Sequence[Surface]) -> Iterator[Measure]:
 
 
 def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
-    """Return whether a plane goes through a point of a view whose plane holds the origin."""
+    """Return whether a plane goes through a point of a view whose plane contains the origin."""
     at = frame.right * point[0] + frame.up * point[1]
     return abs((at - plane.point).dot(plane.direction)) < _ARC
 
 
 def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the angles between planes that hold the shaft's axis, on the side of the material."""
+    """Yield the angles between planes through the shaft's axis, on the side of the material."""
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [(leg, plane) for plane in flanks if (leg := _leg(plane, end))]
     for (one, plane), (other, second) in combinations(legs, 2):

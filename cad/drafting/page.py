@@ -78,7 +78,7 @@ class Page:
         self.plan = plan
 
     def view(self, view: View, right: float) -> None:
-        """The lines of a view, moved to the right, and its cut faces."""
+        """Draw the lines of a view, moved to the right, and its cut faces."""
         for layer, curves in (("HIDDEN", view.hidden), ("SMOOTH", view.smooth), ("OUTLINE", view.visible)):
             for curve in curves:
                 self._curve(curve, right, layer)
@@ -119,7 +119,7 @@ class Page:
             self.space.add_circle(centre, radius, dxfattribs={"layer": "CENTRE"})
 
     def dimension(self, placed: PlacedDimension) -> None:
-        """A dimension at its place, with the name of its parameter."""
+        """Draw a dimension at its position, with the name of its parameter."""
         override = self._drawn(placed)
         override.dimension.dxf.layer = "DIMENSIONS"
         override.render()
@@ -155,7 +155,7 @@ class Page:
         return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
 
     def _line_under(self, placed: PlacedDimension, along: int) -> None:
-        """Prolong a dimension line under words that stand beyond its end."""
+        """Extend a dimension line under a text beyond its end."""
         assert placed.ends is not None
         assert placed.words is not None
         half = placed.label.width(TEXT) / 2
@@ -168,7 +168,7 @@ class Page:
         self.line([(place, at) if along else (at, place) for at in span], "DIMENSIONS")
 
     def symbol(self, symbol: Symbol, layer: str = "SYMBOLS") -> None:
-        """A symbol on the paper."""
+        """Draw a symbol on the paper."""
         attributes = {"layer": layer}
         for line in symbol.lines:
             self.space.add_lwpolyline([self.plan.at(*p) for p in line], dxfattribs=attributes)
@@ -180,7 +180,7 @@ class Page:
             self.space.add_solid([self.plan.at(*p) for p in corners], dxfattribs=attributes)
 
     def line(self, points: Sequence[Point], layer: str) -> None:
-        """A line on the paper."""
+        """Draw a line on the paper."""
         self.space.add_lwpolyline([self.plan.at(*p) for p in points], dxfattribs={"layer": layer})
 
     def write(self, text: str, x: float, y: float, size: float) -> Text:

@@ -38,6 +38,6 @@ def as_pdf(svg: bytes) -> bytes:
 
 
 def _size(svg: bytes) -> tuple[float, float]:
-    """Return the width and height of a drawing's sheet [mm]; the words of a client stand behind them."""
+    """Return the width and height of a drawing's sheet [mm]; texts of a client come later in the file."""
     found = _SIZE.search(svg[:500])
     return (float(found[1]), float(found[2])) if found else (FORMATS[0].width, FORMATS[0].height)

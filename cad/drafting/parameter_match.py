@@ -77,7 +77,7 @@ def matched(
 
 
 def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
-    """Return from where to where a length reaches at each of its places along the shaft, if it repeats."""
+    """Return the start and end of a length at each of its places along the shaft, if it repeats."""
     if size.kind != "distance" or len(size.places) < 2:
         return []
     at = {plane.face: plane.point.z for one in seen.values() for plane in one.planes if plane.along(Z)}
@@ -115,7 +115,7 @@ def _same(one: float, other: float) -> bool:
 def _is_on(measure: Measure, size: Size) -> bool:
     """Return whether a measure is taken on the faces of a size.
 
-    A measure from an axis has no second faces; those of the size are then about that axis.
+    A measure from an axis has no second faces; the faces of the size are then about that axis.
     """
     for place in size.places:
         for first, second in ((place.first, place.second), (place.second, place.first)):
@@ -132,7 +132,7 @@ def length_of(text: str) -> float:
     Raises
     ------
     ValueError
-        If the text is none.
+        If the text is not a length.
     """
     size = size_of(text)
     if size is None or size[1]:
@@ -156,11 +156,10 @@ def size_of(text: str) -> tuple[float, bool] | None:
 def references(
     taken: Sequence[Dimension], measures: Sequence[Measure], elsewhere: Sequence[Point] = ()
 ) -> Iterator[Dimension]:
-    """Yield reference lengths: between planes that nothing locates, and overall.
+    """Yield reference lengths: between planes that no dimension locates, and overall lengths.
 
-    What dimensions join is located by them, also those `elsewhere`, of which the two ends along the shaft are
-    given; two planes that lie alike on either side of the origin are joined with it by the dimension between
-    them.
+    Dimensions locate the planes that they connect, including those `elsewhere`, given by their two ends along
+    the shaft; a dimension between two mirrored planes also connects them with the origin.
     """
     lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
     places = sorted({round(point[0], 6) for m in lengths for point in m.points})

@@ -47,12 +47,11 @@ class Plan:
 
 
 def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
-    """Yield the plans in the order in which they are to be tried.
+    """Yield the plans in the order of preference.
 
-    Removed sections have `elsewhere` dimensions more.
-
-    First come the sheets and scales whose views fill the sheet, the smallest sheet and its largest scale
-    before others; then all others on which everything should have room, the fullest first.
+    Removed sections have `elsewhere` more dimensions. First come sheets and scales whose views fill the
+    sheet, beginning with the smallest sheet and its largest scale; then all others with enough room, the
+    fullest first.
     """
     lanes = Lanes.sorted(wanted, section, end)
     (left, low), (right, high) = section.box

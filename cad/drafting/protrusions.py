@@ -17,14 +17,14 @@ _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
-    """Return every such size that the views show."""
+    """Return all such sizes that the views show."""
     kinds = (of_circles, of_levels, of_arms, of_uprights)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
 
 def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the circles about the shaft on which the axes of holes lie."""
+    """Yield the circles about the shaft on which the axes of holes are."""
     for cylinder in seen.cylinders:
         if cylinder.along(Z) and not cylinder.about(Z):
             right, up = end.frame.flat(cylinder.point)
@@ -33,7 +33,7 @@ def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
-    """From the bore of one part to the outside of another; from a bore to a circle beside it, its relief."""
+    """Yield walls: from the bore of one part to the outside of another, or to the circle of a relief."""
     left = section.box[0][0]
     rings = [one.rings(Z) for one in parts]
     for bore in [some[0] for some in rings if some]:
@@ -66,7 +66,7 @@ def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_uprights(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the holes along y: their diameter, their depth, and how far apart their axes are."""
+    """Yield the holes along y: their diameter, depth, and the distance of their axes."""
     feet = []
     for hole in (cylinder.turned(Y) for cylinder in seen.cylinders if cylinder.along(Y)):
         x, (low, high) = hole.point.x, hole.reach
@@ -85,7 +85,7 @@ def of_uprights(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """From the largest cylinder about the shaft to planes beyond it, and from the shaft to each plane."""
+    """Yield distances from the largest cylinder about the shaft, and from the shaft, to planes beyond it."""
     rings = [(0.0, on()), *((ring[0].diameter / 2, on(*ring)) for ring in seen.rings(Z))]
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
@@ -114,5 +114,5 @@ def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]
 
 
 def _is_cut_at(cone: Surface, middle: float, diameter: float) -> bool:
-    """Return whether an edge of the section with that middle and mean diameter lies on a cone."""
+    """Return whether an edge of the section with that middle and mean diameter is on a cone."""
     return abs(sum(cone.reach) / 2 - middle) < _ARC and abs(cone.diameter - diameter) < _ARC

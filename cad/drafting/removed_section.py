@@ -125,7 +125,7 @@ def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
 
 
 def mark(page: Page, room: Room, removed: RemovedSection) -> None:
-    """The line along which a section is cut, in the end view; the arrows point down, as the eye looks."""
+    """Draw the line along which a section is cut, in the end view; the arrows point down."""
     plan = page.plan
     (left, _), (right, _) = removed.view.box
     width = width_of(removed.letter, LETTERS)
@@ -140,7 +140,7 @@ def mark(page: Page, room: Room, removed: RemovedSection) -> None:
 
 
 def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
-    """Draw a section at a free place of the sheet; returns its dimensions.
+    """Draw a section at a free place of the sheet; return its dimensions.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
 
 
 def _is_within(one: Dimension, view: View) -> bool:
-    """Return whether what a dimension measures ends within the section, as a web does between two pockets."""
+    """Return whether a dimension ends within the section, as for a web between two pockets."""
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
@@ -218,7 +218,7 @@ def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
 
 
 def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
-    """B–B over the section, above the words that stand there."""
+    """Draw the label B–B over the section, above other texts."""
     (x, _), (right, high) = view.box
     text = f"{letter}–{letter}"
     middle, top = page.plan.paper(((x + right) / 2, high))
@@ -233,7 +233,7 @@ def _moved(one: Dimension, shift: Point) -> Dimension:
 
 
 def _shifted(view: View, shift: Point) -> View:
-    """Return a view at another place."""
+    """Return a view at another position."""
     curves = [curve.moved(shift) for curve in view.visible]
     cut = [
         Cut(

@@ -28,25 +28,25 @@ class Room:
         self._array = np.zeros((0, 4))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
-        """Take a rectangle; lines to a part's faces cross only that of a view."""
+        """Occupy a rectangle; lines to a part's faces cross only that of a view."""
         self.boxes.append(box)
         (self.views if is_view else self.words).append(box)
 
     def add_line(self, points: Sequence[Point]) -> None:
-        """Take what lies on a line through points."""
+        """Occupy a line through points."""
         self._lines += [(*a, *b) for a, b in pairwise(points)]
 
     def holds(self, box: Rectangle) -> bool:
-        """Return whether a rectangle lies on the sheet's area."""
+        """Return whether a rectangle is on the sheet's area."""
         left, low, right, high = self.area
         return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
 
     def is_clear(self, box: Rectangle, apart: float = _APART) -> bool:
-        """Return whether a rectangle lies on the area and off all others."""
+        """Return whether a rectangle is on the area and clear of all others."""
         return self.holds(box) and not any(overlap(box, other, apart) for other in self.boxes)
 
     def is_free(self, box: Rectangle) -> bool:
-        """Return whether a rectangle lies on the area, off all others and off all lines."""
+        """Return whether a rectangle is on the area and clear of all others and of all lines."""
         return self.is_clear(box) and not self._is_crossed(box)
 
     def passes(self, line: Sequence[Point]) -> bool:
@@ -59,7 +59,7 @@ class Room:
         return sum(_length_within(one, other, box) for box in self.views)
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
-        """Return the point that belongs to the first free rectangle, which is taken."""
+        """Return the point of the first free rectangle, and occupy it."""
         for box, point in boxes:
             if self.is_free(box):
                 self.add(box)
@@ -87,13 +87,13 @@ def _length_within(one: Point, other: Point, box: Rectangle) -> float:
 
 
 def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
-    """Return whether two rectangles overlap, or come nearer than that."""
+    """Return whether two rectangles overlap, or are closer than this distance."""
     is_beside = one[0] >= other[2] + apart or other[0] >= one[2] + apart
     return not (is_beside or one[1] >= other[3] + apart or other[1] >= one[3] + apart)
 
 
 def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray:
-    """Which of straight pieces (n, 4) meet a rectangle, or come nearer than that (Liang and Barsky)."""
+    """Return which straight pieces (n, 4) are closer to a rectangle than this (Liang and Barsky)."""
     start, away = lines[:, :2], lines[:, 2:] - lines[:, :2]
     away = np.where(np.abs(away) < 1e-12, 1e-12, away)
     low = (np.array([box[0] - apart, box[1] - apart]) - start) / away

@@ -55,7 +55,7 @@ def cut_of(part: int, face: Face, frame: Frame) -> Cut:
 
 
 def reach_of(shape: Shape) -> float:
-    """Return the reach [mm] of planes and boxes that hold a shape and the origin."""
+    """Return the extent [mm] of planes and boxes that contain a shape and the origin."""
     box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
     sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
     return 2.5 * float(max(abs(side) for side in sides))

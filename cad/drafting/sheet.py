@@ -51,7 +51,10 @@ def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
 
 
 def _register_classes(document: Drawing) -> None:
-    """List the classes in one order; ezdxf itself would walk a set, whose order differs by process."""
+    """List the classes in one order.
+
+    Ezdxf itself would iterate over a set, whose order differs by process.
+    """
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
 
@@ -118,10 +121,7 @@ def _laid_out(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> tuple[_Content, _Laid]:
-    """Return the first sheet on which everything has a place.
-
-    One without removed sections if there is no other.
-    """
+    """Return the first sheet on which everything has room; if there is none, one without removed sections."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = header.parameters if header else {}
     repeated = {name: spans for name, size in declared.sizes.items() if (spans := spans_of(size, seen))}
@@ -187,7 +187,7 @@ def _fill(
 
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
-    """Return the sheet with its views, into which no words may come, and its centre lines."""
+    """Return the sheet with its views, which texts must avoid, and its centre lines."""
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):

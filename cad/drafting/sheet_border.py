@@ -33,7 +33,7 @@ _MOST_LINES = 3  # of one value in the table
 
 
 def frame(page: Page) -> None:
-    """The border of the sheet and of its areas; the sheet itself comes first."""
+    """Draw the border of the sheet and of its areas, after the sheet itself."""
     format = page.plan.format
     width, height = format.width, format.height
     right, column, block = width - EDGE, width - EDGE - COLUMN, width - EDGE - WIDTH
@@ -54,7 +54,7 @@ class General:
 
     @property
     def has_profile(self) -> bool:
-        """Return whether ISO 22081 holds."""
+        """Return whether ISO 22081 applies."""
         return self.profile is not None and self.datum != ""
 
     @property
@@ -72,14 +72,14 @@ class General:
         )
 
     def draw(self, page: Page, left: float, low: float) -> None:
-        """The frame of the profile behind the words that begin at a place."""
+        """Draw the frame of the profile after the text at a position."""
         if self.profile is not None and self.datum:
             frame = Frame("profile", self.profile, self.datum, 2.5)
             frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
 
 
 def title_block(page: Page, header: Header | None, general: General) -> None:
-    """The fields of ISO 7200; a stamp fills in those that belong to a design."""
+    """Draw the fields of ISO 7200; a stamp fills in those of a design."""
     left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
     texts = {
@@ -114,7 +114,7 @@ def title_block(page: Page, header: Header | None, general: General) -> None:
 
 
 def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
-    """What holds for the whole drawing, to the left of the title block."""
+    """Draw the notes for the whole drawing, to the left of the title block."""
     left, top = LEFT + 3.0, EDGE + HEIGHT - 6.0
     lines = [
         "dimensions in mm, measured on the solid, at 20 °C (ISO 1); ( ) for reference",
@@ -137,7 +137,7 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
 
 
 def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> None:
-    """The parameters with their values."""
+    """Draw the parameters with their values."""
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
@@ -158,7 +158,7 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
 
 
 def _value(text: str, limits: Limits | None) -> str:
-    """Return a length in mm with its deviations, an angle in degrees, and other values as they are."""
+    """Return a length in mm with its deviations, an angle in degrees, and other values unchanged."""
     size = size_of(text)
     if size is None:
         return text

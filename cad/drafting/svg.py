@@ -110,10 +110,7 @@ class Ink:
         return "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in points)
 
     def _arc(self, entity: Any, start: float, turn: float) -> str:
-        """Return an arc as one or two arcs of SVG, none of which turns more than half.
-
-        Y points down there.
-        """
+        """Return an arc as one or two SVG arcs, each of at most half a turn; in SVG y points down."""
         (x, y), r = self.at(entity.dxf.center), entity.dxf.radius * self.scale
         parts = 2 if turn > 180 else 1
         angles = [radians(start + turn * i / parts) for i in range(parts + 1)]
@@ -146,7 +143,7 @@ class Ink:
         )
 
     def _words(self, entity: Any) -> str:
-        """Return the words of a dimension about their middle, deviations one above the other behind them."""
+        """Draw the text of a dimension about its middle, followed by deviations one above the other."""
         height = entity.dxf.char_height * self.scale
         angle = entity.get_rotation()
         x, y = self.at(entity.dxf.insert)
@@ -173,7 +170,7 @@ def _text(text: str, x: float, y: float, height: float, anchor: str, turn: str) 
 
 
 def _mark_of(entity: Any) -> str:
-    """Return the attribute that says which field of the title block a text is, if a stamp fills it in."""
+    """Return the attribute that identifies the title-block field of a text, if a stamp fills it in."""
     if not entity.has_xdata(APP):
         return ""
     return f' data-stamp="{entity.get_xdata(APP)[0].value.removeprefix(MARK)}"'

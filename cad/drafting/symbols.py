@@ -25,7 +25,7 @@ class Symbol:
     filled: Sequence[Polyline] = field(default_factory=list)
 
     def moved(self, x: float, y: float) -> Symbol:
-        """Return the symbol at another place."""
+        """Return the symbol at another position."""
 
         def move(line: Polyline) -> Polyline:
             return [(a + x, b + y) for a, b in line]
@@ -49,7 +49,7 @@ class Symbol:
 
 
 def first_angle(height: float) -> Symbol:
-    """Return a truncated cone from its side, and to its right as it is seen from its left (ISO 5456-2)."""
+    """Return a truncated cone from its side, and to its right the view from its left (ISO 5456-2)."""
     small, large, half = height / 4, height / 2, height / 2
     right = 1.25 * height
     cone = [
@@ -82,7 +82,7 @@ def texture(height: float, reach: float) -> Symbol:
 
 
 def basic_texture(height: float) -> Symbol:
-    """Return the hook alone, in brackets: surfaces that have a symbol of their own."""
+    """Return only the hook, in brackets, for surfaces with their own symbol."""
     rise = height
     low, high = rise / sqrt(3), 1.6 * rise / sqrt(3)
     return Symbol(lines=[[(-low, rise), (0.0, 0.0), (high, 1.6 * rise)]])
@@ -94,7 +94,7 @@ def geometric(form: str, size: float) -> Symbol:
     Raises
     ------
     KeyError
-        If there is no sign of that name.
+        If there is no sign with that name.
     """
     half, r = size * 0.36, size * 0.24
     signs = {

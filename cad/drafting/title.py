@@ -102,7 +102,7 @@ _SHARE = 20  # a tolerance is at least so many times the roughness of its surfac
 
 
 def roughness(width: float) -> float:
-    """Return the greatest roughness Ra [µm] of a surface whose dimension has a tolerance of that width [mm].
+    """Return the greatest roughness Ra [µm] of a surface whose dimension has a tolerance of this width [mm].
 
     The rule is ours: the largest usual value of at most a twentieth of the tolerance, so that peaks and
     valleys, some five times Ra apart, take at most a quarter of it.

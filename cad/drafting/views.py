@@ -85,7 +85,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Return whether balls or bars stand among other parts: then the drawing is that of an assembly."""
+    """Return whether this is the drawing of an assembly, with balls or bars among other parts."""
     whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
     return any(whole) and not all(whole)
 
@@ -128,7 +128,7 @@ def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
 
 
 def _axes_across(placed: Sequence[_PlacedPart], frame: Frame) -> list[tuple[Point, Point]]:
-    """Return the axes of cylinders that lie in the plane of the paper, from where to where these reach."""
+    """Return the axes of cylinders in the plane of the paper, with their start and end."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
         if abs(cylinder.direction.dot(frame.towards)) < CLEAR:
@@ -189,12 +189,12 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """Return whether the shaft's axis lies within a bore or a joint relief."""
+    """Return whether the shaft's axis is within a bore or a joint relief."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
-    """Return the reach of a shape against a normal along an axis, and with it."""
+    """Return the extent of a shape in both directions of a normal along an axis."""
     box = shape.BoundingBox()
     corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
     low, high = sorted(corner.dot(normal) for corner in corners)
@@ -225,7 +225,7 @@ def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
 
 
 def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
-    """Return the edges of shapes as they are seen, with those that are hidden."""
+    """Return the visible and the hidden edges of shapes."""
     toward, right = frame.towards, frame.right
     eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*toward.toTuple()), gp_Dir(*right.toTuple()))
     whole = Compound.makeCompound(shapes)

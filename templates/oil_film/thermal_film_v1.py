@@ -10,7 +10,7 @@ import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
 from templates.groups.film_assumptions import PARALLEL, RIGID, SMOOTH
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import friction_coefficient
 from templates.physics.journals.oil import by_law
@@ -94,12 +94,7 @@ class ThermalFilm(Oil, Template):
         "ambient_temperature": "40 degC",
     }
     criteria = {
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "own_film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film is not thinner than its user permits",
@@ -116,17 +111,9 @@ class ThermalFilm(Oil, Template):
                 }
             },
         },
-        "temperature": {
-            "require": "greatest_bush_temperature <= permissible_temperature",
-            "words": "the bush is no hotter than its material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "greatest_bush_temperature", "the bush is no hotter than its material bears"
+        ),
         "oil_temperature": {
             "require": "greatest_film_temperature <= permissible_oil_temperature",
             "words": "the film is nowhere hotter than the oil bears",

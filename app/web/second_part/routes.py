@@ -38,14 +38,14 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 @router.get("/designs/{id}/models/{name}/beside")
 async def beside_form(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
-    """Show the form: which part, and where it stands."""
+    """Return the form that chooses the part and its position."""
     design = await services.run(services.designs.show, id)
     return await _form(request, services, design, name, {})
 
 
 @forms.post("/designs/{id}/models/{name}/beside")
 async def put_beside(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
-    """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
+    """Create the assembly and use it in the design; if this is refused, return the form with the reason."""
     typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
     design = await services.run(services.designs.show, id)
     try:
@@ -99,12 +99,12 @@ def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 async def _imported(
     services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
-    """Return the version of the model that a manifest becomes, as a design names it.
+    """Return the version of the model that a manifest creates, in the form that a design needs.
 
     Raises
     ------
     Refused
-        With the reason, if it is not taken, or not in time.
+        With the reason, if it is refused, or takes too long.
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()

@@ -69,7 +69,7 @@ async def calculated(
 
 
 async def stored(services: PageServices, job: str, kind: type[Kind]) -> AnswerOrJob[Kind]:
-    """Return the answer that a job has made, or the job while it still runs.
+    """Return the answer of a job, or the job while it still runs.
 
     Raises
     ------

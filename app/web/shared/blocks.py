@@ -65,7 +65,7 @@ class StepBlock:
 
     @property
     def has_faults(self) -> bool:
-        """Return whether one of its fields holds what was refused."""
+        """Return whether one of its fields contains a refused value."""
         return any(one.error for one in (*self.fields, *self.options, *self.limits))
 
 
@@ -159,7 +159,7 @@ def with_changes(
     before: Revision | None,
     previewed: Mapping[str, ParameterChange],
 ) -> ModelBlock:
-    """Return a model of a design with the fields of its form, and what changed since the revision before."""
+    """Return a model of a design with the fields of its form, and its changes since the previous revision."""
     name, values, schema = block.name, block.values, block.model.parameters
     cells = design.models[name].parameters
     status = {tail: _status(previewed.get(f"{name}.{tail}")) for tail in values}

@@ -29,7 +29,7 @@ async def revision_of(
     only: str | None = None,
     has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """Return a revision as a worksheet, in the units that the page shows; with `only`, that step alone."""
+    """Return a revision as a worksheet, in the units of the page; with `only`, just that step."""
     units = units_of(request)
     return await services.calculate(within, services.reports.worksheet, id, number, units, only, has_formulas)
 

@@ -51,12 +51,12 @@ class Names(Protocol):
 
 
 async def fields(request: Request) -> dict[str, str]:
-    """Return the fields of a form that was sent.
+    """Return the fields of a submitted form.
 
     Raises
     ------
     BodyTooLarge
-        If there are more than any of our forms has.
+        If there are more fields than in any of our forms.
     """
     body = (await request.body()).decode(errors="replace")
     try:
@@ -66,14 +66,14 @@ async def fields(request: Request) -> dict[str, str]:
 
 
 async def forms_only(request: Request) -> None:
-    """Let bodies through only if they are forms, in a session those of its own pages."""
+    """Accept only bodies that are forms; within a session, only forms of its own pages."""
     check_type(request, FORM_TYPES, NotForm)
     if request.scope.get(FORM_TOKEN):
         check_form_token(request, await fields(request))
 
 
 def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
-    """Return the merge patch with what a form's user changed."""
+    """Return the merge patch with the user's changes in a form."""
     patch: Patch = {}
     blocks = {*design.steps, *design.models}
     for name, text in kept(typed).items():
@@ -83,7 +83,7 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
 
 
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
-    """Return the fields that differ from the form's first state, which its hidden field `was` holds."""
+    """Return the fields that differ from the first state of the form, stored in its hidden field `was`."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
@@ -136,7 +136,7 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
 
 
 def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
-    """Return the object of a name; an empty one where there is none yet."""
+    """Return the object with a name; an empty one if it does not exist yet."""
     inner = outer.setdefault(name, {})
     assert isinstance(inner, dict)
     return inner

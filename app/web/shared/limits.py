@@ -20,12 +20,12 @@ from app.web.shared.sheet import Field
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the limits among the fields of a template's form that hold a text."""
+    """Return the non-empty limit fields of a template's form."""
     return {name.removeprefix(LIMITS): value_of(text) for name, text in filled.items() if is_limit(name)}
 
 
 def is_limit(control: str) -> bool:
-    """Return whether a control of a template's form is that of a limit."""
+    """Return whether a control of a template's form belongs to a limit."""
     return control.startswith(LIMITS)
 
 
@@ -60,7 +60,7 @@ def limit_fields(
 
 
 def _field(name: str, control: str, declared: DeclaredValue) -> Field:
-    """Return an empty field; its hint says what holds while it stays empty."""
+    """Return an empty field; its hint shows the value that applies while it is empty."""
     default = declared.default_formula or "not given"
     return Field(
         name=name,
@@ -77,7 +77,7 @@ def _field(name: str, control: str, declared: DeclaredValue) -> Field:
 def _rows(
     id: str | None, limits: Mapping[str, DeclaredValue], tables: Sequence[LibraryTable]
 ) -> Iterator[LibraryRow]:
-    """Yield the rows of a table that have a value for a limit which is taken from it."""
+    """Yield the rows of a table that have a value for one of its limits."""
     taken = {name for name, limit in limits.items() if id and limit.filled_by == id}
     rows = (row for table in tables if table.id == id for row in table.rows)
     yield from (row for row in rows if not taken.isdisjoint(row.values))
@@ -92,7 +92,7 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 
 
 def _tail(name: str) -> str:
-    """Return the name of an input without that of its step."""
+    """Return the name of an input without the name of its step."""
     return Reference.parse(name).own_name
 
 

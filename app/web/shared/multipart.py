@@ -36,7 +36,10 @@ class Part:
 
 
 async def forms_with_files(request: Request) -> None:
-    """Let bodies through only if they are forms, with files or not; in a session those of its own pages."""
+    """Accept only bodies that are forms, with or without files.
+
+    Within a session, only forms of its own pages.
+    """
     check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
     if request.scope.get(FORM_TOKEN):
         parts = await parts_of(request)

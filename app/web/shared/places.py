@@ -27,7 +27,7 @@ class PlaceOption:
 
 
 def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
-    """Return parameters and inputs that hold one quantity of their own; a relation follows from elsewhere."""
+    """Return parameters and inputs with a single typed quantity, without relations."""
     typed = dict(_typed(design))
     return [
         PlaceOption(name.name, name.words, name.unit, typed[name.name])
@@ -77,7 +77,7 @@ def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """Return a quantity as it is typed: with its number and unit only."""
+    """Return a quantity with its number and unit only."""
     number, unit = getattr(value, "value", value), getattr(value, "unit", None)
     return {"value": number, "unit": unit} if unit else number
 
@@ -97,13 +97,13 @@ def outputs(network: DesignNetwork) -> list[NetworkName]:
 
 
 def suggested(place: PlaceOption) -> tuple[str, str]:
-    """Return bounds for a place: half and twice its value; nothing where that says little."""
+    """Return suggested bounds for a place: half and twice its value, or nothing if that is not useful."""
     low, high = (times(place.value, factor) for factor in (0.5, 2.0))
     return low, high
 
 
 def times(text: str, factor: float) -> str:
-    """Return a quantity above zero as typed, multiplied; nothing of another text, and of a temperature."""
+    """Return a typed quantity above zero, multiplied; nothing for other texts and for temperatures."""
     number, _, symbol = text.partition(" ")
     try:
         value = float(number)

@@ -24,14 +24,14 @@ Handler = Callable[[Request, Exception], Awaitable[Response]]
 
 
 def install(app: FastAPI) -> None:
-    """Answer what goes wrong under a page with a page; call it after `problems.install`."""
+    """Answer errors of pages with a page; call it after `problems.install`."""
     app.add_exception_handler(Refused, _refused)
     for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn, Exception):
         app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
 
 
 def _page_or(others: Handler) -> Handler:
-    """Return a handler that answers browsers with a page, and leaves the rest to another."""
+    """Return a handler that answers browsers with a page, and leaves other clients to another handler."""
 
     async def handle(request: Request, error: Exception) -> Response:
         if not _is_page(request):
@@ -66,7 +66,7 @@ def _place(request: Request) -> str:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    """Return the page of what a service refused."""
+    """Return the page for a refusal of a service."""
     assert isinstance(error, Refused)
     if not _is_page(request):
         return JSONResponse(

@@ -33,7 +33,7 @@ jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:
-    """Return the system of units asked for: by the address, else as last time, else SI."""
+    """Return the system of units: from the address, else from the cookie, else SI."""
     asked = request.query_params.get("units") or request.cookies.get("units")
     return next((system for system in get_args(System) if system == asked), "si")
 
@@ -59,7 +59,7 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
 
 
 def _scheme(request: Request) -> str:
-    """Return the colours that were chosen; empty for those of the system."""
+    """Return the chosen colour scheme; empty for that of the system."""
     kept = request.cookies.get("scheme")
     return next((scheme for scheme in SCHEMES if scheme == kept), "")
 
@@ -71,5 +71,5 @@ def _beside_units(request: Request) -> str:
 
 
 def go(path: str) -> Response:
-    """Redirect to another page, after a form did its work."""
+    """Redirect to another page after a form has succeeded."""
     return RedirectResponse(path, 303)

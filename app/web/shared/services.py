@@ -61,7 +61,7 @@ class Refused(Exception):
 
     @classmethod
     def because(cls, status: int, detail: str) -> Refused:
-        """Return a refusal of the pages themselves."""
+        """Return a refusal raised by the pages themselves."""
         title = HTTPStatus(status).phrase.capitalize()
         return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
 
@@ -169,12 +169,12 @@ class PageServices(Services):
         return await self.save(self.designs.change, id, change, noted_as, tag_of(revision), self.once)
 
     async def cancel(self, job: str) -> None:
-        """Cancel a job; one that has ended meanwhile is left as it is.
+        """Cancel a job; one that has already ended stays unchanged.
 
         Raises
         ------
         Refused
-            If there is no such job, or it is another's.
+            If there is no such job, or it belongs to another principal.
         """
         try:
             await self.run(self.jobs.cancel, job, self.client)
@@ -188,7 +188,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result | None:
-        """Return the result of a function, or None where there is nothing."""
+        """Return the result of a function, or None if it finds nothing."""
         try:
             return await self.run(function, *arguments, **options)
         except Refused as refused:

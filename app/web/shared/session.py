@@ -22,7 +22,7 @@ _FORM = re.compile(r'<form\b[^>]*\bmethod="post"[^>]*>')
 
 
 def keep_session(request: Request, response: Response) -> None:
-    """Give a browser a session, unless it has one; the service keeps nothing of it."""
+    """Give a browser a session cookie, unless it has one; the service does not store it."""
     if is_session(request.cookies.get(COOKIE, "")):
         return
     response.set_cookie(
@@ -53,7 +53,7 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
     Raises
     ------
     CrossSite
-        If it is another, or missing.
+        If it differs or is missing.
     """
     token = request.scope.get(FORM_TOKEN)
     if token and not hmac.compare_digest(typed.get(FIELD, "").encode(), token.encode()):

@@ -36,9 +36,9 @@ class Field:
 
     @property
     def id(self) -> str:
-        """Return the control's name as an id of HTML, unlike those of the page's parts.
+        """Return the control's name as an HTML id that differs from the ids of the page's parts.
 
-        `-length`, `film-length`.
+        Examples are `-length` and `film-length`.
         """
         bare = not {".", "@"} & set(self.control)
         return "-" * bare + self.control.replace(".", "-")
@@ -59,7 +59,7 @@ def of_block(
 ) -> list[Field]:
     """Return the fields of a step's inputs, or a model's parameters, in the order they are declared.
 
-    `values` are the quantities used; `typed` what a form that was refused holds instead of the cells.
+    `values` are the used quantities; `typed` are the texts of a refused form.
     """
     needed = required(schema)
     fields = []
@@ -155,6 +155,6 @@ def _hint(declared: DeclaredValue) -> str:
 
 
 def loose_faults(fields: list[Field], faults: Mapping[str, str]) -> dict[str, str]:
-    """Return the faults that belong to no field; these messages stand above the form."""
+    """Return the faults that belong to no field; the page shows them above the form."""
     shown = {field.name for field in fields}
     return {name: detail for name, detail in faults.items() if name not in shown}

@@ -27,7 +27,7 @@ Text = Annotated[str, Query(max_length=4000)]
 
 @router.get(PLACE)
 async def leave(request: Request, back: Text = "/") -> Response:
-    """To the provider."""
+    """Redirect the browser to the provider."""
     begun = begin()
     response = go(await Provider(services_of(request).settings).address(begun, _address(request)))
     response.set_cookie(
@@ -46,12 +46,12 @@ async def leave(request: Request, back: Text = "/") -> Response:
 async def come_back(
     request: Request, identity: TheIdentity, state: Text = "", code: Text = "", error: Text = ""
 ) -> Response:
-    """Finish the sign-in; the page then redirects, so that the browser sends the new cookie.
+    """Finish the sign-in; then redirect, so that the browser sends the new cookie.
 
     Raises
     ------
     ProviderRefused
-        The provider, or what it says, cannot be trusted, or the person cancelled.
+        If the provider or its answer cannot be trusted, or the user cancelled.
     """
     kept = _KEPT.fullmatch(request.cookies.get(COOKIE, "")[:5000])
     if kept is None or error:
@@ -67,5 +67,5 @@ async def come_back(
 
 
 def _address(request: Request) -> str:
-    """Return the address of the way back, under the name by which the browser knows the service."""
+    """Return the callback address, with the host name that the browser uses for the service."""
     return f"{request.url.scheme}://{request.url.netloc}{PLACE}/back"

@@ -39,7 +39,7 @@ async def sign_in_page(request: Request, back: str = "/") -> Response:
 
 @forms.post("/sign-in", dependencies=[public()])
 async def sign_in(request: Request, identity: TheIdentity) -> Response:
-    """Begin a session by a key, and go back to where it was asked for."""
+    """Start a session with a key, and redirect to the requested page."""
     typed = await fields(request)
     key, back = typed.get("key", "").strip()[:LONGEST], typed.get("back", "/")
     guest = await identity.door.by_key(key)
@@ -73,7 +73,7 @@ async def account(request: Request, services: ThePageServices) -> Response:
 
 @forms.post("/account/keys", dependencies=[needs()])
 async def add_key(request: Request, services: ThePageServices) -> Response:
-    """A new key, which this page shows and no other."""
+    """Create a key and show it on this page only."""
     typed = await fields(request)
     me = await services.run(routes.show_me, services.identity)
     days = typed.get("days", "").strip()
@@ -104,10 +104,10 @@ def _page(request: Request, back: str, *, status: int = 200, wrong: str = "") ->
 
 
 def sent(request: Request) -> str:
-    """Return the cookie of the session that a browser has sent, whether or not there is such a session."""
+    """Return the session cookie of a browser, whether or not the session exists."""
     return request.cookies.get(SIGN_IN, "")[:LONGEST]
 
 
 def own(back: str) -> str:
-    """Return an address of this service; the start in place of any other."""
+    """Return an address of this service; the home page for any other address."""
     return back if len(back) <= 2000 and _BACK.fullmatch(back) else "/"

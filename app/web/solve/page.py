@@ -58,7 +58,7 @@ class SolveForm:
         return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
 
     def body(self) -> dict[str, object]:
-        """Return the question as the interface takes it."""
+        """Return the question as a request body."""
         typed = self.typed
         body: dict[str, object] = {
             "unknown": typed["unknown"],
@@ -70,13 +70,13 @@ class SolveForm:
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
 
     def wider(self) -> Wider | None:
-        """Return the same question between bounds farther apart, if they can be multiplied."""
+        """Return the same question with wider bounds, if they can be multiplied."""
         low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
         query = urlencode({**self.typed, "low": low, "high": high})
         return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
-        """Return the field of the design's form that takes the other value, and what it takes."""
+        """Return the field of the design's form for the other value, with that value."""
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
@@ -125,7 +125,7 @@ async def _solved(
 
 
 def _drawing(solution: DesignSolution) -> Drawing:
-    """Return the curve of an answer, with what gives the target."""
+    """Return the curve of an answer with the solutions marked."""
     target = solution.target
     return Drawing(
         solution.unknown,
@@ -141,7 +141,7 @@ def _drawing(solution: DesignSolution) -> Drawing:
 
 
 def _level(curve: TracedCurve, levels: Mapping[str, str | None], others: Mapping[str, str | None]) -> str:
-    """Return the level of a curve, with those of other steps that the other curve has at other levels."""
+    """Return the level of a curve, with those other steps whose level differs from the other curve."""
     apart = {step: level for step, level in levels.items() if others and others.get(step) != level}
     if len(apart) < 2 and curve.level in apart.values():
         return in_words(curve.level)
@@ -170,13 +170,13 @@ COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
 def _words(root: DesignRoot, name: str) -> str:
-    """Return the verdict of a criterion at a root, with what is unknown about it."""
+    """Return the verdict of a criterion at a root in words, with any unknown error."""
     words = WORDS[root.verdicts[name]]
     return f"{words}; {UNKNOWN}" if name in root.error_unknown else words
 
 
 def _counted(root: DesignRoot) -> str:
-    """Return how many of the other criteria are met, with known errors or not, and how many not checked."""
+    """Return how many of the other criteria are met (with or without known errors) and not checked."""
     counts = Counter[str](root.verdicts.values())
     unknown = sum(root.verdicts[name] == "met" for name in root.error_unknown)
     words = [f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word]]
@@ -199,7 +199,7 @@ def _control(name: str) -> str:
 
 
 def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
-    """Return every solution, with what saves it as a revision; none of several is preferred."""
+    """Return every solution with the data to save it as a revision."""
     control = _control(solution.unknown)
     target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
     return [

@@ -14,11 +14,11 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/templates/{id}/{version}/solve")
 async def solve_template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Show which values of one input give a wanted output; question and inputs stand in the address."""
+    """Show the values of one input that give a wanted output; the address holds question and inputs."""
     return await template_solve_page(request, services, id, version)
 
 
 @router.get("/designs/{id}/solve")
 async def solve(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Show which value of one parameter gives a wanted output; the question stands in the address."""
+    """Show the values of one parameter that give a wanted output; the address holds the question."""
     return await solve_page(request, services, id)

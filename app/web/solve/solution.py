@@ -61,7 +61,7 @@ class Drawing:
         return len(finer.x.value) < len(self.curve.x.value)
 
     def caption(self) -> str:
-        """Return what the drawing shows."""
+        """Return the caption of the drawing."""
         wanted = "the dashed line is the value wanted"
         at = f", at level {self.level}" if self.level else ""
         if not self.finer:

@@ -52,7 +52,7 @@ class Question:
         return all(self.typed.values())
 
     def body(self, template: Template) -> dict[str, object]:
-        """Return the question as the interface takes it."""
+        """Return the question as a request body."""
         typed, (inputs, options) = self.typed, self._given(template)
         return {
             "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
@@ -80,7 +80,7 @@ class Question:
         return Question({**self.typed, "low": low, "high": high}, self.inputs)
 
     def address(self, **more: str) -> str:
-        """Return the query of this page that asks the same."""
+        """Return the query of this page for the same question."""
         marked = {f"{MARK}{name}": text for name, text in self.typed.items()}
         return urlencode({**self.inputs, **marked, **more})
 
@@ -134,7 +134,7 @@ def _seconds(cls: type[language.Template], body: SolveIn) -> float:
 
 
 def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:
-    """Yield the inputs that hold one quantity."""
+    """Yield the inputs with a single quantity."""
     for name, declared in properties(template.inputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "", present.get(name, ""))

@@ -66,7 +66,7 @@ class StudyForm:
         return [name.removeprefix(head) for name in self.fields if name.startswith(head) and self.is_on(name)]
 
     def body(self, design: str) -> dict[str, JsonValue]:
-        """Return the study as the interface takes it; fields that are empty are left out."""
+        """Return the study as a request body, without empty fields."""
         method = self.text("method", "grid")
         vary = self._vary()
         body: dict[str, JsonValue] = {"design": design, "method": method, "vary": vary}
@@ -130,7 +130,7 @@ class StudyForm:
         ]
 
     def _share(self, name: str) -> JsonValue:
-        """Return a tolerance typed in per cent, as a share; a text that is not a number as it is."""
+        """Return a tolerance typed in per cent as a fraction; other texts are unchanged."""
         text = self.text(name).strip().removesuffix("%").strip()
         try:
             return float(text) / 100 if text else None
@@ -139,7 +139,7 @@ class StudyForm:
 
 
 def _whole(text: str) -> JsonValue:
-    """Return a whole number; the interface reports a text that is not one."""
+    """Return a whole number; other texts are passed on, for the interface to report."""
     return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
 
 
@@ -151,7 +151,7 @@ async def study_form(
     status: int = 200,
     estimate: StudyEstimate | None = None,
 ) -> Response:
-    """Return the form, with what was typed, and with what it would take, if that was asked for."""
+    """Return the form with the typed values, and the estimated cost if requested."""
     design = await services.run(services.designs.show, id)
     governing = await _governing(services, design)
     network = await services.run(services.designs.network, id)
@@ -187,9 +187,9 @@ async def study_form(
 
 
 async def _governing(services: PageServices, design: Design) -> str:
-    """Return the variant that governs a design, which a study of the design does not calculate.
+    """Return the governing variant of a design, which a study of the design itself does not calculate.
 
-    Empty for itself.
+    It is empty if the design itself governs.
     """
     if not design.variants:
         return ""
@@ -200,15 +200,12 @@ async def _governing(services: PageServices, design: Design) -> str:
 
 
 def has_limit(criterion: Criterion) -> bool:
-    """Return whether a criterion is checked against a number.
-
-    One that was given, or one that its rule holds.
-    """
+    """Return whether a criterion is checked against a number, given by the user or in its rule."""
     return criterion.verdict != "not_checked" and criterion.limit is not None
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """Return the outputs that criteria with limits name, which a study keeps if nothing else is chosen."""
+    """Return the outputs named by criteria with limits, which a study keeps by default."""
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}

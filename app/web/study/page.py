@@ -57,12 +57,12 @@ async def study_page(
         notice=notice,
         sort=sort,
         where=where,
-        estimate=numbers.in_line({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
+        estimate=study.estimate.seconds,
     )
 
 
 async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
-    """Return the criteria of a study as its revision states them; none where that is not kept."""
+    """Return the criteria of a study from its revision; none if it does not store them."""
     if not study.criteria:
         return []
     try:
@@ -77,7 +77,7 @@ async def _criteria(services: PageServices, study: Study, units: System) -> list
 
 
 def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
-    """Return limits of criteria by output; a limit that itself follows from a row is not a line."""
+    """Return limits of criteria by output, without limits that vary from row to row."""
     limits: dict[str, list[float]] = {}
     for one in criteria:
         if line := _limit_of(study, one):
@@ -93,7 +93,7 @@ def _sides(one: Criterion) -> tuple[str, str]:
 
 
 def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
-    """Return the output that a criterion holds against a number written in it, and this number."""
+    """Return the output that a criterion compares with a literal number, and this number."""
     name, right = _sides(one)
     limit = one.limit.value if one.limit else None
     if name not in study.outputs or not right[:1].isdigit() or not isinstance(limit, float | int):

@@ -21,33 +21,33 @@ ILL_NAMED, STALE = 422, 412
 
 @router.get("/designs/{id}/studies/new")
 async def new_study(id: Id, request: Request, services: ThePageServices) -> Response:
-    """The form of a new study."""
+    """Return the form of a new study."""
     return await study_form(request, services, id, StudyForm(dict(request.query_params)))
 
 
 @router.get("/designs/{id}/studies/estimate")
 @router.get("/designs/{id}/studies")
 async def after_a_new_study(id: Id) -> Response:
-    """The form of a new study: one that was refused is shown at the address to which it was sent."""
+    """Return the form of a new study; a refused form is shown at the address to which it was sent."""
     return go(f"/designs/{id}/studies/new")
 
 
 @router.get("/studies/{id}")
 async def study(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A study: how far it is, and what it found."""
+    """Show a study: its progress and results."""
     return await study_page(request, services, id)
 
 
 @router.get("/studies/{id}/choose")
 @router.get("/studies/{id}/cancel")
 async def after_a_form(id: Id) -> Response:
-    """The study: a form that was refused is shown at the address to which it was sent."""
+    """Show the study; a refused form is shown at the address to which it was sent."""
     return go(f"/studies/{id}")
 
 
 @forms.post("/designs/{id}/studies")
 async def start(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A new study, shown at once; where it is refused, the form again with what is wrong."""
+    """Start a study and show it; if it is refused, return the form with the faults."""
     typed = await fields(request)
     try:
         body = services.read(StudyIn, StudyForm(typed).body(id))
@@ -61,7 +61,10 @@ async def start(id: Id, request: Request, services: ThePageServices) -> Response
 
 @forms.post("/designs/{id}/studies/estimate")
 async def estimate(id: Id, request: Request, services: ThePageServices, part: bool = False) -> Response:
-    """Show the cost of a new study above its form; with `part` alone, for the script of the form."""
+    """Show the cost of a new study above its form.
+
+    With `part`, only this part, for the script of the form.
+    """
     typed = await fields(request)
     estimated, faulty, status = None, StudyForm(typed), 200
     try:
@@ -78,7 +81,7 @@ async def estimate(id: Id, request: Request, services: ThePageServices, part: bo
 
 @forms.post("/studies/{id}/choose")
 async def choose(id: Id, request: Request, services: ThePageServices) -> Response:
-    """The values of a row as a new revision of the design."""
+    """Save the values of a row as a new revision of the design."""
     typed = await fields(request)
     seen = tag_of(typed.get("revision", ""))
     try:
@@ -94,7 +97,7 @@ async def choose(id: Id, request: Request, services: ThePageServices) -> Respons
 
 @forms.post("/studies/{id}/cancel")
 async def cancel(id: Id, services: ThePageServices) -> Response:
-    """Stop a study; one that has ended meanwhile stays as it is."""
+    """Cancel a study; one that has already ended stays unchanged."""
     study = await services.run(show_study, id, services.studies)
     if study.job is not None:
         await services.cancel(study.job.removeprefix("/api/v1/jobs/"))

@@ -126,12 +126,12 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/templates/{id}")
 async def newest_template(id: Id, services: ThePageServices) -> Response:
-    """The latest version."""
+    """Redirect to the latest version."""
     versions = await services.run(list_template_versions, id, services.catalogues)
     return go(f"/templates/{id}/{next(item.version for item in versions.items if item.latest)}")
 
 
 @router.get("/templates/{id}/{version}")
 async def template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """A template, with a form to try it; what is typed stands in the address."""
+    """Show a template with a form to try it; the address holds the typed values."""
     return await template_page(request, services, id, version)

@@ -121,5 +121,5 @@ async def tolerances(
     job: Annotated[str | None, Query(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = None,
     part: Annotated[str, Query(max_length=1)] = "",
 ) -> Response:
-    """Show the effects of a design's tolerances; `part` is the part that the design page takes in."""
+    """Show the effects of a design's tolerances; `part` returns only the part for the design page."""
     return await tolerances_page(request, services, id, job, is_part=bool(part))

@@ -50,7 +50,7 @@ async def upgrade_page(
 
 @forms.post("/designs/{id}/upgrade")
 async def upgrade(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A new revision with the version; where it is refused, the preview with the reason."""
+    """Create a revision with the version; if it is refused, return the preview with the reason."""
     typed = await fields(request)
     template, version = typed.get("template", ""), typed.get("version", "")
     design = await services.run(services.designs.show, id)
@@ -80,7 +80,7 @@ def _number(template: str, version: str) -> int:
 
 
 def _patch(design: Design, template: str, version: int) -> Patch:
-    """Return the merge patch that gives every step of a template the version; its inputs stay as they are."""
+    """Return the merge patch that gives every step of a template the version, without changing its inputs."""
     steps = design.steps.items()
     return {"steps": {name: {"version": version} for name, step in steps if step.template == template}}
 
@@ -150,7 +150,7 @@ def _of_one_version(preview: Preview) -> list[ValueChange]:
 
 
 def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> str:
-    """Return a value as text, in the unit of another one where that measures the same."""
+    """Return a value as text, in the unit of another value if both have the same kind."""
     value, given, wanted = old.value, old.unit, new.unit
     if not isinstance(value, float) or not given or not wanted or given == wanted:
         return numbers.in_line(old)

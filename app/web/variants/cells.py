@@ -38,7 +38,7 @@ class CsvFile:
 
 
 def grid_of_form(typed: Mapping[str, str]) -> Grid:
-    """Return the cells that a form holds; the row named by its field `drop` is emptied."""
+    """Return the cells of a form; the row named by its field `drop` is emptied."""
     cells: dict[tuple[int, int], str] = {}
     for name, text in typed.items():
         match = _ADDRESS.fullmatch(name.removeprefix(CONTROL)) if name.startswith(CONTROL) else None
@@ -57,7 +57,7 @@ def grid_of_form(typed: Mapping[str, str]) -> Grid:
 
 
 def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
-    """Return the grid with the declared unit of each place whose column says none."""
+    """Return the grid with the declared unit for each column that has none."""
     if len(grid.rows) < FIRST_VARIANT:
         return grid
     below = [grid.cell(1, at) or ("" if at == 0 else _declared(grid, at, units)) for at in range(grid.width)]
@@ -70,7 +70,7 @@ def _declared(grid: Grid, at: int, units: Mapping[str, str]) -> str:
 
 
 def csv_of(grid: Grid) -> CsvFile:
-    """Return the file of a page's cells: relations without their sign, in columns of their own."""
+    """Return the CSV file of a page's cells, with relations without their sign in separate columns."""
     related = [at for at in range(1, grid.width) if _has_relation(grid, at)]
     rows = [
         [_own(grid, row, at, related) for at in range(grid.width)]

@@ -43,7 +43,7 @@ ChosenVariant.NONE = ChosenVariant("")
 async def chosen_variant(
     request: Request, services: PageServices, design: Design, steps: list[StepBlock]
 ) -> ChosenVariant:
-    """Return the variant that the address names; none if it names none."""
+    """Return the variant in the address, if any."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE

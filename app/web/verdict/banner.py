@@ -61,12 +61,10 @@ def banner_over(verdict: Verdict, criteria: Iterable[Criterion]) -> Banner:
 def key_outputs(
     step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], driving: Iterable[str]
 ) -> list[str]:
-    """Return outputs for the fold line of a step.
+    """Return the outputs in the fold line of a step: judged ones, those used elsewhere, else the last ones.
 
-    Those judged, those that drive other parts, else the last ones.
-
-    `driving` are the outputs that relations name. What was not checked comes last, and what has no value is
-    left out where anything else has one.
+    `driving` are the outputs that relations name. Unchecked outputs come last; outputs without a value are
+    left out if others have one.
     """
     single = [name for name, output in outputs.items() if not isinstance(output.value, list)]
     ordered = sorted(criteria, key=lambda criterion: criterion.verdict == "not_checked")
@@ -110,7 +108,7 @@ def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: D
 
 
 def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
-    """Return the criteria that name a step, by step: in their own name or in what they compare."""
+    """Return the criteria that concern each step, by their name or by the compared values."""
     judged: dict[str, list[Criterion]] = {}
     for criterion in criteria:
         names = [criterion.name, *_NAMES.findall(sides(criterion.require)[0])]
@@ -120,6 +118,6 @@ def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
 
 
 def opened(names: Sequence[str], verdict: Banner) -> str | None:
-    """Return the one step that is unfolded at first: that of the governing criterion, else the first."""
+    """Return the step that is unfolded at first: that of the governing criterion, else the first."""
     governing = verdict.governing.step if verdict.governing else ""
     return governing if governing in names else next(iter(names), None)

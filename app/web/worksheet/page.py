@@ -33,7 +33,7 @@ class UnsavedText:
 
 
 async def list_page(request: Request, services: PageServices, wanted: str) -> Response:
-    """Return all worksheets, or those whose id or title holds a text."""
+    """Return all worksheets, or those whose id or title contains a text."""
     sought = wanted.casefold()
     sheets = [item for item in await _all(services) if sought in f"{item.id} {item.title}".casefold()]
     return show(request, "worksheet/worksheets.html", sheets=sheets, wanted=wanted)
@@ -75,9 +75,9 @@ async def editor_page(
     status: int = 200,
     design: str = "",
 ) -> Response:
-    """Return the newest version of a worksheet, to be edited; or what was typed and could not be saved.
+    """Return the editor with the newest version of a worksheet, or with a text that could not be saved.
 
-    A version that is not released is previewed in `design`, if one is named.
+    An unreleased version is previewed in `design`, if one is named.
     """
     row = await services.run(services.worksheets.newest, id)
     sheet = await services.run(services.worksheets.show, row)
@@ -157,7 +157,7 @@ class TextLine:
     faults: list[SheetFault]
 
     def mark(self, fault: SheetFault) -> str:
-        """Return blanks up to the column of a fault, then a mark under what is wrong."""
+        """Return blanks up to the column of a fault, then a mark under the faulty text."""
         end = fault.end_column or fault.column + 1
         return " " * (fault.column - 1) + "^" * max(1, min(end, len(self.text) + 1) - fault.column)
 

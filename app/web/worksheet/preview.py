@@ -63,7 +63,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
-    """Return the step that holds the worksheet, or a new name for one; and whether it is new."""
+    """Return the step that uses the worksheet, or a new name for one, and whether it is new."""
     using = next((name for name, step in design.steps.items() if step.template == sheet.id), None)
     if using is not None:
         return using, False

@@ -28,7 +28,7 @@ MISSED = (403, NOT_NOW, STALE, ILL_NAMED)
 
 @router.get("/worksheets")
 async def worksheets(request: Request, services: ThePageServices, name: Text = "") -> Response:
-    """All worksheets, or those that fit what was typed into the search."""
+    """Show all worksheets, or the results of a search."""
     return await list_page(request, services, name.strip())
 
 
@@ -45,7 +45,7 @@ async def worksheet(
     services: ThePageServices,
     design: Annotated[str, Query(max_length=64, pattern=r"^[A-Za-z0-9_]*$")] = "",
 ) -> Response:
-    """The editor; `design` names one in which a draft is previewed."""
+    """Show the editor; `design` names a design in which a draft is previewed."""
     return await editor_page(request, services, id, design=design)
 
 
@@ -55,13 +55,13 @@ async def worksheet(
 @router.get("/worksheets/{id}/withdraw")
 @router.get("/worksheets/{id}/delete")
 async def after_a_form(id: Id) -> Response:
-    """The worksheet: a form that was refused is shown at the address to which it was sent."""
+    """Show the worksheet; a refused form is shown at the address to which it was sent."""
     return go(f"/worksheets/{id}")
 
 
 @forms.post("/worksheets")
 async def create(request: Request, services: ThePageServices) -> Response:
-    """A new draft, shown at once; where it is refused, the form again with what is wrong."""
+    """Create a draft and show it; if it is refused, return the form with the faults."""
     typed = await fields(request)
     id = typed.get("id", "").strip()
     body: dict[str, JsonValue] = {"id": id, "text": await _start(services, typed.get("start", ""), typed)}
@@ -79,9 +79,9 @@ async def create(request: Request, services: ThePageServices) -> Response:
 
 
 async def _start(services: PageServices, start: str, typed: dict[str, str]) -> str:
-    """Return the text with which a worksheet begins.
+    """Return the initial text of a worksheet.
 
-    Of an example, of another worksheet, or its title alone.
+    It comes from an example or another worksheet, or is only the title.
     """
     group, _, name = start.partition(":")
     if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
@@ -94,7 +94,7 @@ async def _start(services: PageServices, start: str, typed: dict[str, str]) -> s
 
 @forms.post("/worksheets/{id}")
 async def save(id: Id, request: Request, services: ThePageServices) -> Response:
-    """The text as typed; where it is refused, the page again with it and what is wrong."""
+    """Save the typed text; if it is refused, return the page with the text and the faults."""
     typed = await fields(request)
     text = typed.get("text", "").replace("\r\n", "\n")
     try:
@@ -166,7 +166,7 @@ async def delete(id: Id, request: Request, services: ThePageServices) -> Respons
 
 
 async def _act(id: str, action: Awaitable[object], request: Request, services: PageServices) -> Response:
-    """Carry out one step of its life, then show the page; with what is missing, where that was refused."""
+    """Carry out one step of its life cycle and show the page, with missing conditions if it was refused."""
     try:
         await action
     except Refused as refused:

@@ -70,5 +70,5 @@ def newest_released(sheet: Sheet) -> SheetVersion | None:
 
 
 def begins_next(sheet: Sheet) -> bool:
-    """Return whether an edit begins another version: this one is released for good."""
+    """Return whether an edit starts another version, because this one is released."""
     return sheet.state in FINISHED

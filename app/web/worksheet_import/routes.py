@@ -55,7 +55,7 @@ async def import_file(request: Request, services: ThePageServices) -> Response:
 
 @router.get("/worksheets/{id}/import")
 async def import_report(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Every region of the sheet, and what became of it."""
+    """Show every region of the sheet with its outcome."""
     return await _report(request, services, id)
 
 

@@ -35,7 +35,7 @@ class BoundedClient(Client):
         )
 
     def start(self, **how: object) -> None:
-        """Connect; the constructor calls it."""
+        """Connect; the constructor calls this."""
         try:
             super().start(callback_timeout=_START, **how)
         except BaseException:
@@ -50,10 +50,10 @@ class BoundedClient(Client):
             self._abandon()
 
     async def _reconnect(self) -> None:
-        """Close; Dask calls it when the connection to the scheduler breaks."""
+        """Close; Dask calls this when the connection to the scheduler breaks."""
         await self._close()
 
     def _abandon(self) -> None:
-        """End the thread of the connection; as a closed client, garbage collection leaves it alone then."""
+        """End the thread of the connection; garbage collection ignores a closed client."""
         self.status = "closed"
         self._loop_runner.stop()

@@ -86,14 +86,14 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
     ) -> tuple[Outcome, str]:
-        """Wait for a place, the preferred machine's if it has one, run an order there, and say where it was.
+        """Wait for a place, preferably on a given machine, run an order there, and return the machine.
 
         Raises
         ------
         JobCancelled
-            Somebody has cancelled it.
+            If somebody has cancelled it.
         WorkerLost
-            The machine or the scheduler has gone while it ran, or several machines before it came there.
+            If the machine or the scheduler disconnected while it ran, or several machines before it arrived.
         """
         cancelled = cancelled or threading.Event()
         for _ in range(_TURNS):
@@ -125,7 +125,7 @@ class Cluster:
                 raise WorkerLost("the scheduler has disconnected") from error
 
     def close(self) -> None:
-        """Leave the scheduler; what still runs is killed there."""
+        """Disconnect from the scheduler; running functions are killed there."""
         self._closed.set()
         with self._changed:
             self._changed.notify_all()

@@ -46,7 +46,7 @@ class DaskWorker:
         cancelled: threading.Event | None = None,
         lane: Lane = GEOMETRY,
     ) -> T:
-        """Run the function in a process of its own; see `Worker.run`."""
+        """Run the function in a separate process; see `Worker.run`."""
         once = DaskBatch(self._cluster, lane)
         return once.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
@@ -55,19 +55,19 @@ class DaskWorker:
         return DaskBatch(self._cluster, lane, uuid.uuid4().hex)
 
     def capacity(self, lane: Lane) -> int:
-        """Number of free places of the lane, as far as this server has seen; 0 without a scheduler."""
+        """Return the number of known free places of the lane; 0 without a scheduler."""
         return self._cluster.free(lane)
 
     def answers(self) -> bool:
-        """Return whether there is a machine of the same program."""
+        """Return whether there is a machine with the same program."""
         return self._cluster.size(GEOMETRY) > 0
 
     def why_silent(self) -> str:
-        """Return why there is none, if there is none."""
+        """Return why there is no such machine, if there is none."""
         return self._cluster.why_silent()
 
     def close(self) -> None:
-        """Leave the scheduler; what still runs is killed and ends with JobCancelled."""
+        """Disconnect from the scheduler; running functions are killed and end with JobCancelled."""
         self._cluster.close()
 
 
@@ -104,4 +104,4 @@ class DaskBatch:
             raise WorkerLost("the machine that ran it was stopped") from None
 
     def close(self) -> None:
-        """Do nothing: no function runs between two others, and the waiting process ends by itself."""
+        """Do nothing: no function is running, and the waiting process ends by itself."""

@@ -47,7 +47,7 @@ class Processes:
         self._kept: dict[str, tuple[Batch, float]] = {}  # with when it was last used, latest last
 
     def outcome(self, order: Order, on_progress: Reporter | None, unwanted: threading.Event) -> Outcome:
-        """Run a request in a process of its own, or in that of its batch."""
+        """Run a request in a separate process, or in that of its batch."""
         if order.batch is None:
             return self._local.outcome(order.request, on_progress, unwanted)
         batch = self._taken(order.batch)
@@ -57,7 +57,7 @@ class Processes:
             self._keep(order.batch, batch)
 
     def close_idle(self, since: float = _IDLE, most: int | None = None) -> None:
-        """End the processes that were not used for so long [s], and the oldest beyond so many."""
+        """End the processes that were idle for this time [s], and the oldest beyond this number."""
         now, most = time.monotonic(), self._places if most is None else most
         with self._lock:
             names = list(self._kept)
@@ -105,7 +105,7 @@ class Machine(Worker):
         threading.Thread(target=self._watch, name="unwanted", daemon=True).start()
 
     def carry_out(self, key: str, order: Order, topic: str) -> Outcome:
-        """Run an order, in a thread of this worker; also what its process did not survive is an outcome."""
+        """Run an order in a thread of this worker; a crash of its process is an outcome too."""
         unwanted = self._running[key] = threading.Event()
         reporter = self._reporter(key, topic) if order.is_heard else None
         try:
@@ -118,7 +118,7 @@ class Machine(Worker):
         return outcome
 
     def end_watch(self) -> None:
-        """End the thread that looks which tasks are wanted; call it once the worker is closed."""
+        """End the thread that checks for abandoned tasks; call it once the worker is closed."""
         self._watching.set()
 
     def _reporter(self, key: str, topic: str) -> Reporter:
@@ -172,7 +172,7 @@ class Service:
                 machine.end_watch()
 
     async def _connected(self, machine: Machine) -> None:
-        """Serve the scheduler for as long as there is one."""
+        """Serve the scheduler as long as it is connected."""
         logger.warning("connecting to %s", self.settings.engine)
         try:
             await asyncio.wait_for(machine, _START)  # one that falls silent would be waited for without end

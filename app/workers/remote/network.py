@@ -19,7 +19,7 @@ CONFIGURATION = {
 
 
 def configure() -> None:
-    """Set what holds in this process, and let Dask log as the program does."""
+    """Apply Dask's configuration in this process, and let Dask log like the program."""
     dask.config.set(CONFIGURATION)
     logger = logging.getLogger("distributed")
     logger.handlers.clear()
@@ -28,10 +28,7 @@ def configure() -> None:
 
 
 def security(settings: Settings) -> Security:
-    """Return the certificates of this process.
-
-    Both ends of a connection prove who they are, or there is none.
-    """
+    """Return the certificates of this process; both ends of each connection authenticate themselves."""
     if settings.dask_ca is None:
         return Security(require_encryption=False)
     pair = {"cert": str(settings.dask_cert), "key": str(settings.dask_key)}

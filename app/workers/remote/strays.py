@@ -28,21 +28,21 @@ class Strays:
         self._lost: frozenset[str] = frozenset()
 
     def note(self, states: Mapping[str, str | None], now: float) -> None:
-        """Judge all tasks by their states at a look; None is one that the scheduler does not know."""
+        """Judge all tasks by their reported states; None means that the scheduler does not know the task."""
         outside = [key for key, state in states.items() if state not in _HELD]
         self._since = {key: self._since.get(key, now) for key in outside}
         self._without_machine = frozenset(key for key in outside if states[key] == _WITHOUT_MACHINE)
         self._lost = frozenset(key for key, since in self._since.items() if now - since > _ON_ITS_WAY)
 
     def check(self, key: str) -> None:
-        """Check that a task is on a machine, or may be on its way there.
+        """Check that a task is on a machine, or may be on its way.
 
         Raises
         ------
         NeverBegun
-            Its machine has gone before the task came there.
+            If its machine disconnected before the task arrived.
         WorkerLost
-            The scheduler does not have it.
+            If the scheduler does not know the task.
         """
         if key in self._without_machine:
             raise NeverBegun

@@ -34,7 +34,7 @@ class CarriesOut(Protocol):
     """A Dask worker of ours."""
 
     def carry_out(self, key: str, order: Order, topic: str) -> Outcome:
-        """Run a request in a process of its own; see `app.workers.remote.machine`."""
+        """Run a request in a separate process; see `app.workers.remote.machine`."""
         ...
 
 
@@ -55,10 +55,10 @@ class Places:
 
 
 def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
-    """Return the places of each lane by the address of the machine; runs in the scheduler.
+    """Return the places of each lane by the address of the machine; called in the scheduler.
 
-    A machine that is paused or says farewell has none: it takes no more tasks. `own` is part of the
-    keys of tasks of who asks, and counts them itself without delay.
+    A machine that is paused or shutting down has none. `own` is part of the keys of the caller's tasks, which
+    it counts itself without delay.
     """
     return {
         lane: {
@@ -75,7 +75,7 @@ def _of_others(tasks: Iterable[TaskState], label: str, own: str) -> int:
 
 
 def check_size(packed: PackedMessage) -> None:
-    """Refuse what is too large to be sent.
+    """Refuse a message that is too large to send.
 
     Raises
     ------

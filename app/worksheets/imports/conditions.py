@@ -24,7 +24,7 @@ class Conditions(Writer):
     """Writes conditions and cases."""
 
     def value(self, node: Node) -> Term:
-        """Return a quantity; a condition counts 1 where it holds and 0 where not."""
+        """Return a quantity; a condition is 1 if it holds and 0 otherwise."""
         term = self.term(node)
         if not term.is_truth:
             return term
@@ -86,7 +86,7 @@ class Conditions(Writer):
         raise Untranslatable("the program returns no value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
-        """Return conditions one after another; the last is `else`, or there is no value."""
+        """Return successive conditions as one; the last is `else`, or there is no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
         while waiting:

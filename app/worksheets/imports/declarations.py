@@ -122,12 +122,12 @@ def _is_speed(text: str) -> bool:
 def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """Return the unit in which a value is declared.
 
-    The first wanted one that fits, else a usual one, else SI.
+    It is the first suitable requested unit, else a common one, else SI.
 
     Raises
     ------
     Untranslatable
-        What it measures has no unit with whole powers.
+        If its kind of quantity has no unit with whole powers.
     """
     if sort.kind.base == registry.Unit("radian") and not sort.kind.turned:
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")

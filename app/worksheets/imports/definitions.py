@@ -67,7 +67,7 @@ class Definitions(ListDefinitions):
             return "left == right"
 
     def finish(self) -> None:
-        """Write the functions that nothing calls, of plain numbers where that fits their units."""
+        """Write the functions that are never called, with plain numbers if that fits their units."""
         for function in self.functions:
             outcome = self.owners[function.region]
             if function.names or outcome.state != "unverified":
@@ -131,7 +131,7 @@ class Definitions(ListDefinitions):
         self.functions.append(function)
 
     def _refuse_if_hopeless(self, function: Function) -> None:
-        """Name what a body has that no call can make good: a matrix, a loop, a name without meaning."""
+        """Refuse a body with a construct that no call can replace: a matrix, a loop, an undefined name."""
         inner: Scope = dict(function.scope)
         for key in function.parameters:
             inner[key] = Written(Term("1", axis=None))
@@ -187,7 +187,7 @@ _HOPELESS = frozenset({
 
 
 def _own_names(math: Node) -> set[str]:
-    """Return the names to which a region itself gives a meaning: what it defines, parameters, local names."""
+    """Return the names that a region itself defines: definitions, parameters, local names."""
     own = (
         set(_defined(math.parts[0])) if math.tag in ("define", "globalDefine") and math.parts else set[str]()
     )

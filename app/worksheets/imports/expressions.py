@@ -79,7 +79,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
-        """Return the term for which a name stands."""
+        """Return the term that a name refers to."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
             return self._unit(key)
@@ -103,7 +103,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return Term(f"{number(unit.number).text} {unit.unit}", POWER)
 
     def applied(self, node: Node) -> Term:
-        """Return an operator or a function, applied to what it takes."""
+        """Return an operator or a function applied to its arguments."""
         operator, parts = node.parts[0], list(node.parts[1:])
         sign = operator.tag
         if sign in REFUSED and sign not in ("transpose", "determinant"):

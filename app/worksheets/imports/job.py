@@ -32,18 +32,18 @@ def read_sheet(content: bytes) -> OriginalSheet:
     Raises
     ------
     SheetNotRead
-        It is not a sheet of Mathcad, or it is not taken; the error says why and what would be right.
+        If it is not a sheet of Mathcad, or is refused; the error gives reason and remedy.
     """
     return read_prime(content) if is_package(content) else read_legacy(content)
 
 
 def imported(content: bytes, title: str) -> ImportResult:
-    """Return a file as a worksheet, each of its regions accounted for.
+    """Return a file as a worksheet, with an outcome for each of its regions.
 
     Raises
     ------
     SheetNotRead
-        It is not a sheet of Mathcad, or it is not taken.
+        If it is not a sheet of Mathcad, or is refused.
     """
     sheet = read_sheet(content)
     outcomes = translated(sheet)

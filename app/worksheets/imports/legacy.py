@@ -29,14 +29,14 @@ _SKIPPED = {"originRef", "parentRef", "comment", "originComment", "contentHash",
 
 
 def read_legacy(content: bytes) -> OriginalSheet:
-    """Read a .xmcd file, or a .xmcdz file, which is one compressed by gzip.
+    """Read a .xmcd file, or a .xmcdz file, which is compressed by gzip.
 
-    Regions stand in the sheet, in its areas, collapsed or not, and among the words of its texts.
+    Regions are in the sheet, in its areas, collapsed or not, and in its texts.
 
     Raises
     ------
     SheetNotRead
-        It is no such file, or it is larger than a sheet may be.
+        If it is not such a file, or is too large.
     """
     if content.startswith(_GZIP):
         content = unpacked(content, Budget())

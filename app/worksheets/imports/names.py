@@ -48,7 +48,7 @@ class Names:
         self._used = set(reserved)
 
     def take(self, key: str) -> str:
-        """Return a name for something that Mathcad calls `key`; the second of one name is `x_2`."""
+        """Return a unique name for the Mathcad object `key`; the second of the same name is `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
         while name in self._used:
@@ -83,7 +83,7 @@ _SUBSCRIPT = re.compile(r"[A-Za-z0-9,*+ ]{1,20}")
 def symbol(key: str) -> str:
     r"""Return LaTeX of a name with its subscript, such as `\sigma_{c2}`.
 
-    Empty where it cannot be written so.
+    It is empty if this is impossible.
     """
     head, _, below = key.partition("_{")
     head, below = head.strip(), below.replace("{", "").replace("}", "")

@@ -41,7 +41,7 @@ class Budget:
     left: int = MOST_BYTES
 
     def spend(self, size: int) -> None:
-        """Take off bytes that were unpacked; raises SheetNotRead when there are too many."""
+        """Subtract unpacked bytes from the limit; raises SheetNotRead if there are too many."""
         self.left -= size
         if self.left < 0:
             what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
@@ -77,12 +77,12 @@ class Package:
         return tuple(part.filename for part in self._parts)
 
     def read(self, name: str) -> bytes | None:
-        """Return the content of a part, or None if there is none of this name.
+        """Return the content of a part, or None if there is none.
 
         Raises
         ------
         SheetNotRead
-            The part is damaged, or too much was unpacked.
+            If the part is damaged, or too much was unpacked.
         """
         if name not in self.names:
             return None
@@ -104,7 +104,7 @@ def unpacked(content: bytes, budget: Budget) -> bytes:
     Raises
     ------
     SheetNotRead
-        It is damaged, or it holds too much.
+        If it is damaged, or its content is too large.
     """
     pieces: list[bytes] = []
     try:
@@ -123,7 +123,7 @@ def is_package(content: bytes) -> bool:
 
 
 def _check_directory(content: bytes) -> None:
-    """Check the directory before `zipfile` reads it: it makes an object of every entry."""
+    """Check the directory before `zipfile` reads it, which creates an object for every entry."""
     place = len(content) - _END_SIZE
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))

@@ -38,7 +38,7 @@ def read_prime(content: bytes) -> OriginalSheet:
     Raises
     ------
     SheetNotRead
-        It is no such file, it is damaged, or it is larger than a sheet may be.
+        If it is not such a file, is damaged, or is too large.
     """
     budget = Budget()
     package = Package(content, budget)
@@ -99,7 +99,7 @@ class _Reader:
     count: int = field(default=0)
 
     def regions(self, node: Node, block: str = "") -> Iterator[Original]:
-        """Yield the regions within an element, and all within them, such as those of areas."""
+        """Yield the regions within an element, recursively, such as those of areas."""
         for region in node.outermost("region"):
             yield from self._region(region, block)
 
@@ -137,7 +137,7 @@ class _Reader:
         )
 
     def _text(self, body: Node) -> str:
-        """Return the words of a text region; they stand in a package of its own."""
+        """Return the words of a text region, which are in a separate package."""
         content = self.package.read(self.targets.get(body.attributes.get("item-idref", ""), ""))
         if content is None or not is_package(content):
             return body.whole_text.strip()

@@ -70,7 +70,7 @@ class ScaledNumber:
         Raises
         ------
         Untranslatable
-            A power is not a whole number, or the text is not a unit here.
+            If a power is not a whole number, or the text is not one of our units.
         """
         if any(exponent.denominator != 1 for _, exponent in self.powers):
             raise Untranslatable(
@@ -102,7 +102,7 @@ def _factor(name: str, power: int) -> str:
 
 
 def unit_named(name: str) -> ScaledNumber | None:
-    """Return Mathcad's unit of this name in ours; None if there is none."""
+    """Return Mathcad's unit of this name as one of ours; None if there is none."""
     if name == "g":
         return ScaledNumber(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
     size, ours = _SIZES.get(name, (1.0, _OURS.get(name, name)))
@@ -114,9 +114,9 @@ def unit_named(name: str) -> ScaledNumber | None:
 
 
 def scaled(node: Node, is_unit: bool = False) -> ScaledNumber | None:
-    """Return a tree of numbers and units alone, as one quantity; None where anything else is in it.
+    """Return a tree of numbers and units as one quantity; None if it contains anything else.
 
-    `is_unit` says that plain names are units, as where Mathcad asks for the unit of a result.
+    `is_unit` means that plain names are units, as in the unit of a result.
     """
     parts = node.parts
     match node.tag:

@@ -17,7 +17,7 @@ MATHEMATICAL: frozenset[Kind] = frozenset({"math"})
 
 
 def number_of(text: str | None) -> str:
-    """Return the number of a region as it is shown."""
+    """Return the displayed number of a region."""
     return (text or "")[:20]
 
 
@@ -63,7 +63,7 @@ class OriginalSheet:
 def count_regions(content: bytes) -> Counter[str]:
     """Count the regions in a document by their numbers, as the parser meets their tags.
 
-    It shares nothing with `trees` and with what reads regions from trees, so that each checks the other.
+    It shares no code with the normal reader, so that each checks the other.
     """
     counted = Counter[str]()
 

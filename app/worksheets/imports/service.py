@@ -75,7 +75,7 @@ class Imports:
         Raises
         ------
         JobFailed
-            The file is not taken, or the id is taken meanwhile.
+            If the file is refused, or the id is in use by now.
         """
         payload = job.payload
         id, sha, name = payload["id"], payload["file"], payload["name"]

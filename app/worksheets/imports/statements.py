@@ -109,7 +109,7 @@ class Statements:
         return name
 
     def expression(self, node: Node) -> Term:
-        """Return the expression of a tree; lists within it get lines of their own."""
+        """Return the expression of a tree; lists within it get separate lines."""
         at = Expressions(self, self.scope)
         if node.tag in ("matrix", "parens", "transpose"):
             return at.value(node)
@@ -117,7 +117,7 @@ class Statements:
         return at.quantity(node) or at.value(node)
 
     def _keep(self, term: Term) -> Term:
-        """Declare a list within a formula in a line of its own, and return its name."""
+        """Declare a list within a formula in a separate line, and return its name."""
         assert self.now is not None
         sort = self.declared.sort(term.text, None)
         unit, name = unit_for(sort, []), self.names.take("items")
@@ -136,7 +136,7 @@ class Statements:
         is_given: bool = False,
         words: str = "",
     ) -> Value:
-        """Write the line of a value, and let the name mean it from here on."""
+        """Write the line of a value, and define the name from here on."""
         sort = self.declared.sort(term.text, None)
         unit = unit_for(sort, [*wanted, *self._shown_in(key)] if is_rate(sort.kind.base) else wanted)
         name = self.names.take(key)
@@ -158,7 +158,7 @@ class Statements:
         return value
 
     def _shown_in(self, key: str) -> list[str]:
-        """Return the units in which results of a name alone are shown: they say what a rate counts."""
+        """Return the units in which single results are shown, which reveal the kind of a rate."""
         maths = (region.math for region in self.sheet.regions)
         results = [math for math in maths if math is not None and math.tag == "eval" and math.parts]
         return [
@@ -174,7 +174,7 @@ class Statements:
         return f' (symbol "{text}")' if text and (name != look(key)) else ""
 
     def words_for(self, name: str) -> str:
-        """Return words that no other quantity has; they make its name in the interface."""
+        """Return unique words for a quantity, which give its name in the interface."""
         words, count = name, 1
         while words.casefold() in self._words:
             count += 1
@@ -183,7 +183,7 @@ class Statements:
         return words
 
     def asked(self, value: Node, literal: ScaledNumber | None = None) -> list[str]:
-        """Return units to declare a value in: that which the region asks for, that in which it is typed."""
+        """Return units for the declaration of a value: the region's unit, then that of the typed value."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
         scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
         units = []
@@ -196,12 +196,12 @@ class Statements:
         return units
 
     def expect(self, outcome: Outcome, value: Node) -> None:
-        """Keep Mathcad's own result, to be held against the value here.
+        """Store Mathcad's own result for comparison.
 
         Raises
         ------
         Untranslatable
-            It is a complex number, or infinity.
+            If it is a complex number, or infinite.
         """
         cached = outcome.original.cached
         if cached is None:
@@ -221,7 +221,7 @@ def without_result(node: Node) -> Node:
 
 
 def _structural(sheet: OriginalSheet) -> Iterator[str]:
-    """Yield names that say how long lists are: their values are fixed when the sheet is imported."""
+    """Yield names that determine the lengths of lists: the import fixes their values."""
     for region in sheet.regions:
         if region.math is None:
             continue
@@ -239,7 +239,7 @@ def _parameter_unit(sort: Sort) -> str:
 
 
 def items_in(term: Term) -> list[str]:
-    """Return the items of a list that is written out; none of another."""
+    """Return the items of a literal list; none for other lists."""
     if not term.text.startswith("["):
         return []
     items, depth, start = [], 0, 1

@@ -66,7 +66,7 @@ class Term:
 
 
 def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
-    """Return an operator between two expressions; sums and products go on from the left."""
+    """Return an operator between two expressions; sums and products are extended on the left."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
     return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
@@ -84,12 +84,12 @@ def negative(part: Term) -> Term:
 
 
 def called(name: str, *parts: Term) -> Term:
-    """Return a function of expressions, item by item where they are lists."""
+    """Return a function of expressions, applied item by item to lists."""
     return Term(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
 
 
 def reduced(name: str, part: Term) -> Term:
-    """Return a function that makes one value of a list."""
+    """Return a function that reduces a list to one value."""
     return Term(f"{name}({part.text})")
 
 

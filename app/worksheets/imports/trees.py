@@ -29,7 +29,7 @@ class Node:
 
     @property
     def text(self) -> str:
-        """Return the text that stands in this element itself."""
+        """Return the text of this element itself."""
         return "".join(piece for piece in self.pieces if isinstance(piece, str))
 
     @property
@@ -51,7 +51,7 @@ class Node:
             waiting.extend(reversed(node.parts))
 
     def outermost(self, tag: str, *closed: str) -> Iterator[Node]:
-        """Yield the elements of a name within this one, but for those within another, or within `closed`."""
+        """Yield the outermost elements of a name within this one, except those within `closed`."""
         waiting = list(reversed(self.parts))
         while waiting:
             node = waiting.pop()

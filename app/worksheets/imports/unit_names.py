@@ -32,7 +32,7 @@ _Place = Literal["", "factor", "quantity"]
 
 
 def letters_of(regions: Iterable[Original]) -> frozenset[str]:
-    """Return the single letters that stand behind a number somewhere in a sheet, and so are units in it."""
+    """Return the single letters that follow a number somewhere in a sheet, and so are units."""
     units = set[str]()
     for region in regions:
         if region.math is not None:
@@ -59,7 +59,7 @@ def label_units(math: Node, defined: Collection[str], letters: Collection[str]) 
 
 
 def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place]]:
-    """Yield the names without a label, each with where it stands."""
+    """Yield the unlabelled names, each with its position."""
     waiting: list[tuple[Node, _Place]] = [(math, "")]
     while waiting:
         node, place = waiting.pop()
@@ -76,7 +76,7 @@ def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place
 
 
 def _is_quantity(node: Node, defined: Collection[str]) -> bool:
-    """Return whether a product is a number, or a list of such, times names that may all be units."""
+    """Return whether a product is a number, or a list of numbers, times names that may all be units."""
     leaves = list(_leaves(node))
     names = [leaf for leaf in leaves if leaf.tag == "id"]
     keys = [key_of(name) for name in names]

@@ -30,9 +30,9 @@ def text_of(title: str, outcomes: Iterable[Outcome]) -> str:
 
 
 def verified(title: str, outcomes: Sequence[Outcome]) -> str:
-    """Return the text of a worksheet without faults; each outcome is held against Mathcad's result.
+    """Return the faultless text of a worksheet; each outcome is compared with Mathcad's result.
 
-    Regions whose lines the language refuses become remarks, and so do those that need them.
+    Regions whose lines the language refuses become remarks, as do regions that depend on them.
     """
     sheet = _readable(title, outcomes)
     template = _calculated(sheet) if sheet else None
@@ -42,7 +42,7 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
-    """Return the worksheet, once what the language refuses has become remarks; None if it takes too long."""
+    """Return the worksheet after refused lines have become remarks; None if it takes too long."""
     gone: dict[str, str] = {}  # names without a line, by the region that had it
     for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))
@@ -135,7 +135,7 @@ def _compare(outcome: Outcome, template: Template | None) -> None:
 
 
 def _value(template: Template | None, name: str) -> Iterator[float]:
-    """Yield a value of the worksheet in SI, item by item; NaN where there is none."""
+    """Yield a value of the worksheet in SI, item by item; NaN if missing."""
     with np.errstate(all="ignore"):
         try:
             value = getattr(template, name)

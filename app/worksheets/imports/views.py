@@ -9,7 +9,7 @@ from app.worksheets.schemas.imports import SheetImport, SheetOrigin
 
 
 def origin(row: Row) -> SheetOrigin | None:
-    """Return the source of an imported version, in short; None if somebody typed it."""
+    """Return the source of an imported version in short; None if it was typed."""
     record = record_of(row)
     return SheetOrigin.model_validate(_short(row, record)) if record is not None else None
 

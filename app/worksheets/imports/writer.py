@@ -50,7 +50,7 @@ class Writer:
     keep: Callable[[Term], Term] | None = None
 
     def within(self, scope: Scope) -> Self:
-        """Return the same with other meanings of names."""
+        """Return the same writer with other meanings of names."""
         return replace(self, scope=scope)
 
     def term(self, node: Node) -> Term:
@@ -66,7 +66,7 @@ class Writer:
         raise NotImplementedError
 
     def value(self, node: Node) -> Term:
-        """Return a quantity; a condition counts 1 where it holds and 0 where not."""
+        """Return a quantity; a condition is 1 if it holds and 0 otherwise."""
         raise NotImplementedError
 
     def condition(self, node: Node) -> Term:

@@ -61,7 +61,15 @@ _UNIT = rf"(?:1|{_PRODUCT})(?:[*·/](?:{_FACTOR}|\({_PRODUCT}\)))*"
 _PATTERN = re.compile(_UNIT)
 _REVOLUTION = re.compile(r"(?<![A-Za-z_])r(?=/(?:min|s|h)(?![A-Za-z]))")
 """The revolution as ISO 80000-3 writes it: r/min."""
-_MIL = re.compile(r"(?<![A-Za-z_])mils?(?![A-Za-z_])")
+_AMBIGUOUS = {
+    re.compile(rf"(?<![A-Za-z_])(?:{names})(?![A-Za-z_])"): remedy
+    for names, remedy in {
+        "mils?": "write thou for 0.001 inch, mrad for an angle",
+        "[gG]rads?": "write deg for degrees, gon for hundredths of a right angle",
+        "[GM](?:rad|deg)": "write mrad or deg for an angle",
+    }.items()
+}
+"""Words that mean one unit to a reader and another to Pint: `Grad` is German for degrees, here 1e9 rad."""
 LONGEST_UNIT = 60
 
 
@@ -119,9 +127,9 @@ def unit(text: str) -> Unit:
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
         raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
-    if _MIL.search(text):
-        message = f"{text} is ambiguous: write thou for 0.001 inch, mrad for an angle"
-        raise FaultyText("ambiguous_unit", message)
+    for word, remedy in _AMBIGUOUS.items():
+        if word.search(text):
+            raise FaultyText("ambiguous_unit", f"{text} is ambiguous: {remedy}")
     forget_units()
     try:
         named = registry.Unit("" if text == "1" else _REVOLUTION.sub("rev", text))
@@ -318,6 +326,7 @@ def _measured(scale: Unit) -> str:
     return next(same, str(dimensions))
 
 
+@lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
     """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 

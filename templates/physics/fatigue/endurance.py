@@ -35,6 +35,7 @@ _HIGHEST = 1400 * MPA
 _SMALL, _MIDDLE = 2.79e-3, 51e-3
 _ADDED = 345 * MPA  # σ_F' less the ultimate strength (50 ksi), steels up to 500 HB
 FIRST, KNEE = 1e3, 1e6
+_MOST_AT_1000 = 0.9  # of the ultimate strength
 
 
 @units("Pa", returns="Pa", latex=r"\min\left(\tfrac12\,{0},700\,\mathrm{{MPa}}\right)")
@@ -79,17 +80,22 @@ def strength_coefficient(ultimate: Array) -> Array:
     return ultimate + _ADDED
 
 
-@units("Pa", returns="1", latex=r"\frac{{\sigma_F'}}{{{0}}}\left(2\cdot10^{{3}}\right)^{{b}}")
+@units(
+    "Pa",
+    returns="1",
+    latex=r"\min\left(\frac{{\sigma_F'}}{{{0}}}\left(2\cdot10^{{3}}\right)^{{b}},0.9\right)",
+)
 def share_at_1000_cycles(ultimate: Array) -> Array:
     """Return the share f [1].
 
     What of the ultimate strength [Pa] a reversed amplitude is that is borne for 1000 cycles.
 
-    σ_F' = S_u + 345 MPa, and a line through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10).
+    σ_F' = S_u + 345 MPa, and a line through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10). At
+    most 0.9, which the book takes below 70 ksi (figure 6-18): below 300 MPa the line exceeds the strength.
     """
     first = strength_coefficient(ultimate)
     b = -np.log(first / specimen_limit(ultimate)) / np.log(2 * KNEE)
-    return first / ultimate * (2 * FIRST) ** b
+    return np.minimum(first / ultimate * (2 * FIRST) ** b, _MOST_AT_1000)
 
 
 @units("Pa", returns="m", latex=r"a_{{\mathrm{{Neuber}}}}\left({0}\right)")
