@@ -65,8 +65,7 @@ async def analyse_model(
     prefer: Annotated[str | None, Header()] = None,
     units: Units = "si",
 ) -> Response:
-    """Build a model, then find stiffness, frequency or stress on its solid. An equal question is computed
-    once.
+    """Build a model, then find stiffness, frequency or stress on its solid; equal questions run once.
 
     The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
     plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
