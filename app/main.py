@@ -10,7 +10,7 @@ from functools import partial
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from fastapi import FastAPI, Response
+from fastapi import FastAPI
 from fastapi_offline import FastAPIOffline
 
 from app.approvals.routes import router as approvals
@@ -38,14 +38,11 @@ from app.designs.routes.solution import router as solving
 from app.designs.routes.variant_sheets import by_type as sheets_by_type
 from app.designs.routes.variant_sheets import router as variant_sheets
 from app.designs.routes.variants import router as variants
-from app.http import access, guard, openapi, problems, request_log
-from app.http.access import Access
-from app.http.limits import BodyLimits, RequestLimits
+from app.http import access, gate, openapi, problems, request_log
+from app.http.limits import BodyLimits
 from app.http.openapi import describe_interface, operation_id
 from app.http.pace import Pace
 from app.http.server import on_stop_signal
-from app.http.strict_requests import HttpError
-from app.identity.errors import IdentityError
 from app.identity.routes.audit import router as audit
 from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
@@ -58,7 +55,6 @@ from app.settings import Settings
 from app.settings.hosts import Hosts
 from app.solids.routes.analyses import router as analyses
 from app.solids.routes.models import router as models
-from app.storage.errors import DatabaseUnavailable
 from app.studies.routes.studies import router as studies
 from app.studies.routes.tables import router as study_tables
 from app.tolerances.routes import router as tolerances
@@ -159,10 +155,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     openapi.install(app)
     pages.install(app)
     access.install(app)
-    app.add_middleware(Access, refuse=_refused)
     body = BodyLimits(chosen.body_limit, chosen.body_seconds, chosen.slowest_rate)
-    app.add_middleware(RequestLimits, body=body, refuse=_refused)
-    guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
+    gate.install(app, Hosts(chosen.allowed_hosts, chosen.host), body, problems.refusal)
     if traces is not None:
         from app.http import request_spans
 
@@ -198,7 +192,3 @@ def spared_by_collections() -> Iterator[None]:
         yield
     finally:
         gc.unfreeze()
-
-
-def _refused(error: HttpError | IdentityError | DatabaseUnavailable) -> Response:
-    return problems.refusal(error)

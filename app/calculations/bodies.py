@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Annotated
 
 from pydantic import ConfigDict, Field, StringConstraints
+from pydantic.config import JsonDict
 
 from app.plain import JsonObject
+from app.pool.cost import points
 from app.schemas.bounds import Bounded, at_most
 from app.schemas.values import Given, Limits
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request
+NOTHING: JsonDict = {"default": {}}
+"""Describes an empty object as the default; pydantic would copy that itself at length for each request."""
 
 OIL_FILM: JsonObject = {
     "radial_load": "25 kN",
@@ -39,8 +44,16 @@ class CalculationRequest(Bounded):
     level: Text | None = Field(None, description="a fidelity by name")
     tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
     units: Annotated[dict[str, Text], at_most(200)] = Field(
-        {}, max_length=200, description="units in which outputs are wanted"
+        default_factory=dict,
+        max_length=200,
+        description="units in which outputs are wanted",
+        json_schema_extra=NOTHING,
     )
+
+    @cached_property
+    def points(self) -> int:
+        """Return the number of points that the arrays among the inputs span together."""
+        return points(self.inputs)
 
 
 class EvaluateIn(CalculationRequest):
@@ -54,7 +67,7 @@ class EvaluateIn(CalculationRequest):
         json_schema_extra={"examples": [{"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}]}
     )
 
-    limits: Limits = {}
+    limits: Limits = Field(default_factory=dict, json_schema_extra=NOTHING)
 
 
 class SolveIn(CalculationRequest):

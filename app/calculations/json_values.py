@@ -44,35 +44,55 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 def criterion(judgement: Judgement) -> JsonObject:
     """Return one criterion as JSON, without members that do not apply."""
-    unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
-    parts = {
-        "value": None if value is None else _quantity(value, unit),
-        "limit": None if limit is None else _quantity(limit, unit),
-        "band": None if judgement.band is None else _band(judgement.band, unit),
-        "relative_error": judgement.relative_error,
-        "error_stated": judgement.error_known,
-        "error_known": judgement.error_known,
-        "utilisation": judgement.utilisation,
-        "margin": None if margin is None else _quantity(margin, judgement.margin_unit),
-        "needs": judgement.needs,
-        "give": list(judgement.give) or None,
-        "reason": judgement.reason,
-        "level": judgement.level,
-        "truth": judgement.truth,
-        "where": _where(judgement.where) if judgement.where else None,
-        "points": judgement.points,
-        "counts": dict(judgement.counts) if judgement.counts else None,
-        "source": judgement.source,
-        "unverified": judgement.unverified,
-        "waived": judgement.waived,
-    }
-    present = {name: part for name, part in parts.items() if part is not None}
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    return {**names, "verdict": judgement.verdict, "sentence": sentence(judgement), **present}
+    shown: JsonObject = {**names, "verdict": judgement.verdict, "sentence": sentence(judgement)}
+    _show_numbers(judgement, shown)
+    if judgement.give:
+        shown["give"] = list(judgement.give)
+    if judgement.where:
+        shown["where"] = _where(judgement.where)
+    if judgement.points is not None:
+        shown["points"] = judgement.points
+    if judgement.counts:
+        shown["counts"] = dict(judgement.counts)
+    _show_remarks(judgement, shown)
+    return shown
 
 
-def _quantity(value: float, unit: str) -> dict[str, object] | None:
-    return {"value": value, "unit": unit} if math.isfinite(value) else None
+def _show_numbers(judgement: Judgement, shown: JsonObject) -> None:
+    """Add the numbers of a criterion to its JSON."""
+    unit, margin = judgement.unit, judgement.margin
+    shown["error_stated"] = shown["error_known"] = judgement.error_known
+    if judgement.value is not None and math.isfinite(judgement.value):
+        shown["value"] = {"value": judgement.value, "unit": unit}
+    if judgement.limit is not None and math.isfinite(judgement.limit):
+        shown["limit"] = {"value": judgement.limit, "unit": unit}
+    if margin is not None and math.isfinite(margin):
+        shown["margin"] = {"value": margin, "unit": judgement.margin_unit}
+    if judgement.band is not None:
+        shown["band"] = _band(judgement.band, unit)
+    if judgement.relative_error is not None:
+        shown["relative_error"] = judgement.relative_error
+    if judgement.utilisation is not None:
+        shown["utilisation"] = judgement.utilisation
+    if judgement.needs is not None:
+        shown["needs"] = judgement.needs
+
+
+def _show_remarks(judgement: Judgement, shown: JsonObject) -> None:
+    """Add the texts beside the numbers of a criterion to its JSON."""
+    if judgement.reason is not None:
+        shown["reason"] = judgement.reason
+    if judgement.level is not None:
+        shown["level"] = judgement.level
+    if judgement.truth is not None:
+        shown["truth"] = judgement.truth
+    if judgement.source is not None:
+        shown["source"] = judgement.source
+    if judgement.unverified is not None:
+        shown["unverified"] = judgement.unverified
+    if judgement.waived is not None:
+        shown["waived"] = judgement.waived
 
 
 def _band(band: tuple[float, float], unit: str) -> dict[str, object]:

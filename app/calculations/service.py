@@ -8,7 +8,6 @@ from app.calculations import json_values
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
 from app.plain import JsonObject
-from app.pool.cost import points
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points
@@ -86,7 +85,7 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
 
 def _limit_answer(cls: type[Template], body: EvaluateIn) -> None:
     outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
-    _limit(points(body.inputs) * max(1, outputs))
+    _limit(body.points * max(1, outputs))
 
 
 def _limit(values: int) -> None:

@@ -5,8 +5,9 @@
   the unchanged Pint; a server of a team passes only packed bytes to Dask. Importing this module applies the
   change: import it before any module that imports Pint.
 - `serve` imports without the garbage collector, which would scan all new objects repeatedly. It imports HTTPX
-without its command line, which needs Rich and Pygments, and postpones the kernel: the server reads only the
-parameters of models, and other processes draw them.
+  without its command line, which needs Rich and Pygments, and Mako, which Alembic needs, without Pygments,
+  which colours its error pages. It postpones the kernel: the server reads only the parameters of models, and
+  other processes draw them.
 """
 
 from __future__ import annotations
@@ -36,3 +37,4 @@ def begin_serving() -> None:
     gc.disable()
     on_demand.postpone()
     import_alone("httpx", without="httpx._main")
+    import_alone("mako.exceptions", without="pygments")

@@ -12,24 +12,22 @@ declarations the last one counts.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 from urllib.parse import unquote_plus
 
-from fastapi import Depends, FastAPI, Request, Response, params
+from fastapi import Depends, FastAPI, Request, params
 from starlette.datastructures import Headers
 from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.identity.door import Door
-from app.identity.errors import IdentityError, KeyInAddress, NotSignedIn, RoleNeeded
-from app.identity.limits import LimitReached
-from app.identity.principal import ANONYMOUS, Principal, Role, acting, acting_as, client_of
+from app.identity.errors import KeyInAddress, NotSignedIn, RoleNeeded
+from app.identity.principal import ANONYMOUS, Principal, Role, acting, client_of
 from app.identity.rows import Guest
 from app.observation.secrets import LENGTH, MARK, holds_key
-from app.storage.errors import DatabaseUnavailable
 from templates.core.errors import Fault, InvalidInputs
 
 SIGN_IN = "crankwright_sign_in"
@@ -46,75 +44,57 @@ _MOST_COOKIES = 8192  # bytes that are looked at
 _ESCAPED = b"%"
 
 
-class Access:
-    """ASGI middleware that finds out who sends a request.
+async def identify(scope: Scope) -> Principal:
+    """Return who sends a request; if it carries a key, only the key counts, valid or not.
 
-    Parameters
-    ----------
-    app
-        The application.
-    refuse
-        Makes the answer to an error.
+    Where keys are asked for, the scope keeps the principal and what its session needs.
+
+    Raises
+    ------
+    KeyInAddress
+        If a key stands in path or query.
+    LimitReached
+        If the principal has sent too many requests.
+    DatabaseUnavailable
+        If the database cannot be asked.
     """
+    if _has_key_in_address(scope):
+        raise KeyInAddress
+    services = getattr(scope["app"].state, "services", None)  # none before the start: there is no data
+    door: Door | None = services and services.identity.door
+    if door is None or scope["path"] in HEALTH:  # they need no role, and say so if the database is away
+        return acting()
+    if await door.is_open():
+        return acting()
+    guest = await _guest(door, scope)
+    scope[PRINCIPAL] = who = guest.principal if guest else ANONYMOUS
+    if guest:
+        scope[STILL] = partial(_is_still, door, scope, who)
+        scope[FORM_TOKEN] = guest.form_token
+        door.count(guest)
+    return who
 
-    def __init__(
-        self, app: ASGIApp, refuse: Callable[[IdentityError | DatabaseUnavailable], Response]
-    ) -> None:
-        self.app, self.refuse = app, refuse
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse a key in the address, or identify the sender and pass on."""
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return
-        if _has_key_in_address(scope):
-            await self.refuse(KeyInAddress())(scope, receive, send)
-            return
-        services = getattr(scope["app"].state, "services", None)  # none before the start: there is no data
-        door: Door | None = services and services.identity.door
-        if door is None or scope["path"] in HEALTH:  # they need no role, and say so if the database is away
-            await self.app(scope, receive, send)
-            return
-        try:
-            is_open = await door.is_open()
-            guest = None if is_open else await self._guest(door, scope)
-        except DatabaseUnavailable as error:
-            await self.refuse(error)(scope, receive, send)
-            return
-        if is_open:
-            await self.app(scope, receive, send)
-            return
-        scope[PRINCIPAL] = who = guest.principal if guest else ANONYMOUS
-        with acting_as(who):
-            try:
-                if guest:
-                    scope[STILL] = partial(self._is_still, door, scope, who)
-                    scope[FORM_TOKEN] = guest.form_token
-                    door.count(guest)
-            except LimitReached as error:
-                await self.refuse(error)(scope, receive, send)
-                return
-            await self.app(scope, receive, send)
+async def _is_still(door: Door, scope: Scope, who: Principal) -> bool:
+    """Return whether a request would still be admitted as the same principal.
 
-    async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
-        """Return whether a request would still be admitted as the same principal.
+    A stream may outlive its key.
+    """
+    guest = await _guest(door, scope)
+    return guest is not None and guest.principal == who
 
-        A stream may outlive its key.
-        """
-        guest = await self._guest(door, scope)
-        return guest is not None and guest.principal == who
 
-    async def _guest(self, door: Door, scope: Scope) -> Guest | None:
-        """Return the sender of a request; if it carries a key, only the key counts, valid or not."""
-        cookies = b""
-        for name, value in scope["headers"]:
-            if name == b"authorization":
-                sent = _BEARER.fullmatch(value)
-                return await door.by_key(sent[1].decode()) if sent else None
-            if name == b"cookie":
-                cookies = value
-        match = _SIGN_IN_COOKIE.search(cookies[:_MOST_COOKIES])
-        return await door.by_session(match[1].decode()) if match else None
+async def _guest(door: Door, scope: Scope) -> Guest | None:
+    """Return whom the key or the session of a request lets in."""
+    cookies = b""
+    for name, value in scope["headers"]:
+        if name == b"authorization":
+            sent = _BEARER.fullmatch(value)
+            return await door.by_key(sent[1].decode()) if sent else None
+        if name == b"cookie":
+            cookies = value
+    match = _SIGN_IN_COOKIE.search(cookies[:_MOST_COOKIES])
+    return await door.by_session(match[1].decode()) if match else None
 
 
 def _has_key_in_address(scope: Scope) -> bool:
@@ -189,7 +169,7 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route; the access layer has read the declaration."""
+        """Do nothing as a dependency of a route; `RoleGuard` has read the declaration."""
 
     def check(self) -> None:
         """Check the role of the acting principal.

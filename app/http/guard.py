@@ -1,4 +1,4 @@
-"""The outermost layer of the application: it stops other sites from reading, writing or framing pages.
+"""The guard stops other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
@@ -11,11 +11,10 @@ Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the r
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 
-from fastapi import FastAPI, Response
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Scope
 
 from app.http.connections import is_mere_path
 from app.http.strict_requests import HttpError
@@ -57,60 +56,14 @@ class CrossSite(HttpError):
     """The request comes from a page of another site."""
 
 
-class Guard:
-    """ASGI middleware with the three rules.
-
-    Parameters
-    ----------
-    app
-        The application.
-    hosts
-        The hosts that it answers to.
-    refuse
-        Makes the answer to an error.
-    """
-
-    def __init__(self, app: ASGIApp, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
-        self.app, self.hosts, self.refuse = app, hosts, refuse
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse the request or pass it on; add the headers to the answer."""
-        if scope["type"] not in ("http", "websocket"):
-            await self.app(scope, receive, send)
-            return
-        try:
-            check(scope, self.hosts)
-        except HttpError as error:
-            await self._refused(error, scope, receive, send)
-            return
-        await self.app(scope, receive, protected(send))
-
-    async def _refused(self, error: HttpError, scope: Scope, receive: Receive, send: Send) -> None:
-        logger.info("refused %s %.200r: %s", scope.get("method", "websocket"), scope["path"], error)
-        if scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 1008, "reason": type(error).__name__})
-            return
-        await self.refuse(error)(scope, receive, protected(send))
+_NAMES = frozenset(name for name, _ in HEADERS)
 
 
-def install(app: FastAPI, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
-    """Wrap a whole app in the guard, including its answer to an unexpected error."""
-    # `add_middleware` would leave Starlette's handler of unexpected errors outside.
-    build = app.build_middleware_stack
-    app.build_middleware_stack = lambda: Guard(build(), hosts, refuse)  # type: ignore[method-assign]
-
-
-def protected(send: Send) -> Send:
-    """Return a `send` that adds the headers which an answer does not have."""
-
-    async def add(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            given = list(message.get("headers", ()))
-            names = {name.lower() for name, _ in given}
-            message = {**message, "headers": given + [pair for pair in HEADERS if pair[0] not in names]}
-        await send(message)
-
-    return add
+def protected(given: Iterable[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Return the headers of an answer, with those of every answer that it does not have."""
+    headers = list(given)
+    own = _NAMES.intersection([name.lower() for name, _ in headers])
+    return [*headers, *(HEADERS if not own else (pair for pair in HEADERS if pair[0] not in own))]
 
 
 def check(scope: Scope, hosts: Hosts) -> None:
@@ -123,6 +76,14 @@ def check(scope: Scope, hosts: Hosts) -> None:
     CrossSite
         If it comes from another site and is not a plain link.
     """
+    try:
+        _check(scope, hosts)
+    except HttpError as error:
+        logger.info("refused %s %.200r: %s", scope.get("method", "websocket"), scope["path"], error)
+        raise
+
+
+def _check(scope: Scope, hosts: Hosts) -> None:
     looked = _looked_at(scope["headers"])
     scheme = SCHEMES[scope["scheme"]]
     server = scope.get("server")  # a list, where a server of a test passes it on

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from typing import TYPE_CHECKING
 
-from markdown_it import MarkdownIt
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
 
 _LINK = re.compile(r"(?:https?://|mailto:)[^\s]+", re.IGNORECASE)
 
@@ -16,14 +18,15 @@ def html_of(markdown: str) -> str:
     return rendered.strip()
 
 
-class _Prose(MarkdownIt):
-    """Markdown as users may write it."""
-
-    def validateLink(self, url: str) -> bool:
-        """Return whether a link may lead there."""
-        return _LINK.fullmatch(url) is not None
-
-
 @cache
 def _renderer() -> MarkdownIt:
-    return _Prose("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])
+    from markdown_it import MarkdownIt  # 60 modules, for which the start of the server does not wait
+
+    renderer = MarkdownIt("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])
+    renderer.validateLink = _is_allowed  # type: ignore[method-assign]
+    return renderer
+
+
+def _is_allowed(url: str) -> bool:
+    """Return whether a link may lead there."""
+    return _LINK.fullmatch(url) is not None

@@ -37,6 +37,31 @@ WIDTHS = (
     "give bearing_width and bearing_diameter in mm in such a ratio; level mobility_short takes 0.01 … 100"
 )
 PIN_BACK = "give speeds in rpm with which it turns by whole turns in the frame in a cycle"
+EXAMPLE: dict[str, object] = {
+    "load_x": {
+        "value": [
+            -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
+            3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
+        ],
+        "unit": "kN",
+    },
+    "load_y": {
+        "value": [
+            0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
+            0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
+        ],
+        "unit": "kN",
+    },
+    "speed": "3000 rpm",
+    "bearing_diameter": "48 mm",
+    "bearing_width": "18 mm",
+    "diametral_clearance": "0.055 mm",
+    "groove_width": "3 mm",
+    "groove_start": "-90 deg",
+    "groove_extent": "180 deg",
+    "supply_pressure": "4 bar",
+}  # fmt: skip
+"""A big end under the loads of a petrol engine, in 24 steps of its cycle."""
 
 
 class FedBearing(Template):

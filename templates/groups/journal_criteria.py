@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-
-def hot_oil(temperature: str) -> dict[str, object]:
-    """Return the criterion of the hottest oil with which plain bearings run at all, for a temperature."""
-    return {
-        "require": f"{temperature} <= 125 degC",
-        "words": "the oil is no hotter than plain bearings run with, in exceptional cases too",
-        "source": "DIN 31652-3, largest value in its table of temperatures, as textbooks quote it",
-        "unverified": "customary, source not verified: no public copy of DIN 31652-3 was at hand",
-        "warning": "oil_too_hot",
-    }
-
+from templates.groups.film_criteria import ISOVISCOUS, film_exists, hot_oil, temperature
 
 CRITERIA: dict[str, dict[str, object]] = {
     "film": {
@@ -27,12 +17,7 @@ CRITERIA: dict[str, dict[str, object]] = {
         "words": "the smallest film is not thinner than its user permits",
         "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
     },
-    "film_exists": {
-        "require": "minimum_film_thickness >= 0.05 um",
-        "words": "the film is not thinner than the finest surfaces are rough",
-        "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-        "warning": "film_too_thin",
-    },
+    "film_exists": film_exists(),
     "roughness": {
         "require": "film_parameter >= 1",
         "words": "the smallest film is thicker than the surfaces are rough",
@@ -62,12 +47,7 @@ CRITERIA: dict[str, dict[str, object]] = {
         "source": "elasticity: steel deforms by about p D/E' with E' = 210 GPa/(1 - 0.3**2) = 231 GPa",
         "warning": "pressure_deforms_bearing",
     },
-    "isoviscous": {
-        "require": "maximum_pressure <= 500 MPa",
-        "words": "the pressure does not make the oil thousands of times thicker",
-        "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
-        "warning": "pressure_thickens_oil",
-    },
+    "isoviscous": ISOVISCOUS,
     "specific_load": {
         "require": "radial_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
         "words": "the load over bore times width is within what the bearing material bears",
@@ -79,17 +59,7 @@ CRITERIA: dict[str, dict[str, object]] = {
             }
         },
     },
-    "temperature": {
-        "require": "film_temperature <= permissible_temperature",
-        "words": "the film is no hotter than the bearing material bears",
-        "limits": {
-            "permissible_temperature": {
-                "unit": "degC",
-                "words": "largest temperature that the bearing material bears",
-                "from": "bearing_material",
-            }
-        },
-    },
+    "temperature": temperature("film_temperature", "the film is no hotter than the bearing material bears"),
     "oil_temperature": {
         "require": "film_temperature <= permissible_oil_temperature",
         "words": "the film is no hotter than the oil bears",

@@ -20,9 +20,9 @@ from templates.core.language.template import (
     require,
     shared,
 )
-from templates.groups.fed_bearing import FedBearing
+from templates.groups.fed_bearing import EXAMPLE, FedBearing
 from templates.groups.film_assumptions import FULL, PARALLEL, RIGID, SMOOTH
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
     CycleBearing,
@@ -113,54 +113,20 @@ class CycleHeatBalance(Oil, FedBearing):
     level_precision = {"supplied": 1e-5}  # its secants end where a march repeats
     example = {
         "crank_angle": {"value": list(range(0, 720, 30)), "unit": "deg"},
-        "load_x": {
-            "value": [
-                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
-                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
-            ],
-            "unit": "kN",
-        },
-        "load_y": {
-            "value": [
-                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
-                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
-            ],
-            "unit": "kN",
-        },
-        "speed": "3000 rpm",
-        "bearing_diameter": "48 mm",
-        "bearing_width": "18 mm",
-        "diametral_clearance": "0.055 mm",
-        "groove_width": "3 mm",
-        "groove_start": "-90 deg",
-        "groove_extent": "180 deg",
-        "supply_pressure": "4 bar",
+        **EXAMPLE,
         "supply_temperature": "90 degC",
         "hths_viscosity": "3.5 mPa*s",
     }  # fmt: skip
     criteria = {
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "own_film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film of the cycle is not thinner than its user permits",
             "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
         },
-        "temperature": {
-            "require": "film_temperature <= permissible_temperature",
-            "words": "the film is no hotter than the bearing material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "film_temperature", "the film is no hotter than the bearing material bears"
+        ),
         "hot_oil": hot_oil("outlet_temperature"),
         "temperature_rise": {
             "require": "temperature_rise <= permissible_temperature_rise",
@@ -194,17 +160,17 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
     def sleeve_hole_counts(self) -> Truth:
-        """A hole in the sleeve feeds the film at level supplied alone."""
+        """A hole in the sleeve feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.sleeve_holed
 
     @require("pin_hole_length", warning="unused_input", remedy="take level supplied")
     def pin_hole_counts(self) -> Truth:
-        """A hole in the pin feeds the film at level supplied alone."""
+        """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
     @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
     def pressure_counts(self) -> Truth:
-        """The supply pressure drives oil from a groove; from holes at level supplied alone."""
+        """The supply pressure drives oil from a groove; from holes only at level supplied."""
         return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
 
     def ladder(self) -> tuple[str, ...]:
@@ -302,7 +268,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("1", "shear loss", symbol=r"\delta_{\gamma}", source=CROSS)
     def shear_loss(self) -> Array:
-        """The share of the viscosity that shear takes."""
+        """The relative reduction of the viscosity by shear."""
         return 1 - self.eta_e / self.eta
 
     @formula("W", "power loss", symbol="P",
@@ -329,7 +295,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}", latex="Q+Q_{p}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return all_flow(self.Q, self.Q_p)
 
     @shared

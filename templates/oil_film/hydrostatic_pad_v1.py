@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, choice, formula, given, require
+from templates.groups.film_criteria import film_exists
 from templates.physics.pads.hydrostatic import (
     CAPILLARY,
     CONSTANT_FLOW,
@@ -83,12 +84,7 @@ class HydrostaticPad(Template):
                 }
             },
         },
-        "film_exists": {
-            "require": "film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists("film_thickness"),
         "stiffness": {
             "require": "stiffness >= smallest_stiffness",
             "words": "the pad is as stiff as its user wants it",

@@ -6,6 +6,7 @@ import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, require
 from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID
+from templates.groups.film_criteria import film_exists
 from templates.groups.journal_criteria import CRITERIA
 from templates.physics.journals.loaded_journal import eccentricity_of_load, friction_over_Petrov, load_number
 from templates.physics.journals.petrov import friction_Petrov_1883
@@ -64,12 +65,7 @@ class JournalFriction(Template):
                 }
             },
         },
-        "film_exists": {
-            "require": "radial_clearance * (1 - relative_eccentricity) >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists("radial_clearance * (1 - relative_eccentricity)"),
         "laminar": CRITERIA["laminar"],
         "specific_load": {
             "require": "radial_load / (journal_diameter * bearing_width) <= permissible_specific_load",

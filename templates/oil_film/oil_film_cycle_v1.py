@@ -19,8 +19,9 @@ from templates.core.language.template import (
     shared,
     text,
 )
-from templates.groups.fed_bearing import FedBearing
+from templates.groups.fed_bearing import EXAMPLE, FedBearing
 from templates.groups.film_assumptions import FULL, ISOTHERMAL, PARALLEL, RIGID, SMOOTH
+from templates.groups.film_criteria import ISOVISCOUS, film_exists
 from templates.physics.elastic.elastic_journal import deflection_in_steel
 from templates.physics.numerics.reserve import above, below
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty, LoadCourse, load_course
@@ -148,41 +149,15 @@ class OilFilmCycle(FedBearing):
     level_precision = {"supplied": 1e-6}  # its numerical_error is a small difference of films
     example = {
         "crank_angle": {"value": [15.0 * k for k in range(24)], "unit": "deg"},
-        "load_x": {
-            "value": [
-                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
-                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
-            ],
-            "unit": "kN",
-        },
-        "load_y": {
-            "value": [
-                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
-                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
-            ],
-            "unit": "kN",
-        },
-        "speed": "3000 rpm",
-        "bearing_diameter": "48 mm",
-        "bearing_width": "18 mm",
-        "diametral_clearance": "0.055 mm",
+        **EXAMPLE,
         "dynamic_viscosity": "10 mPa*s",
-        "groove_width": "3 mm",
-        "groove_start": "-90 deg",
-        "groove_extent": "180 deg",
-        "supply_pressure": "4 bar",
     }  # fmt: skip
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film of the cycle is not thinner than the permissible one",
         },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "pressure": {
             "require": "maximum_pressure <= permissible_pressure",
             "words": "the largest pressure of the cycle is within the permissible one",
@@ -193,12 +168,7 @@ class OilFilmCycle(FedBearing):
             "source": "an estimate of the deflection at the largest pressure; see the limits",
             "warning": "elasticity_left_out",
         },
-        "isoviscous": {
-            "require": "maximum_pressure <= 500 MPa",
-            "words": "the pressure does not make the oil thousands of times thicker",
-            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
-            "warning": "pressure_thickens_oil",
-        },
+        "isoviscous": ISOVISCOUS,
         "specific_load": {
             "require": "largest_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
             "words": "the largest load over bore times width is within the static limit of the material",
@@ -230,12 +200,12 @@ class OilFilmCycle(FedBearing):
 
     @require("sleeve_hole_length", warning="unused_input", remedy=MARCH_IT)
     def sleeve_hole_counts(self) -> Truth:
-        """A hole in the sleeve feeds the film at level supplied alone."""
+        """A hole in the sleeve feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.sleeve_holed
 
     @require("pin_hole_length", warning="unused_input", remedy=MARCH_IT)
     def pin_hole_counts(self) -> Truth:
-        """A hole in the pin feeds the film at level supplied alone."""
+        """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
     @require("supply_pressure", warning="unused_input", remedy="leave it out, or see the other warnings")
@@ -358,7 +328,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def orbit(self) -> FedOrbit:
-        """The orbit, where it bears the load."""
+        """The orbit if its film carries the load."""
         return self.any_orbit.admitted(self.eps_max)
 
     @shared
@@ -439,7 +409,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}", absent=STARVED)
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q
 
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from templates.core.language.template import Array, Template, Truth, formula, given, require
 from templates.groups.film_assumptions import ISOTHERMAL, PARALLEL, RIGID, SMOOTH
+from templates.groups.film_criteria import film_exists, temperature
 from templates.physics.journals.oil import density, double_logarithm, temperature_logarithm, walther
 from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
@@ -67,12 +68,7 @@ class OilFilm(Template):
                 }
             },
         },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "specific_load": {
             "require": "radial_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
             "words": "the load over bore times width is within what the bearing material bears",
@@ -84,17 +80,9 @@ class OilFilm(Template):
                 }
             },
         },
-        "temperature": {
-            "require": "oil_outlet_temperature <= permissible_temperature",
-            "words": "the oil leaves the bearing no hotter than the bearing material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "oil_outlet_temperature", "the oil leaves the bearing no hotter than the bearing material bears"
+        ),
     }
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))

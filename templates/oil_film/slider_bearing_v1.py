@@ -19,6 +19,7 @@ from templates.core.language.template import (
     shared,
 )
 from templates.groups.film_assumptions import ISOTHERMAL
+from templates.groups.film_criteria import ISOVISCOUS, film_exists
 from templates.physics.pads.slider import reduced_Reynolds_number, squeeze_number
 from templates.physics.pads.slider_film import (
     HEIGHTS,
@@ -103,12 +104,7 @@ class SliderBearing(Template):
                 }
             },
         },
-        "film_exists": {
-            "require": "min(inlet_film, outlet_film) >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists("min(inlet_film, outlet_film)"),
         "pressure": {
             "require": "maximum_pressure <= permissible_pressure",
             "words": "the pressure of the film is within what the bearing material bears",
@@ -126,12 +122,7 @@ class SliderBearing(Template):
             "source": "elasticity: steel deforms by about p l/E' with E' = 210 GPa/(1 - 0.3**2) = 231 GPa",
             "warning": "pressure_deforms_bearing",
         },
-        "isoviscous": {
-            "require": "maximum_pressure <= 500 MPa",
-            "words": "the pressure does not make the oil thousands of times thicker",
-            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
-            "warning": "pressure_thickens_oil",
-        },
+        "isoviscous": ISOVISCOUS,
         "specific_load": {
             "require": "load / (length * width) <= permissible_specific_load",
             "words": "the load over length times width is within what the bearing material bears",

@@ -10,7 +10,7 @@ import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
 from templates.groups.film_assumptions import PARALLEL, RIGID, SMOOTH
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import friction_coefficient
 from templates.physics.journals.oil import by_law
@@ -94,12 +94,7 @@ class ThermalFilm(Oil, Template):
         "ambient_temperature": "40 degC",
     }
     criteria = {
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "own_film": {
             "require": "minimum_film_thickness >= permissible_film",
             "words": "the smallest film is not thinner than its user permits",
@@ -116,17 +111,9 @@ class ThermalFilm(Oil, Template):
                 }
             },
         },
-        "temperature": {
-            "require": "greatest_bush_temperature <= permissible_temperature",
-            "words": "the bush is no hotter than its material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "greatest_bush_temperature", "the bush is no hotter than its material bears"
+        ),
         "oil_temperature": {
             "require": "greatest_film_temperature <= permissible_oil_temperature",
             "words": "the film is nowhere hotter than the oil bears",
@@ -219,7 +206,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def case(self) -> ThermalCase:
-        """The bearing with its oil."""
+        """The bearing and its oil."""
         return ThermalCase(
             F=self.F, D=self.D, W=self.b * self.D, psi=self.psi, omega=self.omega, pressure=self.p_s,
             angle=self.phi_g, extent=self.ext_g, length=self.l_g, carry_over=self.kappa, supply=self.T_film,
@@ -320,7 +307,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q
 
     @formula("W", "heat generated", symbol=r"\Phi")
@@ -353,7 +340,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("mPa*s", "effective viscosity", symbol=r"\eta_\mathrm{eff}")
     def eta_one(self) -> Array:
-        """At that temperature."""
+        """Viscosity at the effective temperature."""
         return warm_viscosity(self.case, self.T_one)
 
     @formula("um", "film of one temperature", symbol="h_{1}", source=ISO, absent=ONE_HAS_NONE)
@@ -363,7 +350,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("W", "loss of one temperature", symbol="P_{1}", source=ISO, absent=ONE_HAS_NONE)
     def P_one(self) -> Array:
-        """The power loss that it gives."""
+        """The power loss that the effective temperature gives."""
         return self.film.one_torque * self.eta * self.omega**2 * self.W * self.D**2 / (4 * self.psi)
 
     @formula("1", "film ratio", symbol="h_{1}/h_{0}", absent=ONE_HAS_NONE)

@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.language.template import Array, Truth, formula, given, require, shared
 from templates.groups.film_assumptions import ISOTHERMAL
-from templates.groups.journal_criteria import hot_oil
+from templates.groups.film_criteria import film_exists, hot_oil, temperature
 from templates.groups.oil import Oil
 from templates.physics.journals.oil import by_law, viscosity_at
 from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_collar
@@ -76,12 +76,7 @@ class ThrustBearing(Oil):
                 }
             },
         },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
+        "film_exists": film_exists(),
         "specific_load": {
             "require": "specific_load <= permissible_specific_load",
             "words": "the load over the area of the pads is within what the bearing material bears",
@@ -93,17 +88,9 @@ class ThrustBearing(Oil):
                 }
             },
         },
-        "temperature": {
-            "require": "outlet_temperature <= permissible_temperature",
-            "words": "the oil at the outlet is no hotter than the bearing material bears",
-            "limits": {
-                "permissible_temperature": {
-                    "unit": "degC",
-                    "words": "largest temperature that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "temperature": temperature(
+            "outlet_temperature", "the oil at the outlet is no hotter than the bearing material bears"
+        ),
         "hot_oil": hot_oil("outlet_temperature"),
         "laminar": {
             "require": "film_reynolds_number <= 1000",

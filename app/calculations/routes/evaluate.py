@@ -25,7 +25,7 @@ from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
 from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
-from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, points, solving_seconds, writing_seconds
+from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
@@ -128,7 +128,7 @@ async def evaluate_template(
     services = services_of(request)
     cls = await services.catalogues.tried(id, number)
     form = _form(request, "evaluate")
-    if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
+    if form == "json" and body.points <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
         return await _answered(request, await _question(request, id, number, "evaluate"))

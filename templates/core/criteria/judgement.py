@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
 from templates.core.units.units import unit_symbol
@@ -89,29 +89,29 @@ class Judgement:
 
     @property
     def is_open(self) -> bool:
-        """Return whether a finer calculation may tell more: undecided, or compared with an unknown error."""
+        """Return whether a finer calculation may change the verdict: undecided, or with an unknown error."""
         is_compared = self.verdict in ("met", "not_met") and self.margin is not None
         return self.verdict == "undecided" or (is_compared and not self.error_known)
 
     @property
     def sides(self) -> tuple[str, str]:
         """Return the texts of value and limit."""
-        value, _, limit = self.require.partition(self.sign)
-        return value.strip(), limit.strip()
+        parts = _parts_of(self.require)
+        return parts.value, parts.limit
 
     @property
     def sign(self) -> str:
         """Return the sign between value and limit that is required."""
-        return sign_of(self.require)
+        return _parts_of(self.require).sign
 
     @property
     def has_fixed_limit(self) -> bool:
-        """Return whether the limit is a number that stands in the criterion itself."""
-        return self.sides[1].removeprefix("-")[:1].isdigit()
+        """Return whether the limit is a literal number in the criterion."""
+        return _is_number(_parts_of(self.require).limit)
 
     @property
     def misses(self) -> bool:
-        """Return whether the value, its error aside, lies beyond the limit."""
+        """Return whether the value itself, without its error, violates the limit."""
         return self.margin is not None and self.margin < 0
 
 
@@ -137,26 +137,47 @@ def verdict_sentence(
     error_known: bool,
     truth: str | None,
 ) -> str:
-    """Return the sentence on what is required, with value, limit and their unit where there are any."""
-    sign = sign_of(require)
-    left, right = (side.strip() for side in require.split(sign))
+    """Return the sentence on a requirement, with value, limit and their unit if present."""
+    parts = _parts_of(require)
     words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
     if numbers is None or not all(map(math.isfinite, numbers[:2])):
-        return f"{_name(left)} {sign} {_name(right)}: {words}"
+        return f"{parts.written}: {words}"
     value, limit, unit = numbers
-    actual = {">=": "<", "<=": ">"}[sign] if misses else sign
+    actual = {">=": "<", "<=": ">"}[parts.sign] if misses else parts.sign
     unknown = "" if error_known or verdict == "not_checked" else "; error unknown"
-    sides = Side(_in_words(left), value), Side(_in_words(right), limit)
+    sides = Side(parts.value_words, value), Side(parts.limit_words, limit)
     return f"{compared(sides[0], actual, sides[1], unit)}: {words}{unknown}"
 
 
-def sign_of(require: str) -> str:
-    """Return the sign between value and limit that is required."""
-    return ">=" if ">=" in require else "<="
+class _Parts(NamedTuple):
+    """A comparison that is required, taken apart.
+
+    `written` is the whole with its names in words; the words of each side stand before its number.
+    """
+
+    sign: str
+    value: str
+    limit: str
+    value_words: str
+    limit_words: str
+    written: str
+
+
+@lru_cache(maxsize=1024)  # criteria of worksheets and of designs come and go
+def _parts_of(require: str) -> _Parts:
+    sign = ">=" if ">=" in require else "<="
+    left, _, right = require.partition(sign)
+    value, limit = left.strip(), right.strip()
+    written = f"{_name(value)} {sign} {_name(limit)}"
+    return _Parts(sign, value, limit, _in_words(value), _in_words(limit), written)
+
+
+def _is_number(side: str) -> bool:
+    return side.removeprefix("-")[:1].isdigit()
 
 
 def is_model(truth: str | None) -> bool:
-    """Return whether a truth is a model named in words, such as `rigid film`; others are names of levels."""
+    """Return whether a truth is a model described in words, such as `rigid film`, not a level."""
     return truth is not None and " " in truth
 
 
@@ -165,18 +186,16 @@ def not_judged(judgement: Judgement) -> str:
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
-@lru_cache(maxsize=1024)
 def _in_words(text: str) -> str:
-    """Return a side in words; a number stands for itself, and is shown as the value."""
-    if text.removeprefix("-")[:1].isdigit():
+    """Return a side in words; a number is shown as it is."""
+    if _is_number(text):
         return ""
     return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="
 
 
 def _name(text: str) -> str:
-    """Return names in words, without the steps before them; a number stays as it is written."""
-    is_number = text.removeprefix("-")[:1].isdigit()
-    return text if is_number else _NAME.sub(lambda name: name[1].replace("_", " "), text)
+    """Return names in words, without the steps before them; a number stays as written."""
+    return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
 
 
 @dataclass(frozen=True)
@@ -200,7 +219,7 @@ def compared(left: Side, sign: str, right: Side, unit: str) -> str:
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Return two numbers in so many digits that they differ, unless they are equal."""
+    """Return two numbers with enough digits to differ, unless they are equal."""
     texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
     digits = DIGITS
     while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:

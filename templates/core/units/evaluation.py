@@ -29,14 +29,11 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
             parts = [value_of(argument, values) for argument in node.arguments]
             return listwise(node.operation, parts, [np.ndim(part) for part in parts])
         return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
-    match node:
-        case Name(name=name):
-            return values[name]
-        case Constant(value=value):
-            return value
-        case Item():
-            return values[node.text]
-    return node.text  # a word is compared with a word
+    if isinstance(node, Name):
+        return values[node.name]
+    if isinstance(node, Constant):
+        return node.value
+    return values[node.text] if isinstance(node, Item) else node.text  # a word is compared with a word
 
 
 def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:

@@ -8,12 +8,15 @@ import pytest
 from fastapi import FastAPI, Request
 from pydantic import ValidationError
 
-from app.http import guard, problems
+from app.http import gate, guard, problems
 from app.http.access import COOKIE, HEADER, TheClient
+from app.http.limits import BodyLimits
 from app.main import create_app
 from app.settings import Settings
 from app.settings.hosts import Authority, Hosts, is_loopback, parse
 from app.web.shared.session import keep_session
+
+BODY = BodyLimits(2**20, 10.0, 1000.0)
 
 
 def send(app, method="GET", path="/healthz", base="http://localhost", **more):
@@ -195,7 +198,7 @@ class TestSockets:
             sent.append(message)
 
         scope = {"type": "websocket", "scheme": "ws", "path": "/", "headers": [*headers], "server": None}
-        asyncio.run(guard.Guard(app, Hosts(), problems.answer)(scope, None, take))
+        asyncio.run(gate.Gate(app, Hosts(), BODY, problems.refusal)(scope, None, take))
         return not reached and sent[0]["type"] == "websocket.close"
 
     def test_other_sites_open_no_web_socket(self):
@@ -221,7 +224,7 @@ class TestHeaders:
 
     def test_what_a_route_says_stays(self):
         app = FastAPI()
-        guard.install(app, Hosts(), problems.answer)
+        gate.install(app, Hosts(), BODY, problems.refusal)
 
         @app.get("/own")
         async def own() -> problems.Response:
@@ -261,7 +264,7 @@ class TestCaller:
     def app(self):
         """A route that says for whom it is called, behind the guard."""
         app = FastAPI()
-        guard.install(app, Hosts(), lambda error: problems.answer(problems.describe(error)))
+        gate.install(app, Hosts(), BODY, problems.refusal)
 
         @app.get("/api/v1/who")
         async def who(client: TheClient) -> dict[str, str]:

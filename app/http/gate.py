@@ -1,0 +1,132 @@
+"""The gate: one layer that every request passes before its route is looked for.
+
+It refuses what another site may have had a browser send (`guard`), what is too large or comes too slowly
+(`limits`), and a key that is not valid where keys are asked for (`access`). It answers in the application's
+stead where nothing else has answered: an unexpected error, and a request that the end of the service cancels.
+uvicorn cancels what is in flight at the end of the drain time; nothing else in the service cancels a request.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.middleware.asyncexitstack import AsyncExitStackMiddleware
+from starlette.middleware.exceptions import ExceptionMiddleware
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.http import access, guard
+from app.http.limits import BodyLimits, ServiceStopping
+from app.http.strict_requests import HttpError
+from app.identity.errors import IdentityError
+from app.identity.principal import ACTING
+from app.settings.hosts import Hosts
+from app.storage.errors import DatabaseUnavailable
+
+Refusal = HttpError | IdentityError | DatabaseUnavailable
+Unexpected = Callable[[Request, Exception], Awaitable[Response]]
+
+
+class Gate:
+    """ASGI middleware with all checks that need no route.
+
+    Parameters
+    ----------
+    app
+        The application.
+    hosts
+        The hosts that it answers to.
+    body
+        Limits on the body.
+    refuse
+        Makes the answer to a refused request.
+    unexpected
+        Makes the answer to an error that nobody expects; without it there is none.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        hosts: Hosts,
+        body: BodyLimits,
+        refuse: Callable[[Refusal], Response],
+        unexpected: Unexpected | None = None,
+    ) -> None:
+        self.app, self.hosts, self.body = app, hosts, body
+        self.refuse, self.unexpected = refuse, unexpected
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse, or pass on as the principal that sends the request; add the headers to what is answered."""
+        if scope["type"] != "http":
+            await self._passed(scope, receive, send)
+            return
+        answer = _Answer(send)
+        try:
+            await self._admitted(scope, receive, answer)
+        except asyncio.CancelledError:
+            if answer.has_begun:
+                raise
+            stopping = ServiceStopping("the service stopped before the answer was ready")
+            await self.refuse(stopping)(scope, receive, answer)
+        except Exception as error:
+            if self.unexpected is not None and not answer.has_begun:
+                await (await self.unexpected(Request(scope), error))(scope, receive, answer)
+            raise  # the server logs it
+
+    async def _admitted(self, scope: Scope, receive: Receive, answer: _Answer) -> None:
+        try:
+            guard.check(scope, self.hosts)
+            limited = self.body.admit(scope, receive)
+            sender = await access.identify(scope)
+        except (HttpError, IdentityError, DatabaseUnavailable) as error:
+            await self.refuse(error)(scope, receive, answer)
+            return
+        token = ACTING.set(sender)
+        try:
+            await self.app(scope, limited, answer)
+        finally:
+            ACTING.reset(token)
+
+    async def _passed(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on what is no request of HTTP; refuse a WebSocket of another site."""
+        if scope["type"] == "websocket":
+            try:
+                guard.check(scope, self.hosts)
+            except HttpError as error:
+                await send({"type": "websocket.close", "code": 1008, "reason": type(error).__name__})
+                return
+        await self.app(scope, receive, send)
+
+
+class _Answer:
+    """The `send` of a request: it adds the headers that every answer carries."""
+
+    __slots__ = ("_send", "has_begun")
+
+    def __init__(self, send: Send) -> None:
+        self._send, self.has_begun = send, False
+
+    async def __call__(self, message: Message) -> None:
+        if message["type"] == "http.response.start":
+            self.has_begun = True
+            message["headers"] = guard.protected(message.get("headers", ()))
+        await self._send(message)
+
+
+def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refusal], Response]) -> None:
+    """Put the gate around all of an app, its middleware and its answers to errors.
+
+    It stands in the place of Starlette's layer for unexpected errors, which would be inside.
+    """
+
+    def built() -> ASGIApp:
+        handlers: dict[Any, Any] = {**app.exception_handlers}
+        unexpected = handlers.pop(Exception, None)
+        inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
+        for layer in reversed(app.user_middleware):
+            inner = layer.cls(inner, *layer.args, **layer.kwargs)
+        return Gate(inner, hosts, body, refuse, unexpected)
+
+    app.build_middleware_stack = built  # type: ignore[method-assign]
