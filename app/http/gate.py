@@ -1,9 +1,9 @@
-"""The gate: one layer that every request passes before its route is looked for.
+"""The gate: one layer that every request passes before the search for its route.
 
-It refuses what another site may have had a browser send (`guard`), what is too large or comes too slowly
-(`limits`), and a key that is not valid where keys are asked for (`access`). It answers in the application's
-stead where nothing else has answered: an unexpected error, and a request that the end of the service cancels.
-uvicorn cancels what is in flight at the end of the drain time; nothing else in the service cancels a request.
+It refuses requests that another site may have made a browser send (`guard`), requests that are too large or
+too slow (`limits`), and invalid keys where keys are required (`access`). It also answers unexpected errors,
+and requests that are cancelled when the service ends. Only uvicorn cancels requests: those that still run at
+the end of the drain time.
 """
 
 from __future__ import annotations
