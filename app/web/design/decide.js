@@ -20,7 +20,7 @@ export function startDecide(api, patch) {
     place.textContent = "calculating at finer levels where that decides …";
     try {
       const payload = await decision(api);
-      showVerdict(payload);
+      await showVerdict(payload);
       place.textContent = summary(payload);
     } catch (error) {
       place.textContent = error.message;
