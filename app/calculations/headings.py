@@ -61,6 +61,8 @@ def heading_unit(text: str) -> HeadingUnit:
         return HeadingUnit("1")
     if len(plain) > LONGEST_UNIT:
         return HeadingUnit(unit(plain).text)
+    if plain == "Grad":
+        return HeadingUnit("deg", assumed="Grad: degrees")
     if _CRANK.fullmatch(plain):
         return HeadingUnit("deg", assumed=plain, is_crank=True)
     if match := _PRESSURE.fullmatch(plain):

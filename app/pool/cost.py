@@ -57,6 +57,18 @@ def estimated_seconds(
     return numbers * PER_NUMBER + _evaluating(cls, levels, points, outputs) + _profiles(cls, shapes, outputs)
 
 
+def level_seconds(
+    template: Template, inputs: Mapping[str, Raw], level: str, outputs: Collection[str]
+) -> float:
+    """Estimate the time of outputs of a template at another of its levels [s].
+
+    By the time to expect that its table states, which is nearer than the cost of the level.
+    """
+    measured = accuracy(type(template))
+    expected = measured.seconds(template, level) if measured else None
+    return estimated_seconds(type(template), inputs, level, None, outputs) if expected is None else expected
+
+
 def array_seconds(
     cls: type[Template], level: str | None, points: int, outputs: Collection[str], calls: int, places: int
 ) -> float:

@@ -209,6 +209,24 @@ def announce(text: str) -> None:
         caller.report(0.0, text)
 
 
+@contextmanager
+def stage(first: float, last: float, name: str) -> Iterator[None]:
+    """Let what is calculated here report its progress as a part of the whole, from `first` to `last`.
+
+    The name of the part stands before each text; none if it is empty.
+    """
+    caller = _caller.get()
+    if caller is None or caller.report is None:
+        yield
+        return
+    whole, head = caller.report, f"{name}: " if name else ""
+    caller.report = lambda share, text: whole(first + (last - first) * share, head + text)
+    try:
+        yield
+    finally:
+        caller.report = whole
+
+
 def present_caller() -> Caller | None:
     """Return for whom this context evaluates steps."""
     return _caller.get()

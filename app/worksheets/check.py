@@ -19,6 +19,7 @@ from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.ledger import Notice
 from templates.core.language.spec import Requirement
 from templates.core.language.template import Template
+from templates.core.language.violations import required
 from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import describe
 from templates.core.sheets import Sheet, SheetRefused, Statement, read, run_tests
@@ -177,8 +178,7 @@ def _of_value(name: str, example: _Example) -> _Result:
 def _of_rule(rule: Requirement | None, example: _Example) -> _Result:
     if rule is None:
         return _Result()
-    refusal = f"{rule.sentence}, but "
-    broken = next((fault.detail for fault in example.faults if fault.detail.startswith(refusal)), None)
+    broken = next((fault.detail for fault in example.faults if required(rule) in fault.detail), None)
     if broken is None and example.faults:
         return _Result(verdict="not_checked", message="the example is refused")
     return _Result(verdict="not_met" if broken else "met", message=broken)

@@ -173,6 +173,7 @@ def test_the_tolerance_of_a_wall_joins_bore_and_back(shells: str, lining: str) -
     )
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("shells", ["upper", "full"])
 @pytest.mark.parametrize("angle", ["180 deg", "100 deg"])
 @pytest.mark.parametrize(

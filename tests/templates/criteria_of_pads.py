@@ -72,9 +72,11 @@ CASES = [
     (WARM, "film_exists", {}, {}, "met", 62.892908, 0.05),
     (WARM, "film_exists", TINY, {}, "not_met", 0.045444698, 0.05),
     (WARM, "own_film", {}, {"permissible_film": "20 um"}, "met", 62.892908, 20),
-    (WARM, "own_film", {}, {"permissible_film": "65 um"}, "not_met", 62.892908, 65),
+    # the stated error of 1.9 of the truth bounds no film from above; TINY lies where no error is stated
+    (WARM, "own_film", {}, {"permissible_film": "65 um"}, "undecided", 62.892908, 65),
+    (WARM, "own_film", TINY, {"permissible_film": "0.06 um"}, "not_met", 0.045444698, 0.06),
     (WARM, "pressure", {}, BABBITT, "met", 1.8252060, 20.6),
-    (WARM, "pressure", {}, {"permissible_pressure": "1.5 MPa"}, "not_met", 1.8252060, 1.5),
+    (WARM, "pressure", {}, {"permissible_pressure": "1.3 MPa"}, "not_met", 1.8252060, 1.3),
     (WARM, "temperature", {}, BABBITT, "met", 47.967924, 150),
     (WARM, "temperature", {}, {"permissible_temperature": "45 degC"}, "not_met", 47.967924, 45),
     (WARM, "oil_temperature", {}, {"permissible_oil_temperature": "48 degC"}, "met", 47.967924, 48),

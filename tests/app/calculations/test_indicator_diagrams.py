@@ -90,6 +90,11 @@ class TestHeadings:
         assert curves == {"phi": ([0, 90], "deg"), "p": ([1, 2], "bar")}
         assert assumed == [written]
 
+    def test_degrees_in_german(self):
+        curves, assumed = read("KW [Grad],p [bar]\n0,1.5\n90,2.5\n")
+        assert curves["kw"] == ([0, 90], "deg")
+        assert "Grad: degrees" in assumed
+
     @pytest.mark.parametrize(
         ("written", "kind", "unit"),
         [

@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from templates.core.errors import FaultyText, InvalidInputs
@@ -21,6 +22,15 @@ def test_mil_is_refused_and_thou_is_named(text):
     assert refusal.value.code == "ambiguous_unit"
     assert read("2 thou", "mm").si == pytest.approx(50.8e-6, rel=1e-12)
     assert read("2 mrad", "rad").si == pytest.approx(0.002, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["10 Grad", "10 grad", "10 N*m/Grad", "1 Mrad", "1 Gdeg"])
+def test_degrees_in_german_are_refused_and_deg_is_named(text):
+    """Pint would take `Grad` for 1e9 rad."""
+    with pytest.raises(FaultyText, match=r"write .*deg") as refusal:
+        read_any(text)
+    assert refusal.value.code == "ambiguous_unit"
+    assert read("100 gon", "deg").si == pytest.approx(np.pi / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(("text", "same"), [("r/min", "rpm"), ("r/s", "rev/s"), ("kN*mm/(r/min)", None)])

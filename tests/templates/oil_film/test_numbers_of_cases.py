@@ -94,6 +94,12 @@ def test_grooves_of_several_widths_are_answered_each():
                 assert many[output].value[k] == pytest.approx(alone[output].value, rel=1e-6), (name, output)
 
 
+@pytest.mark.parametrize("level", ["mobility_grooved", pytest.param("supplied", marks=pytest.mark.slow)])
+def test_what_the_supply_drives_through_the_groove_is_in_the_side_flow(level):
+    flow = answer("oil_film_cycle", level=level, supply_pressure="96 bar").outputs["side_flow"]
+    assert (flow.value, flow.unit) == (pytest.approx(8.42, rel=0.02), "l/min")
+
+
 def test_a_width_beyond_the_map_is_refused_by_name():
     """Half a millimetre on 100 mm is 0.005: refused alone, and as the second of two points."""
     with pytest.raises(InvalidInputs, match="width ratio"):

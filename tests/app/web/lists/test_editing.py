@@ -89,7 +89,7 @@ def test_a_list_of_quantities_and_relations_is_edited_by_keyboard_and_saved(watc
 
 
 def test_items_and_texts_become_each_other(watched):
-    watched.open("/")
+    watched.open("/worksheets/new")  # a page that draws no pictures of designs
     script = (
         "async (texts) => { const m = await import('/static/lists/items.js'); return texts.map(m.itemsOf) }"
     )
