@@ -122,8 +122,8 @@ def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refu
     """
 
     def built() -> ASGIApp:
-        handlers = {**app.exception_handlers}
-        unexpected = cast("Unexpected | None", handlers.pop(Exception, None))  # ours is a coroutine
+        handlers = {kind: one for kind, one in app.exception_handlers.items() if kind is not Exception}
+        unexpected = cast("Unexpected | None", app.exception_handlers.get(Exception))
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)
