@@ -19,7 +19,7 @@ class Reference(NamedTuple):  # millions are hashed
     def parse(cls, name: str) -> Reference:
         """Return the reference that a name in a relation means.
 
-        Whether it exists is for the network to say.
+        The network checks whether it exists.
         """
         block, *inside = name.split(".", 2)
         if not inside:

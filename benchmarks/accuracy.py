@@ -2,6 +2,7 @@
 
 python -m benchmarks.accuracy measure    about 9 minutes: writes templates/oil_film/*.accuracy.json
 python -m benchmarks.accuracy costs      the costs alone
+python -m benchmarks.accuracy expected   the time to expect of an evaluation; after `measure`
 python -m benchmarks.accuracy own        the errors that other bearings state, from `benchmarks.shapes`
 python -m benchmarks.accuracy_picture  docs/pictures/oil_film_accuracy.png from those files
 
@@ -39,6 +40,7 @@ from benchmarks.truths import (
 )
 from templates.core.arrays import Array
 from templates.core.criteria.bands import CONVENTION, relative_error
+from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import MESH_ERRORS, OilFilm
@@ -333,5 +335,33 @@ def costs() -> None:
     write(OilFilm, content)
 
 
+def expected() -> None:
+    """Measure what a point takes in an evaluation, at levels that take few points, and nothing else [s].
+
+    The geometric mean of the measures of the film alone, and of these with stiffness and damping, over some
+    loads of the example.
+    """
+    path = FOLDER / "oil_film_v2.accuracy.json"
+    content = json.loads(path.read_text(encoding="utf-8"))
+    content["expected_seconds"] = {
+        level: {"cases": {"": _evaluating(level)}} for level in OilFilm.most_points
+    }
+    print(content["expected_seconds"])
+    write(OilFilm, content)
+
+
+def _evaluating(level: str) -> float:
+    times = []
+    for outputs in (
+        ["minimum_film_thickness", "maximum_pressure"],
+        ["minimum_film_thickness", "stiffness_xx"],
+    ):
+        for load in ("5 kN", "25 kN", "25 kN", "100 kN"):
+            begin = process_time()
+            evaluate(OilFilm, {**OilFilm.example, "radial_load": load}, level=level, outputs=outputs)
+            times.append(process_time() - begin)
+    return float(f"{np.exp(np.mean(np.log(times))):.2g}")
+
+
 if __name__ == "__main__":
-    {"measure": measure, "costs": costs, "own": own}[sys.argv[1]]()
+    {"measure": measure, "costs": costs, "own": own, "expected": expected}[sys.argv[1]]()

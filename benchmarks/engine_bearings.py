@@ -181,14 +181,14 @@ def main() -> None:
 
 def report(rows: list[Row]) -> None:
     """Print how many bearings are decided, and the cost."""
+    starved = [one for one in rows if "starved" in (one["refused"] or "")]
     whole = [one for one in rows if "verdicts" in one]
-    ended = [one for one in whole if not one["open"]]
-    stated = [one for one in whole if one["open"] and len(one["errors"]) == len(OWN)]
-    refused = [one["refused"] for one in rows if "verdicts" not in one]
-    starved = sum("starved" in reason for reason in refused)
+    left = [one for one in whole if one not in starved]
+    ended = [one for one in left if not one["open"]]
+    stated = [one for one in left if one["open"] and len(one["errors"]) == len(OWN)]
+    others = len(rows) - len(ended) - len(stated) - len(starved)
     print(f"{len(rows)} bearings: {len(ended)} decided, {len(stated)} undecided with a stated error, "
-          f"{len(whole) - len(ended) - len(stated)} without, {starved} refused as starved, "
-          f"{len(refused) - starved} refused for another reason")  # fmt: skip
+          f"{len(starved)} refused as starved, {others} without")  # fmt: skip
     print(f"climbed to supplied: {sum(one['level'] == 'supplied' for one in whole)}")
     seconds = np.array([one["seconds"] for one in whole])
     print(f"processor s a bearing: mean {seconds.mean():.2f}, median {np.median(seconds):.2f}, "

@@ -181,7 +181,7 @@ class Calculation:
         return [*self._warnings, *criterion_warnings(self.template, self._answers, self._errors)]
 
     def answer(self, name: str) -> Answer:
-        """Return a result as the service would: a value in its unit, or none with the reason.
+        """Return a result like the service: a value in its unit, or no value and the reason.
 
         Raises
         ------
@@ -219,7 +219,7 @@ class Errors(dict[str, Any]):
 
 
 def _plain(error: Any) -> Any:
-    """A single estimate as a float, None where it is not known; an array as it is."""
+    """Return a single estimate as a float, or None if it is unknown; an array unchanged."""
     if error is None or np.ndim(error):
         return error
     return None if error != error else float(error)
@@ -234,7 +234,10 @@ def _refuse_names(cls: type[Template], level: str | None, outputs: Iterable[str]
 
 
 def _written(value: Any) -> Any:
-    """An input as the template language reads it; Pint quantities, alone or in lists, by their units."""
+    """Return an input in the form that the template language reads.
+
+    Pint quantities become texts with units.
+    """
     if isinstance(value, pint.Quantity):
         return {"value": _listed(value.magnitude), "unit": f"{value.units:~C}" or "1"}
     if isinstance(value, list | tuple):

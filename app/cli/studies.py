@@ -131,7 +131,9 @@ def _single_outputs(client: Client, design: str) -> list[str]:
 def _followed(study: ClientStudy) -> Study:
     """Return the study at its end; show its progress as a bar on a terminal."""
     shown = study.study
-    click.echo(f"study {study.id}: {shown.rows} rows, about {shown.estimate.seconds:.2g} s", err=True)
+    seconds, solids = shown.estimate.seconds, shown.estimate.solids
+    cost = [f"about {seconds:.2g} s"] * (seconds is not None) + [f"{solids} solids to build"] * bool(solids)
+    click.echo(", ".join([f"study {study.id}: {shown.rows} rows", *cost]), err=True)
     with click.progressbar(length=1000, label="rows", file=sys.stderr) as bar:
         done = 0
 

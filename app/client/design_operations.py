@@ -156,14 +156,16 @@ def decide(
     criteria: list[str] | None = None,
     budget: str = "30 s",
     *,
+    estimate_only: bool = False,
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Decision]:
-    """Decide undecided criteria, all if none are named, with finer levels if necessary.
+    """Decide criteria of a design and its variants, all if none are named: finer levels where needed.
 
-    The quantities of the answer are in `units`, "si" or "us".
+    With `estimate_only`, the answer names the first levels with their times, and nothing is calculated. The
+    quantities of the answer are in `units`, "si" or "us".
     """
-    body = {"criteria": criteria, "budget": budget}
+    body = {"criteria": criteria, "budget": budget, "estimate_only": estimate_only}
     return calculated(Decision, post(f"/designs/{id}/decide?units={units}", body), on_progress)
 
 

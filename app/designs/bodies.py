@@ -78,7 +78,7 @@ class CopyIn(Bounded):
 
 
 class DecideIn(Bounded):
-    """The criteria to decide, and the time that may take."""
+    """The criteria of a design and its variants to decide, and the time that may take."""
 
     model_config = ConfigDict(
         strict=True,
@@ -89,6 +89,9 @@ class DecideIn(Bounded):
         None, description="by name; all that are undecided, if not given"
     )
     budget: Given = Field("30 s", description="after which no further level begins")
+    estimate_only: bool = Field(
+        False, description="only the levels that would be calculated first are named, with their times"
+    )
 
 
 def _named(values: JsonDict) -> JsonDict:

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from app.calculations.json_values import rendered
 from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.decision import Climb, ClimbResult, Trial
+from app.designs.engine.decision import STOPS, Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.errors import DesignError
 from app.designs.graph import raise_if
 from app.designs.questions import calculated_revision, settled
-from app.designs.schemas.decision import Decision, LevelTrial
+from app.designs.schemas.decision import Decision, LevelTrial, VariantDecision
+from app.designs.variants.names import BASE, natural
+from app.designs.variants.together import Available, together
+from app.designs.variants.verdict import merged
 from app.plain import JsonObject, Raw
 from app.pool.questions import DECISION, Kind, Reply, json_answer, json_form
+from app.pool.steps import stage
 from app.presentation.units import System
 from app.schemas.answers import Quantity
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built
 from app.storage.database import Database
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
@@ -26,9 +35,9 @@ LONGEST_BUDGET = 600.0  # s
 
 @dataclass(frozen=True)
 class DecisionQuestion:
-    """The criteria of a design to decide (all, if None), and the time that may take [s].
+    """The criteria of a design and its variants to decide (all, if None), and the time that may take [s].
 
-    The answer has its quantities in `units`.
+    The answer has its quantities in `units`. With `estimate_only` nothing is calculated at finer levels.
     """
 
     design: str
@@ -36,6 +45,7 @@ class DecisionQuestion:
     budget: float
     revision: int | None = None
     units: System = "si"
+    estimate_only: bool = False
 
 
 def read_budget(raw: Raw) -> float:
@@ -66,44 +76,90 @@ def decided(
     InvalidInputs
         If a criterion is named that the design does not have.
     """
-    row, _, calculation = calculated_revision(asked, database, catalogues)
+    row, document, calculation = calculated_revision(asked, database, catalogues)
     raise_if(calculation.faults)
-    number = row.number
     names = Verdicts(calculation).names()
     unknown = (name for name in asked.criteria or () if name not in names)
     raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
-    if calculation.deferred:
-        decision = _shown(number, asked, _pending(calculation))
-    else:
-        decision = _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
-    is_whole = decision.stopped != "pending"
-    return Reply(decision, None if is_whole else replace(asked, revision=number))
+    variants = _variants(document, Available(catalogues, built(database), analysed(database)))
+    results = _decided(asked, {BASE: calculation, **variants})
+    is_whole = all(result.stopped != "pending" for result in results.values())
+    answer = _shown(row.number, asked, results)
+    return Reply(answer, None if is_whole else replace(asked, revision=row.number))
+
+
+def _variants(document: Document, available: Available) -> dict[str, Calculation]:
+    """Return the variants that can be calculated, as designs of their own; none of one that iterates."""
+    if document.iterations:
+        return {}
+    outcomes = sorted(together(document, available), key=lambda outcome: natural(outcome.name))
+    return {one.name: one.calculation for one in outcomes if one.calculation is not None and not one.faults}
+
+
+def _decided(asked: DecisionQuestion, designs: Mapping[str, Calculation]) -> dict[str, ClimbResult]:
+    """Return how each design was decided; all share the budget."""
+    end, results = time.monotonic() + asked.budget, {}
+    for number, (name, calculation) in enumerate(designs.items()):
+        if calculation.deferred:
+            results[name] = _pending(calculation)
+            continue
+        left = max(0.0, end - time.monotonic())
+        variant = "" if name == BASE else name
+        climb = Climb(calculation, asked.criteria, left, variant)
+        with stage(number / len(designs), (number + 1) / len(designs), variant):
+            results[name] = climb.estimated() if asked.estimate_only else climb.decide()
+    return results
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
     """Return the answer while the design itself is still being calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
-    return ClimbResult(judgements, (), (), (), "pending")
+    return ClimbResult(judgements, None, (), (), (), "pending")
 
 
-def _shown(number: int, asked: DecisionQuestion, decision: ClimbResult) -> Decision:
-    judged = {"criteria": [], **rendered(decision.criteria)}
+def _shown(number: int, asked: DecisionQuestion, results: Mapping[str, ClimbResult]) -> Decision:
+    base, *others = results.values()
+    variants = {name: result for name, result in results.items() if name != BASE}
+    judgements = merged(base.criteria, {name: result.criteria for name, result in variants.items()})
+    trials = [trial for result in results.values() for trial in result.trials]
+    tried, planned = ([], trials) if asked.estimate_only else (trials, [])
     return Decision(
         revision=number,
-        **judged,
-        asked=list(decision.asked),
-        undecided=decision.undecided,
-        error_unknown=decision.error_unknown,
-        tried=[_tried(trial) for trial in decision.trials],
-        skipped=[_tried(trial) for trial in decision.skipped],
-        seconds=sum(trial.seconds for trial in decision.trials),
+        **{"criteria": [], **rendered(judgements)},
+        variants=[_shown_variant(name, result) for name, result in variants.items()],
+        asked=_union(result.asked for result in results.values()),
+        undecided=_union(result.undecided for result in results.values()),
+        error_unknown=_union(result.error_unknown for result in results.values()),
+        tried=[_tried(trial) for trial in tried],
+        skipped=[_tried(trial) for result in results.values() for trial in result.skipped],
+        planned=[_tried(trial) for trial in planned],
+        expected=sum(trial.expected for trial in planned),
+        seconds=sum(trial.seconds for trial in tried),
         budget=Quantity(value=asked.budget, unit="s"),
-        stopped=decision.stopped,
+        stopped=min((base.stopped, *(one.stopped for one in others)), key=STOPS.index),
     ).in_units(asked.units)
+
+
+def _shown_variant(name: str, result: ClimbResult) -> VariantDecision:
+    return VariantDecision(
+        name=name,
+        **{"criteria": [], **rendered(result.criteria)},
+        asked=list(result.asked),
+        undecided=result.undecided,
+        error_unknown=result.error_unknown,
+        stopped=result.stopped,
+    )
+
+
+def _union(names: Iterable[Iterable[str]]) -> list[str]:
+    """Return each name once, in the order in which they come."""
+    return list(dict.fromkeys(name for one in names for name in one))
 
 
 def _tried(trial: Trial) -> LevelTrial:
     tried: JsonObject = {"step": trial.step, "level": trial.level}
+    if trial.variant:
+        tried["variant"] = trial.variant
     if trial.reason is not None:
         tried["reason"] = trial.reason
     if trial.rows:

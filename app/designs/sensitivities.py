@@ -171,7 +171,7 @@ class DifferenceRows:
         values = count * sum(self._engine.design.sizes(wanted).values())
         if seconds > EXPENSIVE:
             raise self._refused(
-                "expensive", f"{count} rows would take about {seconds:.1g} s{self._at()}; {STUDY}"
+                "expensive", f"{count} rows would take too long to wait for{self._at()}; {STUDY}"
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(

@@ -169,7 +169,7 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route; `Guarded` has read the declaration."""
+        """Do nothing as a dependency of a route; `RoleGuard` has read the declaration."""
 
     def check(self) -> None:
         """Check the role of the acting principal.

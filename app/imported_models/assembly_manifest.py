@@ -6,44 +6,39 @@ import json
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from app.imported_models.creo.manifest import LONGEST
+from app.imported_models.manifests import LINE, LONGEST, NAME, STRICT, TITLE, read_manifest
 from app.schemas.bounds import Bounded
 from cad.assemblies import FARTHEST, MOST_COMPONENTS, SHIFTS, TURNS
-from cad.errors import UnreadableModel
 from cad.shaft import STEEL_DENSITY
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read as read_quantity
 from templates.core.units.units import unit
 
-_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
-_NAME = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
-_LINE = r"^[^\x00-\x1f\x7f]*$"
-_TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 _DATUM = r"^[^\x00-\x1f\x7f]{1,200}$"
 
 
 class Base(Bounded):
     """The model of this program that the assembly stands on; its parameters are those of the assembly."""
 
-    model_config = _STRICT
+    model_config = STRICT
 
-    model: str = Field(max_length=64, pattern=_NAME)
+    model: str = Field(max_length=64, pattern=NAME)
     version: int | None = Field(None, ge=1, le=10**6, description="the newest if it is not given")
 
 
 class FixedPart(Bounded):
     """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
 
-    model_config = _STRICT
+    model_config = STRICT
 
-    name: str = Field(max_length=40, pattern=_NAME)
-    model: str | None = Field(None, max_length=64, pattern=_NAME, description="a STEP file, or an assembly")
+    name: str = Field(max_length=40, pattern=NAME)
+    model: str | None = Field(None, max_length=64, pattern=NAME, description="a STEP file, or an assembly")
     version: int | None = Field(None, ge=1, le=10**6, description="of `model`; the newest if not given")
     design: str | None = Field(None, min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")
     revision: int | None = Field(None, ge=1, le=10**9, description="of `design`; the newest if not given")
-    part: str | None = Field(None, max_length=200, pattern=_LINE, description="which model of `design`")
+    part: str | None = Field(None, max_length=200, pattern=LINE, description="which model of `design`")
     datum: str = Field(
         "origin", pattern=_DATUM, description="`origin`, or a part and a place on it: `cap.low_y`"
     )
@@ -53,11 +48,11 @@ class FixedPart(Bounded):
     turn_x: str = Field("0 deg", max_length=60)
     turn_y: str = Field("0 deg", max_length=60)
     turn_z: str = Field("0 deg", max_length=60)
-    may_overlap: list[Annotated[str, Field(max_length=200, pattern=_LINE)]] = Field(
+    may_overlap: list[Annotated[str, Field(max_length=200, pattern=LINE)]] = Field(
         [], max_length=50, description="parts whose space it may take: a press fit"
     )
     density: str = Field(f"{STEEL_DENSITY:g} kg/m**3", max_length=60)
-    material: str = Field("", max_length=100, pattern=_LINE)
+    material: str = Field("", max_length=100, pattern=LINE)
 
     @model_validator(mode="after")
     def is_one_thing(self) -> Self:
@@ -106,10 +101,10 @@ class FixedPart(Bounded):
 class AssemblyManifest(Bounded):
     """An assembly."""
 
-    model_config = _STRICT
+    model_config = STRICT
 
     program: Literal["assembly"]
-    title: str = Field(max_length=100, pattern=_TITLE)
+    title: str = Field(max_length=100, pattern=TITLE)
     base: Base | None = None
     components: list[FixedPart] = Field(min_length=1, max_length=MOST_COMPONENTS)
 
@@ -149,15 +144,7 @@ def read(content: bytes) -> AssemblyManifest:
     UnreadableModel
         Naming all faults.
     """
-    try:
-        return AssemblyManifest.model_validate_json(content)
-    except ValidationError as error:
-        wrong = (
-            f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
-        )
-        raise UnreadableModel(
-            "manifest", f"the manifest of the assembly is not valid: {'; '.join(wrong)}"
-        ) from None
+    return read_manifest(AssemblyManifest, content, "the manifest of the assembly")
 
 
 def _number(name: str, text: str, wanted: str, most: float) -> float:

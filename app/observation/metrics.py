@@ -56,7 +56,7 @@ class RequestFigures(Collector):
         registry.register(self)
 
     def add(self, route: str, method: str, status: int, seconds: float) -> None:
-        """Count an answer that took this time [s]."""
+        """Add an answer with its duration [s]."""
         row = self._rows.get((route, method, status))
         if row is None:
             row = self._rows[route, method, status] = _Row()
@@ -64,7 +64,7 @@ class RequestFigures(Collector):
         row.seconds += seconds
 
     def collect(self) -> Iterator[Metric]:
-        """Yield the figures as the library writes them."""
+        """Yield the metrics in the form of the Prometheus library."""
         rows = list(self._rows.items())
         requests = CounterMetricFamily(
             "crankwright_requests", "Requests answered", labels=["route", "method", "status"]
@@ -84,7 +84,7 @@ class RequestFigures(Collector):
 def _by_route(
     rows: list[tuple[tuple[str, str, int], _Row]],
 ) -> dict[tuple[str, str], tuple[list[int], float]]:
-    """Return counts by class of time, and the sum of the times, of all statuses together."""
+    """Return the counts per class of duration and the sum of the durations, over all statuses."""
     groups: defaultdict[tuple[str, str], list[_Row]] = defaultdict(list)
     for (route, method, _), row in rows:
         groups[route, method].append(row)
@@ -151,7 +151,7 @@ def bucket_asked(operation: str, outcome: str, seconds: float) -> None:
 
 
 def copy_looked_for(is_there: bool) -> None:
-    """Count a read of a bucket's file, which finds a good copy on this machine or not."""
+    """Count a read of a file in the bucket, with or without a good copy on this machine."""
     COPIES.labels("yes" if is_there else "no").inc()
 
 
@@ -168,13 +168,16 @@ def job_event(job: str, kind: str, name: str) -> None:
 
 
 def watch(name: str, look: Callable[[], Mapping[str, float]]) -> Callable[[], object]:
-    """Show the `running`, `waiting` and `size` of a pool, which `look` returns; returns what ends that."""
+    """Publish the `running`, `waiting` and `size` of a pool from `look`.
+
+    Return a function that stops this.
+    """
     _watched[name] = look
     return lambda: _watched.pop(name, None) if _watched.get(name) is look else None
 
 
 def text(census: Census, oldest: float) -> bytes:
-    """Return all figures; of the jobs that have not ended, how many there are and the oldest's wait [s]."""
+    """Return all metrics as text; of the unfinished jobs their number and the wait of the oldest [s]."""
     _show_jobs(census)
     OLDEST.set(oldest)
     for name, look in list(_watched.items()):
@@ -188,7 +191,7 @@ def text(census: Census, oldest: float) -> bytes:
 
 
 def _show_jobs(census: Census) -> None:
-    """Show how many jobs there are, of which kind and state."""
+    """Publish the number of jobs by kind and state."""
     JOBS.clear()
     for kind, state, count in census:
         JOBS.labels(kind, state).set(count)

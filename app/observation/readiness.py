@@ -40,7 +40,7 @@ class Readiness:
         self._kept: tuple[float, dict[str, str | None]] | None = None
 
     async def failures(self) -> dict[str, str | None]:
-        """Return the state of each check: what is wrong, or None where nothing is."""
+        """Return the result of each check: the fault in words, or None."""
         async with self._lock:
             if self._kept is None or time.monotonic() - self._kept[0] > KEPT:
                 said = await asyncio.gather(*(check() for check in self._checks.values()))
@@ -56,7 +56,7 @@ class WriterProbe:
         self._pending: Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Say why no write is possible."""
+        """Return why no write is possible, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = self._database.submit(_touch)
@@ -78,7 +78,7 @@ class Files:
         self._pending: asyncio.Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Say why no file can be read or stored."""
+        """Return why no file can be read or stored, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = asyncio.ensure_future(asyncio.to_thread(self._store.probe))
@@ -98,7 +98,7 @@ def _look_at(writing: asyncio.Future[None]) -> None:
 
 
 def _touch(session: Session) -> None:
-    """Write a row that changes nothing, synced to disk."""
+    """Write a row without effect, synced to disk."""
     session.execute(update(CounterRow).where(CounterRow.name == "operation").values(value=CounterRow.value))
 
 
@@ -109,7 +109,7 @@ class Space:
         self._folder, self._minimum = folder, minimum_mb
 
     async def __call__(self) -> str | None:
-        """Say how much is missing."""
+        """Return how much disk space is missing, or None."""
         try:
             free = shutil.disk_usage(self._folder).free / 2**20
         except OSError as error:
@@ -139,7 +139,7 @@ class Processes:
         self._worker, self._why_silent, self._patience = worker, why_silent, patience
 
     async def __call__(self) -> str | None:
-        """Say that none answers."""
+        """Return that no job process answers, or None."""
         end = time.monotonic() + self._patience
         while not self._worker.answers():
             if time.monotonic() >= end:

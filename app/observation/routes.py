@@ -20,7 +20,7 @@ router = APIRouter(tags=["health"])
 
 @router.get("/healthz", dependencies=[public()])
 async def show_health() -> Health:
-    """The process is alive."""
+    """Return that the process is alive."""
     return Health(status="ok")
 
 
@@ -38,7 +38,7 @@ async def show_readiness(readiness: TheReadiness) -> Response:
 
 @router.get("/metrics", response_class=PlainTextResponse, dependencies=[needs()])
 def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
-    """Figures for Prometheus."""
+    """Return the metrics for Prometheus."""
     with database.read() as session:
         text = metrics.text(jobs.census(session), jobs.oldest_queued_age(session))
     return Response(text, media_type=CONTENT_TYPE_LATEST)

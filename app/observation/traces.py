@@ -73,7 +73,7 @@ class Traces:
         self._tracer = self._provider.get_tracer("crankwright")
 
     def close(self) -> None:
-        """Send what is left, and wait for that a short time only."""
+        """Send the remaining spans, and wait only a short time for this."""
         ending = threading.Thread(target=self._provider.shutdown, name="traces-end", daemon=True)
         ending.start()
         ending.join(SECONDS)
@@ -93,22 +93,22 @@ class Traces:
             span.end()
 
     def job(self, job: QueuedJob) -> AbstractContextManager[object]:
-        """Return the span of a job that runs, in the trace of what has queued it."""
+        """Return the span of a running job, in the trace of the request that queued it."""
         about = {"job.id": job.id, "job.kind": job.kind, "job.attempt": str(job.attempt)}
         return self.span(f"job {job.kind}", about, SpanKind.CONSUMER)
 
     def writer(self, writer: Writer) -> Writer:
-        """Return a writer of which each unit of work is a span, if it is part of a trace."""
+        """Return a writer that records each unit of work as a span, if the unit is part of a trace."""
         return _TracedWriter(writer, self)
 
     def worker(self, worker: BatchWorker) -> BatchWorker:
-        """Return a worker of which each run is a span, if it is part of a trace."""
+        """Return a worker that records each run as a span, if the run is part of a trace."""
         return _TracedWorker(worker, self)
 
     def part(self, name: str, function: Callable[..., object]) -> AbstractContextManager[object]:
         """Return the span of a function within a trace.
 
-        None for what the service does by itself, such as beats.
+        None for work of the service itself, such as heartbeats.
         """
         return self.span(name, {FUNCTION: _named(function)}) if logs.TRACE.get() else nullcontext()
 
@@ -199,7 +199,7 @@ def _carried(span: Span) -> str:
 
 
 def _named(function: Callable[..., object]) -> str:
-    """Return the module and name of a function; a partial function is called by that which it calls."""
+    """Return the module and name of a function; for a partial function, of the function that it calls."""
     while isinstance(function, partial):
         function = function.func
     named = function if hasattr(function, "__qualname__") else type(function)

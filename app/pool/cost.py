@@ -49,12 +49,27 @@ def estimated_seconds(
     tolerance: float | None = None,
     outputs: Collection[str] | None = None,
 ) -> float:
-    """Estimate the time of `evaluate`, reading and writing included [s]; for wrong inputs, any number."""
+    """Estimate the time of `evaluate`, with reading and writing [s].
+
+    For invalid inputs the number has no meaning.
+    """
     shapes = arrays(inputs)
     numbers = min(MOST_POINTS, sum(map(math.prod, shapes.values())))
     levels = _levels(cls, inputs, level, tolerance, numbers)
     points = min(MOST_POINTS, spanned(_points(cls, shapes)))
     return numbers * PER_NUMBER + _evaluating(cls, levels, points, outputs) + _profiles(cls, shapes, outputs)
+
+
+def level_seconds(
+    template: Template, inputs: Mapping[str, Raw], level: str, outputs: Collection[str]
+) -> float:
+    """Estimate the time of outputs of a template at another of its levels [s].
+
+    By the time to expect that its table states, which is nearer than the cost of the level.
+    """
+    measured = accuracy(type(template))
+    expected = measured.seconds(template, level) if measured else None
+    return estimated_seconds(type(template), inputs, level, None, outputs) if expected is None else expected
 
 
 def array_seconds(
@@ -93,12 +108,12 @@ def solving_seconds(
 
 
 def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None) -> float:
-    """Estimate the time that it takes to write the formulas out [s]."""
+    """Estimate the time for writing out the formulas [s]."""
     return PER_FORMULA * len(_wanted(cls, outputs))
 
 
 def is_quick(cls: type[Template]) -> bool:
-    """Return whether a few points take, at every level, no longer than a thread needs to begin."""
+    """Return whether a few points take, at every level, no longer than the start of a thread."""
     if cls not in _quick:
         levels = cls.levels or (SINGLE,)
         seconds = [_level_costs(cls, level)[0] for level in levels] + [_bodies_seconds(cls, 1)]
@@ -171,7 +186,7 @@ def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tup
 
 
 def _first(cls: type[Template], name: str, raw: Raw) -> Raw:
-    """Return an array's first value, in its unit; anything else as it is."""
+    """Return an array's first value, in its unit; any other value unchanged."""
     if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw
     if isinstance(raw, TypedQuantity):
@@ -239,7 +254,7 @@ def spanned(shapes: Iterable[Shape]) -> int:
 
 
 def shape(raw: Raw) -> Shape:
-    """Return the shape of a quantity as typed: by its first items, as what is uneven is refused later."""
+    """Return the shape of a quantity as typed: by its first items; uneven lists are refused later."""
     if isinstance(raw, TypedQuantity):
         return np.shape(raw.si)
     lengths: list[int] = []

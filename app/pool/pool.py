@@ -38,13 +38,16 @@ class Calculation:
         self._latest: tuple[float, str] | None = None
 
     def listen(self, listener: Reporter) -> None:
-        """Have progress reported from now on, beginning with the latest; in a thread of the pool."""
+        """Report progress to a function from now on, starting with the latest.
+
+        It runs in a thread of the pool.
+        """
         self._listener = listener
         if self._latest is not None:
             listener(*self._latest)
 
     def progress(self, fraction: float, text: str) -> None:
-        """Note how far the calculation is."""
+        """Record the progress of the calculation."""
         self._latest = fraction, text
         if self._listener is not None:
             self._listener(fraction, text)
@@ -78,7 +81,7 @@ class CalculationPool:
 
     @property
     def most_jobs(self) -> int:
-        """Return calculations that run at the same time as jobs."""
+        """Return the number of calculations that may run at the same time as jobs."""
         return self._capacity["jobs"]
 
     @property
@@ -107,7 +110,7 @@ class CalculationPool:
         Raises
         ------
         TooManyCalculations
-            As many wait as may. If another client has more waiting than this one, its latest gives way.
+            The queue is full. If another client has more waiting than this one, its latest gives way.
         """
         with self._changed:
             if self._closed:
@@ -134,7 +137,7 @@ class CalculationPool:
             self._loser(client)
 
     def cancel(self, calculation: Calculation) -> None:
-        """End a calculation: one that waits at once, one that runs with its process."""
+        """Cancel a calculation: remove it from the queue, or end its process if it runs."""
         calculation.cancelled.set()
         with self._changed:
             is_waiting = calculation in self._queue
@@ -144,7 +147,7 @@ class CalculationPool:
             calculation.future.set_exception(JobCancelled())
 
     def keep(self, calculation: Calculation) -> bool:
-        """Let a running calculation go on as a job, if there is room; whether there was."""
+        """Let a running calculation go on as a job, if there is room; return whether there was."""
         with self._changed:
             if calculation not in self._active or not self._has_room("jobs"):
                 return False

@@ -57,7 +57,7 @@ class CalculationProcesses:
         return worker.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
     def answers(self) -> bool:
-        """Return whether a function finds a process that is alive, or starts one; see `Worker.answers`."""
+        """Return whether a function has a live process, or starts one; see `Worker.answers`."""
         return all(processes.answers() for processes in list(self._started.values()))
 
     def close(self) -> None:

@@ -69,7 +69,7 @@ class Form(Generic[Q]):
 
 
 def json_form(asked: type[Q]) -> Form[Q]:
-    """Return the form of questions that are dataclasses of what JSON holds: all is in the body."""
+    """Return the form of questions whose dataclasses hold only JSON values: all content is in the body."""
     adapter: TypeAdapter[Q] = TypeAdapter(asked)
 
     def read(fields: JsonObject, body: Pieces) -> Q:
@@ -125,7 +125,7 @@ class Kind(Generic[Q, A]):
 
     @property
     def joined(self) -> frozenset[State]:
-        """Return the states of the jobs that an equal question finds."""
+        """Return the states in which a job also serves an equal question."""
         return frozenset({"queued", "running", "done"} if self.settle else {"queued"})
 
 
@@ -149,7 +149,7 @@ class Questions(Generic[Q, A]):
         self.jobs, self.steps = jobs, steps
 
     def answer(self, question: Q, client: str) -> tuple[A | None, str | None]:
-        """Return the answer as far as its caller waits for it, and the job that completes it, if any.
+        """Return the answer as far as known in the caller's time, and the job that completes it, if any.
 
         Raises
         ------
@@ -198,7 +198,7 @@ class Questions(Generic[Q, A]):
         return asked, self._key(asked, grounds)
 
     def _key(self, question: Q, grounds: Iterable[str] = ()) -> str:
-        """Return the hash of all that the answer to a question follows from."""
+        """Return the hash of all data that determine the answer to a question."""
         fields, body = self.kind.form.write(question)
         about = [self.kind.name, canonical_json(fields), *program(), *grounds]
         digest = hashlib.sha256("\0".join(about).encode())
@@ -212,7 +212,7 @@ class Questions(Generic[Q, A]):
             return repository.asked(session, key, self.kind.joined)
 
     def _queued(self, question: Q, key: str, client: str) -> str:
-        """Return the job of an equal question, or a new one, which takes over what was begun."""
+        """Return the job of an equal question, or a new one that takes over calculations already begun."""
         fields, body = self.kind.form.write(question)
         key = key or self._key(question)
         payload = {**fields, "body": self.store.put(*body)}
@@ -232,7 +232,7 @@ class Questions(Generic[Q, A]):
         Raises
         ------
         JobFailed
-            With the problem, for anything that the question itself brings about.
+            With the problem, for any error that the question itself causes.
         """
         try:
             question = question_of(self.kind.form, job, self.store)
@@ -251,7 +251,7 @@ class Questions(Generic[Q, A]):
         return unit_of_work
 
     def request_again(self, job: Job, client: str) -> str:
-        """Return the job that calculates the lost answer of another one, of any kind, again.
+        """Return a job that recalculates the lost answer of another job of any kind.
 
         Raises
         ------
@@ -266,12 +266,12 @@ class Questions(Generic[Q, A]):
         return self.jobs.commit(lambda session: self.jobs.request(session, job.kind, payload, client))
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """End what was left to a job that was cancelled before it began."""
+        """Cancel the calculations that were left to a job which was cancelled before its start."""
         self.steps.drop(job.id)
 
 
 def question_of(form: Form[Q], job: Job, store: Artifacts) -> Q:
-    """Return the question that the row of a job names.
+    """Return the question of a job from the row of the job.
 
     Raises
     ------
@@ -291,14 +291,17 @@ def _lost(job: Job) -> CannotRebuild:
 
 
 def as_kept(answer: Answer | Pieces) -> Pieces:
-    """Return an answer as JSON, without the fields that it leaves out; what is written already, as it is."""
+    """Return an answer as JSON, without the fields that it leaves out.
+
+    An answer that is already text, unchanged.
+    """
     if isinstance(answer, Pieces):
         return answer
     return Pieces.of(answer.model_dump_json(by_alias=True, exclude_unset=True).encode())
 
 
 def stored_answer(store: Artifacts, job: Job) -> Pieces:
-    """Return the answer that a job has left in the store; raises ArtifactMissing, ArtifactDamaged."""
+    """Return the answer that a job saved in the store; raises ArtifactMissing, ArtifactDamaged."""
     assert job.result is not None
     return Pieces.of(store.read(job.result.rpartition("sha256=")[2]))
 
@@ -310,7 +313,7 @@ def place_of_answer(job: str, sha: str) -> str:
 
 @lru_cache(1)
 def program() -> tuple[str, ...]:
-    """Return the program's version, and the ages and sizes of the files by which it calculates."""
+    """Return the program's version, and the ages and sizes of the files that it calculates with."""
     root = Path(templates.__file__).parents[1]
     files = sorted(
         path

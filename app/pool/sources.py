@@ -88,7 +88,7 @@ def loaded(source: Source) -> type[Template]:
 
 
 def class_of(source: SheetSource) -> type[Template]:
-    """Return the class that a worksheet makes; one class, however often it is asked for.
+    """Return the class of a worksheet; equal calls return the same class.
 
     Raises
     ------

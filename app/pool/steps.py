@@ -50,7 +50,7 @@ class Steps:
         return PendingCalculations(self.pool, self.left)
 
     def drop(self, job: str) -> None:
-        """End a calculation that was left to a job which never began."""
+        """Cancel a calculation that was left to a job which never started."""
         if begun := self.left.get(job):
             begun.close(failed=True)
 
@@ -165,7 +165,7 @@ def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
 
 
 def begun_steps() -> PendingCalculations | None:
-    """Return the calculations that the caller of this context has begun and does not wait for."""
+    """Return the calculations that the caller of this context began without waiting for them."""
     caller = _caller.get()
     return caller.begun if caller else None
 
@@ -177,13 +177,13 @@ def _evaluated(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """Return the evaluation, with all that the template has computed: in a calculation process."""
+    """Return the evaluation, with all values that the template computed; runs in a calculation process."""
     return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
 
 
 @contextmanager
 def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lane: Lane) -> Iterator[None]:
-    """Let a job evaluate expensive steps in the pool, and take over what was begun for it."""
+    """Let a job evaluate expensive steps in the pool, and take over the calculations begun for it."""
     if steps is None:
         yield
         return
@@ -198,19 +198,37 @@ def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lan
 
 
 def call_as(caller: Caller) -> None:
-    """Let what follows in this context, such as a request, evaluate expensive steps for a caller."""
+    """Evaluate expensive steps on behalf of a caller from here on in this context, such as a request."""
     _caller.set(caller)
 
 
 def announce(text: str) -> None:
-    """Tell the job of this context, if there is one, what is calculated next."""
+    """Tell the job of this context, if there is one, which calculation follows."""
     caller = _caller.get()
     if caller is not None and caller.report is not None:
         caller.report(0.0, text)
 
 
+@contextmanager
+def stage(first: float, last: float, name: str) -> Iterator[None]:
+    """Let what is calculated here report its progress as a part of the whole, from `first` to `last`.
+
+    The name of the part stands before each text; none if it is empty.
+    """
+    caller = _caller.get()
+    if caller is None or caller.report is None:
+        yield
+        return
+    whole, head = caller.report, f"{name}: " if name else ""
+    caller.report = lambda share, text: whole(first + (last - first) * share, head + text)
+    try:
+        yield
+    finally:
+        caller.report = whole
+
+
 def present_caller() -> Caller | None:
-    """Return for whom this context evaluates steps."""
+    """Return the caller for whom this context evaluates steps."""
     return _caller.get()
 
 
@@ -238,7 +256,7 @@ class PendingCalculations:
             self._pool.cancel(calculation)
 
     def take(self, key: Hashable) -> Calculation | None:
-        """Return the calculation of a question, which is the caller's from now on."""
+        """Return the calculation of a question, and hand it over to the caller."""
         return self._calculations.pop(key, None)
 
     def leave_to(self, job: str) -> None:
@@ -247,7 +265,7 @@ class PendingCalculations:
         self._job, self._left[job] = job, self
 
     def close(self, *, failed: bool = False) -> None:
-        """Cancel what no job takes over; if the request failed, its job was not queued."""
+        """Cancel the calculations that no job takes over; if the request failed, its job was not queued."""
         if self._job is None or failed:
             self._withdraw()
             for calculation in self._calculations.values():

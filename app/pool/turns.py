@@ -34,7 +34,7 @@ class Turns:
         return turn
 
     def taken(self, turn: int) -> None:
-        """A turn has begun."""
+        """Record that a turn has begun."""
         self._now = max(self._now, turn)
 
     def forget(self, present: Collection[str]) -> None:

@@ -39,7 +39,7 @@ class Mark:
 
 
 def tornado(bars: Sequence[Bar]) -> str:
-    """Return shares as bars, those of total effect behind those of a value alone; empty without any."""
+    """Return the shares as bars, the total effects behind the single effects; empty without shares."""
     if not bars:
         return ""
     height = ROW * len(bars) + 24

@@ -22,7 +22,7 @@ def bare(text: str) -> str:
 
 
 def balanced(text: str) -> str:
-    """Return a text that ends no isolation that it has not begun."""
+    """Return a text in which every end of a bidi isolation has its start."""
     text = text.translate(_WITHOUT_BREAKS)
     if POP_ISOLATE not in text:
         return text

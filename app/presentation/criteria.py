@@ -156,7 +156,7 @@ def plain_name(text: str) -> str:
 
 
 def step_of(criterion: JudgedCriterion) -> str:
-    """Return the block whose value is judged, by the name of the criterion or by what it requires."""
+    """Return the block whose value is judged, from the criterion's name or its requirement."""
     name = Reference.parse(criterion.name)
     if name.output is not None:
         return name.block
@@ -175,7 +175,7 @@ def title(criterion: JudgedCriterion) -> str:
 
 
 def verdict_words(criterion: JudgedCriterion) -> str:
-    """Return the verdict in words, with what is unknown about it."""
+    """Return the verdict in words, with its unknowns."""
     words = WORDS[criterion.verdict]
     return f"{words}; {UNKNOWN}" if _is_error_unknown(criterion) else words
 
@@ -206,7 +206,7 @@ def margin(criterion: JudgedCriterion) -> str:
 def _ends(criterion: JudgedCriterion) -> tuple[float, float] | None:
     """Return the least and the largest margin, in the unit of the margin.
 
-    None where the band does not say.
+    None if the band does not determine them.
     """
     band, limit, left = criterion.band, criterion.limit, criterion.margin
     if band is None or limit is None or left is None or not band.unit == limit.unit == left.unit:
@@ -230,7 +230,7 @@ def error(criterion: JudgedCriterion) -> str:
 
 
 def missing(criterion: JudgedCriterion) -> str:
-    """Return the input or result that a verdict still needs; empty where there is a verdict."""
+    """Return the input or result that a verdict still needs; empty if there is a verdict."""
     if criterion.give:
         return f"give {', '.join(map(plain_name, criterion.give))}"
     if criterion.verdict == "undecided" and criterion.needs is not None:
@@ -271,7 +271,7 @@ class VerdictSummary(Protocol):
 
 
 def tone(verdict: VerdictSummary) -> str:
-    """Return the colour of a verdict: green only where the interface says so."""
+    """Return the colour of a verdict: green only if the interface permits it."""
     if verdict.green:
         return "green"
     return {"not_met": "bad", "undecided": "open", "not_checked": "open"}.get(verdict.verdict, "plain")

@@ -18,17 +18,17 @@ PAGES = Path(__file__).with_name("pages")
 
 
 def formula(latex: str) -> Markup:
-    """Return LaTeX as MathML, set as in a line of its own."""
+    """Return LaTeX as MathML, set as a displayed formula."""
     return Markup(mathml(latex).replace('display="inline"', 'display="block"', 1))
 
 
 def inline(latex: str) -> Markup:
-    """Return LaTeX as MathML within a line of words."""
+    """Return LaTeX as MathML for a line of text."""
     return Markup(mathml(latex))
 
 
 def capital(words: str) -> str:
-    """Return the words with a capital; the rest as it is."""
+    """Return the text with a capital first letter, otherwise unchanged."""
     return words[:1].upper() + words[1:]
 
 
@@ -38,7 +38,7 @@ def isolated(text: object) -> Markup:
 
 
 def coded(text: str) -> Markup:
-    """Return a sentence, escaped, with what stands between backticks as code."""
+    """Return a sentence, escaped, with text between backticks as code."""
     pieces = text.split("`")
     if len(pieces) % 2 == 0:
         return escape(text)
@@ -46,7 +46,7 @@ def coded(text: str) -> Markup:
 
 
 def environment(folder: Path) -> Environment:
-    """Return Jinja for the pages in a folder, which may extend the frame of every page, `base.html`."""
+    """Return Jinja for the pages in a folder, which may extend the common frame, `base.html`."""
     jinja = Environment(
         loader=FileSystemLoader([PAGES, folder]),
         autoescape=True,
@@ -89,10 +89,7 @@ class Course:
 
 
 def course(values: object, axis: object = None, unit: str | None = None) -> Course | None:
-    """Return the course of a long list of numbers, along an axis where there is one.
-
-    None of anything else.
-    """
+    """Return a small chart of a long list of numbers, over its axis if it has one; None for other values."""
     if not isinstance(values, list) or len(values) <= numbers.FEW or numbers.size(values) != len(values):
         return None
     ends = numbers.extremes(values)

@@ -25,7 +25,7 @@ def value_of(text: str) -> JsonValue:
 
 
 def text_of(value: object) -> str:
-    """Return a value, as its user typed it, as the text of a field."""
+    """Return the text of a field from a value as typed."""
     if value is None:
         return ""
     if isinstance(value, Mapping) and set(value) == {"value", "unit"}:

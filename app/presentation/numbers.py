@@ -45,7 +45,7 @@ def plain(value: float) -> str:
 
 @lru_cache(maxsize=1024)
 def unit(text: str | None) -> str:
-    """Return a unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number or a text."""
+    """Return a unit as it is printed: `mm**2/s` → `mm²/s`; empty for a pure number or a text."""
     return unit_symbol(text) if text else ""
 
 

@@ -52,7 +52,7 @@ def cell(quantity: Valued, *, whole: bool = False) -> Cell:
 def _in_words(quantity: Valued) -> str:
     """Return a text, an array, or why there is no value.
 
-    Points without one are dashes, with their reasons.
+    Points without a value are dashes, with the reasons.
     """
     fields = {name: getattr(quantity, name) for name in WRITTEN if name in quantity.model_fields_set}
     if not isinstance(quantity, Output) or not quantity.reasons:
@@ -76,10 +76,7 @@ def typed(raw: Raw) -> str:
 
 
 def clean(text: str) -> str:
-    """Return a user's words without signs that are not seen.
-
-    Control characters, and those that turn the writing.
-    """
+    """Return a user's text without invisible characters: control characters and direction marks."""
     return _UNSEEN.sub(" ", text)
 
 
@@ -107,7 +104,7 @@ def si_unit(text: str) -> str:
 
 
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
-    """Return the candidate that measures the same.
+    """Return the candidate of the same dimension.
 
     An angle is given in rad, though it counts as a pure number.
     """

@@ -62,7 +62,7 @@ class _Axis:
         return value is not None and isfinite(value) and not (self.logarithmic and value <= 0)
 
     def ticks(self) -> list[float]:
-        """Round values between the ends."""
+        """Return round values between the ends."""
         if self.logarithmic:
             return [10.0**n for n in range(ceil(log10(self.low)), floor(log10(self.high)) + 1)]
         step = _round_step((self.high - self.low) / TICKS)

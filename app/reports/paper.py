@@ -33,7 +33,7 @@ class Press:
         Raises
         ------
         Unprintable
-            If the typesetter had to be stopped, or stopped for want of memory.
+            If the typesetter was stopped, or ran out of memory.
         """
         data = cast(ReportAsData, asdict(report))
         with self._free:
@@ -50,7 +50,7 @@ class Press:
         Raises
         ------
         Unprintable
-            If the typesetter had to be stopped, or stopped for want of memory.
+            If the typesetter was stopped, or ran out of memory.
         """
         key = hashlib.sha256(svg).digest()
         with self._lock:
@@ -66,7 +66,7 @@ class Press:
         return pdf
 
     def _keep(self, key: bytes, pdf: bytes) -> None:
-        """Keep a drawing, and forget those that were asked for the longest ago."""
+        """Keep a drawing, and forget the drawings that were requested least recently."""
         with self._lock:
             self._drawn[key] = pdf
             while sum(map(len, self._drawn.values())) > KEPT:

@@ -62,7 +62,7 @@ def pictures(template: Declarations, answer: Results | RevisionStep) -> list[Pic
 
 
 def axis_of(template: Declarations, answer: Results | RevisionStep, name: str) -> str | None:
-    """Return the name of what a value of an evaluation goes along; None for a single value."""
+    """Return the name of the axis of a value of an evaluation; None for a single value."""
     output = answer.outputs.get(name)
     if output is None or not isinstance(output.value, list):
         return None
@@ -145,7 +145,7 @@ def _modes(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _curves(values: Values, declared: Members) -> Iterator[Picture]:
-    """Yield every curve over its axis: those of one unit and axis together."""
+    """Yield every curve over its axis: curves of the same unit and axis together."""
     groups: dict[tuple[str, str], list[str]] = {}
     for name, about in declared.items():
         axis = _axis(values, declared, name)
@@ -174,7 +174,7 @@ def _rows(values: Values, declared: Members) -> Iterator[Picture]:
 def _most(table: object, length: int) -> list[int]:
     """Return the rows with the largest numbers, counted from 1, in their order.
 
-    None of what is no table.
+    None for a value that is not a table.
     """
     if not isinstance(table, list) or not table:
         return []

@@ -26,7 +26,7 @@ Values = Mapping[str, Valued]
 
 
 def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
-    """Return the plots of a step that has results; none if the file of its version was taken away."""
+    """Return the plots of a step that has results; none if the file of its version was removed."""
     if cls is None or not step.outputs:
         return []
     declared = SimpleNamespace(inputs=inputs_schema(cls), outputs=outputs_schema(cls))

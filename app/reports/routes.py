@@ -85,7 +85,7 @@ class ReportRequest:
         number: int | None,
         kind: str | None,
     ) -> Response:
-        """Return the report of a revision, the newest if none is named: on the screen or on paper.
+        """Return the report of a revision, by default the newest, as a page or a PDF.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class ReportRequest:
         return await self._printed(report, wanted, job)
 
     async def _waited(self, pictures: Sequence[Pictures], id: str, number: int) -> str | None:
-        """Return the job that still draws pictures of this revision when the client stops waiting, if any."""
+        """Return the job that still draws pictures of this revision after the waiting time, if any."""
         lists = [await run_in_threadpool(each, id, number, self.client) for each in pictures]
         ends = time.monotonic() + patience(self.prefer, PATIENCE)
         for job in chain.from_iterable(lists):
@@ -111,7 +111,7 @@ class ReportRequest:
         return None
 
     async def _printed(self, report: Report, kind: str, job: str | None) -> Response:
-        """Return a report on the screen or on paper, or that it is as it was."""
+        """Return a report as a page or a PDF, or that it has not changed."""
         headers = _headers(report, kind, job)
         if job is None and self.if_none_match and headers["ETag"] in self.if_none_match:
             return Response(status_code=304, headers=headers)
@@ -149,7 +149,7 @@ TheReportRequest = Annotated[ReportRequest, Depends(report_request)]
 async def show_report(
     id: Id, asked: TheReportRequest, number: Number | None = None, kind: Id | None = None
 ) -> Response:
-    """The calculation report of a revision, the newest if none is named: on the screen or on paper."""
+    """Return the calculation report of a revision, by default the newest, as a page or a PDF."""
     reports = asked.reports
     return await asked.answer(reports.gather, [reports.request_pictures], id, number, kind)
 
@@ -221,7 +221,7 @@ def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
 
 
 def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str, str]) -> str:
-    """Return the kind that the path names, else that which the client likes best; the first by default.
+    """Return the kind named in the path, else the kind that the client prefers; the first by default.
 
     Raises
     ------

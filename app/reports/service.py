@@ -54,7 +54,7 @@ class Reports:
         self.owner = owner  # legal owner of drawings
 
     def number(self, id: str, number: int | None) -> int:
-        """Return the revision meant: the newest, if none is named.
+        """Return the number of the requested revision, by default the newest.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Reports:
         return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """Return the jobs that make what a report shows of every built model; none if all is there."""
+        """Return the jobs that draw the pictures of every built model for a report; none if all exist."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             analysed = (row.results or {}).get("analyses", {})
@@ -104,7 +104,7 @@ class Reports:
     def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """Return the job that makes a picture of every distinct solid of the variants.
 
-        None if all is there.
+        None if all exist.
         """
         with self.database.read() as session:
             row = repository.revision(session, id, number)
@@ -192,7 +192,7 @@ class Reports:
         return own | {one.name: {SKETCH: self.store.read(one.file.sha256)} for one in solids if one.file}
 
     def _painted(self, report: Report, name: str) -> dict[str, bytes]:
-        """Return the pictures of a model in the colours of its fields."""
+        """Return the pictures of a model, coloured by its stress and displacement fields."""
         place = report.design, report.revision, name
         with self.database.read() as session:
             fields = fields_of(session, self.catalogues.models, *place)

@@ -17,7 +17,7 @@ ROLES = {"calculated": "Calculated", "checked": "Checked", "released": "Released
 
 
 def signatures_of(design: str, revision: int, units: System, steps: Sequence[Approval]) -> Signatures:
-    """Return the signatures of a revision; a step that was not taken has none."""
+    """Return the signatures of a revision; a step not yet taken has none."""
     taken = {one.step: one for one in steps}
     state: ApprovalState = steps[-1].step if steps else "unsigned"
     block = Block(

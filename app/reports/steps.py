@@ -81,7 +81,7 @@ def review_of(sheet: ReleasedSheet | None) -> str:
 
 
 def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:
-    """Return the class of a version, or None if its file was taken away."""
+    """Return the class of a version, or None if its file was removed."""
     try:
         return catalogue.get(id, version)
     except TemplateError:
@@ -140,7 +140,7 @@ def _level(level: object, tolerance: float | None) -> str:
 
 
 def _inputs(step: PreviewedStep, typed: Mapping[str, Raw], cls: Class) -> list[Line]:
-    """Return inputs in the order of the template; those of a step that waits are as typed."""
+    """Return inputs in the order of the template; the inputs of a waiting step are as typed."""
     names = _ordered(step.inputs, cls.inputs if cls else ())
     return [_input(name, step.inputs[name], typed.get(name), cls) for name in names]
 
@@ -168,7 +168,7 @@ def _input(name: str, used: UsedInput | Raw, raw: Raw, cls: Class) -> Line:
 
 
 def relation_mathml(raw: Raw) -> str:
-    """Return a relation in MathML; empty where it is a name alone, or none."""
+    """Return a relation in MathML; empty if it is only a name, or absent."""
     latex = relation_latex(raw)
     return mathml(latex) if latex else ""
 

@@ -159,7 +159,10 @@ def write_xlsx(table: Table) -> bytes:
 
 
 def _single(row: Row) -> tuple[Value, ...]:
-    """Return a line of the sheet of values; an array is in the sheet of its block, and only counted here."""
+    """Return a line of the sheet of values.
+
+    An array is only counted here, its values are in the sheet of its block.
+    """
     if isinstance(row.value, list):
         remark = f"{len(row.value)} values, in the sheet of {row.block}"
         return row.block, row.kind, row.name, None, None, row.unit, row.origin, remark

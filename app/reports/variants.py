@@ -19,7 +19,10 @@ SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_chec
 
 
 def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
-    """Return the content of a report of all variants; `pending` while the service makes their pictures."""
+    """Return the content of a report of all variants.
+
+    It is `pending` while the service draws the pictures.
+    """
     rows = _worst_first(out)
     first = next((row for row in rows if out.governing and row.name == out.governing.variant), None)
     return Variants(
@@ -82,7 +85,7 @@ Column = tuple[str, list[str]]  # heading, and a text for each variant
 
 
 def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
-    """Return every place in which variants differ; the design's own value in brackets."""
+    """Return every value in which variants differ, with the design's own value in brackets."""
     columns = []
     for about in out.columns:
         own = f"({numbers.in_line(about.nominal)})" if about.nominal else ""

@@ -35,12 +35,12 @@ class Line:
 
 
 def read_block(pdf: bytes) -> Block:
-    """Return the approval block that a report carries.
+    """Return the approval block that a report contains.
 
     Raises
     ------
     NotReport
-        If it carries none.
+        If it contains none.
     """
     from pypdf import PdfReader  # of the extra `team`; nothing else reads PDF
 

@@ -47,12 +47,12 @@ _REFERENCE = re.compile("&#x([0-9A-Fa-f]+);")
 
 
 def fits(mathml: Iterable[str], width: float) -> bool:
-    """Return whether formulas, one beside the other, are certainly no wider than so much [em]."""
+    """Return whether formulas side by side are certainly no wider than a width [em]."""
     return sum(_bound(_alike(one)) for one in mathml if one) <= width
 
 
 def _alike(mathml: str) -> str:
-    """Return a formula with a zero for each digit in its texts: all digits are equally wide."""
+    """Return a formula with a zero for each digit in its texts: all digits have the same width."""
     return _TEXT.sub(_with_zeros, mathml)
 
 

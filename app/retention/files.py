@@ -52,7 +52,10 @@ class Sweep:
         return sum(self._store.delete_unchanged(file) for file in self._old(unused) if not is_stopping())
 
     def _is_spare(self, file: StoredFile) -> bool:
-        """Return whether a discarded file that a row names is in its place again; put it back if need be."""
+        """Return whether a discarded file that a row refers to is back in its place.
+
+        Restore it if necessary.
+        """
         return file.is_discarded and self._store.exists(file.sha)
 
     def _old(self, unused: set[StoredFile]) -> Iterable[StoredFile]:

@@ -29,7 +29,7 @@ _SHA256 = re.compile(r"(?<![0-9a-f])[0-9a-f]{64}(?![0-9a-f])")
 
 
 def delete_keys(session: Session, kept: float, most: int) -> int:
-    """Delete some of the idempotency keys that are older than this [s]; return how many."""
+    """Delete some of the idempotency keys older than an age [s]; return their number."""
     row = IdempotencyRow
     old = select(row.key, row.scope, row.client).where(row.operated < operated(session) - kept)
     some = session.execute(old.order_by(row.operated).limit(most)).all()
@@ -40,7 +40,7 @@ def delete_keys(session: Session, kept: float, most: int) -> int:
 
 
 def delete_jobs(session: Session, kept: float, most: int) -> int:
-    """Delete some of the jobs that ended longer ago than this [s]; return how many."""
+    """Delete some of the jobs that ended longer ago than an age [s]; return their number."""
     # Not "state in (…)": SQLite would collect and sort all ended jobs instead of walking the index of ages.
     old = select(JobRow.id).where(JobRow.operated < operated(session) - kept, JobRow.state.not_in(UNFINISHED))
     some = old.order_by(JobRow.operated).limit(most)
@@ -48,7 +48,7 @@ def delete_jobs(session: Session, kept: float, most: int) -> int:
 
 
 def delete_events(session: Session, kept: float, most: int) -> int:
-    """Delete some of the events that are older than this [s], of a topic the first ones; return how many."""
+    """Delete some of the events older than an age [s], from the start of a topic; return their number."""
     row = EventRow
     old = select(row.topic, row.number).where(row.operated < operated(session) - kept)
     some = session.execute(old.order_by(row.operated, row.topic, row.number).limit(most)).all()
@@ -58,13 +58,13 @@ def delete_events(session: Session, kept: float, most: int) -> int:
 
 
 def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:
-    """Return some builds that no revision uses and nobody requested for this long [s], by key."""
+    """Return some builds that no revision uses and nobody requested for a time [s], by key."""
     unwanted = select(BuildRow.key).where(BuildRow.key > after, _is_unwanted(session, kept))
     return list(session.scalars(unwanted.order_by(BuildRow.key).limit(most)))
 
 
 def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
-    """Delete those of these builds that are unwanted still, with their analyses; return how many.
+    """Delete the builds that are still unwanted, with their analyses; return their number.
 
     Their files stay in the store, where nothing refers to them any more.
     """

@@ -43,7 +43,7 @@ class Retention:
         self._thread = threading.Thread(target=self._work, name="retention", daemon=True)
 
     def start(self) -> None:
-        """Begin; the first round comes at once."""
+        """Start the rounds; the first comes at once."""
         self._thread.start()
 
     def stop(self) -> None:
@@ -73,7 +73,7 @@ class Retention:
             self._stopping.wait(PAUSE)
 
     def _repeat(self, unit: Callable[[Session], int]) -> int:
-        """Run a unit until it finds no more; between two of them others' units have their turn."""
+        """Run a unit until it finds no more; between two of them, the units of others can run."""
         total = 0
         while not self._stopping.is_set() and (count := self._database.write(unit)):
             total += count

@@ -27,7 +27,10 @@ class Answer(BaseModel):
         return self.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
     def in_units(self, system: System) -> Self:
-        """Return the answer with every quantity in a system of units; what has no unit stays as it is."""
+        """Return the answer with every quantity in a system of units.
+
+        A value without a unit stays unchanged.
+        """
         if system == "si":
             return self
         return self.model_copy(

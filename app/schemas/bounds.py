@@ -33,7 +33,7 @@ class Bounded(BaseModel):
 def at_most(count: int) -> BeforeValidator:
     """Return an annotation of a dictionary.
 
-    It has at most so many entries, counted before they are looked at.
+    The number of entries is checked before the entries themselves.
     """
     return BeforeValidator(partial(_few, most=count))
 

@@ -82,5 +82,5 @@ class RouteOptions(TypedDict):
 
 
 def refusals(*statuses: int) -> Responses:
-    """Declare problems of a route, for its `responses`."""
+    """Return the `responses` of a route for its problems."""
     return {status: {"description": MEANINGS[status], "content": PROBLEM_CONTENT} for status in statuses}

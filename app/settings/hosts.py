@@ -77,7 +77,7 @@ def is_loopback(name: str) -> bool:
 
 
 def check_entry(entry: str) -> str:
-    """Return an entry of the allow-list as it is.
+    """Return an entry of the allow-list, checked but unchanged.
 
     Raises
     ------
@@ -147,7 +147,7 @@ class Hosts:
 
 
 def _fits(entry: Authority, asked: Authority) -> bool:
-    """Return whether a host has the port that an entry names, if it names one."""
+    """Return whether a host has the port that an entry names, if the entry names a port."""
     if entry.port is None or entry.port == asked.port:
         return True
     return asked.port is None and entry.port in DEFAULT_PORTS.values()

@@ -45,7 +45,7 @@ class Analyses:
         Raises
         ------
         AnalysisError
-            If the model is not a shaft, or has no split bore if that is asked of.
+            If the model is not a shaft, or a bore analysis is requested and it has no split bore.
         """
         bore_of(shape) if question.kind == BORE_COMPLIANCE else shaft_of(shape)
         build = build_key(shape)
@@ -103,7 +103,7 @@ class Analyses:
         return self.jobs.commit(unit)
 
     def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
-        """Return the outputs that were asked for, as far as they are stored."""
+        """Return the requested outputs, as far as they are stored."""
         build = build_key(shape)
         with self.database.read() as session:
             stored = repository.outputs_of(session, question.key(build))
@@ -111,7 +111,7 @@ class Analyses:
         return shown(Version(id=shape.id, version=shape.version), build, question, computed)
 
     def show_all(self, key: str, load: float) -> Analysis:
-        """Return all that is stored for a question about a build, under a load [N·m].
+        """Return all stored outputs for a question about a build, under a load [N·m].
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Analyses:
             return shown(_model_of(session, build), build, question, under_load(question, outputs))
 
     def of_build(self, build: str) -> list[Analysis]:
-        """Return all that is stored of a build, under 1 N·m.
+        """Return all stored outputs of a build, under 1 N·m.
 
         Raises
         ------
@@ -141,7 +141,7 @@ class Analyses:
         Raises
         ------
         NotFound
-            If it was not asked for.
+            If it was not requested.
         """
         with self.database.read() as session:
             _, question, outputs = repository.asked(session, key)
@@ -170,7 +170,7 @@ class ModelAnalysis:
         Raises
         ------
         JobFailed
-            With the problem, for anything that the model itself brings about.
+            With the problem, for any error that the model itself causes.
         """
         asked = job.payload
         question = Question(**asked["question"])

@@ -34,7 +34,7 @@ class AnalysisRunner:
         self.database, self.store, self.limits = database, store, limits
 
     def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
-        """Find those outputs of a built model that are not stored yet.
+        """Compute the outputs of a built model that are not stored yet.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class AnalysisRunner:
         return context.run(analyse_in_worker, bytes_, shaft, throw, question, unknown, limits=self.limits)
 
     def _stored(self, output: Mapping[str, object]) -> StoredOutput:
-        """Return an output as its row holds it: of one that is a file, what the store calls it."""
+        """Return an output as its row holds it: for a file, its hash in the store."""
         file = output.get(FILE)
         if not isinstance(file, bytes):
             return cast(StoredOutput, output)

@@ -67,7 +67,7 @@ def stresses(session: Session, build: str, question: Question) -> Outputs:
 
 
 def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
-    """Return the build, the question, and all that is known to it.
+    """Return the build, the question, and all its known answers.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def key_of_surface(session: Session, sha256: str) -> str | None:
 
 
 def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
-    """Return every question that was asked about a build, by kind, with all that is known to it."""
+    """Return every question about a build, by kind, with all its known answers."""
     rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.build_key == build)))
     grouped: dict[str, list[AnalysisRow]] = {}
     for row in sorted(rows, key=lambda row: (row.asked["kind"], row.key)):
@@ -96,7 +96,7 @@ def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
 
 
 def _together(rows: list[AnalysisRow]) -> tuple[Question, Outputs]:
-    """Return a question from the rows of its answers."""
+    """Return a question with its answers from their rows."""
     question = Question(**rows[0].asked)
     outputs = {row.output: _output(row) for row in rows}
     return question, {name: outputs[name] for name in in_order(question.kind, outputs)}

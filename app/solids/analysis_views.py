@@ -12,7 +12,7 @@ from cad.analysis.kinds import SURFACE
 
 
 def shown(model: Version, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> Analysis:
-    """Return an analysis on its own. Outputs that were computed together have one mesh and one time."""
+    """Return one analysis in full. Outputs that were computed together have one mesh and one time."""
     meshes = [output["mesh"] for output in outputs.values()]
     levels = (output["level"] for output in outputs.values() if output["level"])
     fields = {
@@ -51,5 +51,5 @@ def _timeless(output: StoredOutput) -> dict[str, object]:
 
 
 def _linked(key: str, name: str, output: Mapping[str, object]) -> dict[str, object]:
-    """Return an output; one that is a file says where it is."""
+    """Return an output; a file has a link."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}

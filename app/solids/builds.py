@@ -85,7 +85,7 @@ class Builds:
         return context.run(build_drawn_in_worker, source, texts, self.programs.draw(shape, context))
 
     def keep(self, shapes: Iterable[CadModel]) -> bool:
-        """Keep builds for as long as the job that counts on them runs; return whether all are there."""
+        """Keep builds while the job that needs them runs; return whether all exist."""
         keys = [build_key(shape) for shape in shapes]
         if not keys:
             return True
@@ -95,7 +95,7 @@ class Builds:
         return self.database.write(lambda session: renew(session, keys))
 
     def restore(self, key: str, catalogue: Catalogue[CadModel], context: Runner) -> None:
-        """Have the STEP file of a recorded build good; raises as `make` does."""
+        """Restore the STEP file of a recorded build if it is lost; raises as `make` does."""
         row = self._row(key, STEP)
         if row and self.store.exists(row.sha256):
             return
@@ -215,7 +215,7 @@ def rehearse(called: Callable[[], bool]) -> None:
 
 @contextmanager
 def failures_named(model: str, analysis: str = "") -> Iterator[None]:
-    """Let a failure of geometry name the model of the design, and one of its analysis that too."""
+    """Name the design's model in failures of its geometry, and the analysis in failures of an analysis."""
     try:
         yield
     except GeometryError as error:

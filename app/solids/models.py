@@ -51,11 +51,11 @@ class Models:
 
     @property
     def catalogue(self) -> Catalogue[CadModel]:
-        """Return the models, as they are now."""
+        """Return the current models."""
         return self.catalogues.models
 
     def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
-        """Return the job that makes a build and its files, or None if all are there."""
+        """Return the job that makes a build and its files, or None if all exist."""
         key = build_key(shape)
         with self.database.read() as session:
             there = rows.artifacts(session, key)
@@ -78,7 +78,7 @@ class Models:
         return self.jobs.commit(unit)
 
     def request_file(self, key: str, kind: str, client: str = "") -> str:
-        """Return the job that makes a file of a finished build, whichever recipe it was made by."""
+        """Return the job that makes a file of a finished build, regardless of its recipe."""
         return self.request_files(key, (kind,), client)
 
     def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
@@ -97,7 +97,7 @@ class Models:
         return self.jobs.commit(unit)
 
     def show(self, key: str) -> Build:
-        """Return a build: its files and what was measured on it.
+        """Return a build: its files and measures.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class ModelBuild:
         Raises
         ------
         JobFailed
-            With the problem, for anything that the model itself brings about.
+            With the problem, for any error that the model itself causes.
         """
         asked = job.payload
         if "builds" in asked:
@@ -199,7 +199,7 @@ class ModelBuild:
     def _derived_of_all(self, keys: Sequence[str], kinds: Sequence[str], context: JobContext) -> Completion:
         """Return the files of several builds.
 
-        What fails for one is raised once those of all others are there.
+        The error of one build is raised after the files of all others exist.
         """
         failures: list[JobFailed | JobCrashed] = []
         for number, key in enumerate(keys):

@@ -93,19 +93,16 @@ class Question:
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """Return the question as it is kept with its answers, without the load."""
+        """Return the question as stored with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:
-        """Return the question as it is shown."""
+        """Return the question in the form of an answer."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
 
 def question(kind: str, options: Options) -> Question:
-    """Return the question that options of a kind ask.
-
-    Nothing said is the default level, and a load of 1 N·m.
-    """
+    """Return the question from options of a kind; the defaults are the default level and a load of 1 N·m."""
     level = options.level or (None if options.tolerance else DEFAULT_LEVEL)
     load = 1.0 if options.load is None or load_faults(options.load) else load_of(options.load)
     return Question(kind, options.boundary, level, options.tolerance, load)
@@ -117,7 +114,7 @@ def load_of(raw: Raw) -> float:
 
 
 def faults(kind: str, options: Options) -> list[Fault]:
-    """Return the faults of the options of a kind, apart from their types."""
+    """Return the faults of the options of a kind, except wrong types."""
     if kind in (UNIT_LOADS, BORE_COMPLIANCE):
         return [*_faults_of_tables(kind, options)]
     both = options.level is not None and options.tolerance is not None
@@ -186,7 +183,7 @@ def _times(load: float, stress: StoredOutput) -> StoredOutput:
 
 
 def offered(kind: str) -> tuple[str, ...]:
-    """Return all outputs of a kind that can be asked for."""
+    """Return all outputs of a kind that can be requested."""
     return (*KINDS[kind],) if kind in WITHOUT_SURFACE else (*KINDS[kind], SURFACE)
 
 
@@ -245,7 +242,7 @@ def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:
 
 
 def warnings(asked: Question, outputs: Mapping[str, StoredOutput]) -> list[dict[str, str]]:
-    """Return the outputs whose error may be larger than was wanted."""
+    """Return the outputs whose error may be larger than requested."""
     wanted = asked.tolerance
     return [
         {"code": "tolerance_unmet", "name": name, "detail": _unmet(error, wanted)}

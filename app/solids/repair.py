@@ -30,7 +30,7 @@ class ArtifactRepair:
         self._lock = threading.Lock()
 
     def is_good(self, sha: str) -> bool:
-        """Return whether an artifact is there with the right bytes.
+        """Return whether an artifact exists with the right bytes.
 
         Otherwise what is there has been set aside.
         """
@@ -44,7 +44,7 @@ class ArtifactRepair:
         ArtifactMissing
             No row names the artifact.
         CannotRebuild
-            It cannot be made again under its hash; what is made instead is on its way.
+            It cannot be made again under its hash; its replacement is on its way.
         """
         with self.database.read() as session:
             row = rows.artifact_named(session, sha)
@@ -86,7 +86,7 @@ class ArtifactRepair:
 
 
 def other_bytes(sha: str) -> CannotRebuild:
-    """Return an artifact that was made again, and is another one now."""
+    """Return the artifact whose recalculation gave other bytes."""
     detail = (
         f"artifact {sha} is lost. It was made again from its row and has other bytes now, because libraries "
         "have changed since: GET the build, the revision or the analysis that names it for the new hash"

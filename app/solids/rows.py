@@ -69,14 +69,14 @@ _ARTIFACT = Statement(
 
 
 def build(session: Session, key: str) -> Build | None:
-    """Return a build by its key, if it was made."""
+    """Return a build by its key, if it exists."""
     for row in _BUILD.run(session, {"of": key}):
         return Build(*row)
     return None
 
 
 def measures(session: Session, key: str) -> Mapping[str, float] | None:
-    """Return the measures of a build, if it was made."""
+    """Return the measures of a build, if it exists."""
     for (measured,) in _MEASURED.run(session, {"of": key}):
         return dict(measured["measures"])
     return None
@@ -96,7 +96,7 @@ def built(database: Database) -> Callable[[CadModel], Mapping[str, float] | None
 
 
 def artifact(session: Session, key: str, kind: str) -> Artifact | None:
-    """Return one artifact of a build, if it was made."""
+    """Return one artifact of a build, if it exists."""
     for row in _ARTIFACT.run(session, {"of": key, "like": kind}):
         return Artifact(*row)
     return None
@@ -198,7 +198,7 @@ FRESH = (
 
 
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
-    """Return whether all of these builds exist, and will stay for as long as any request or job takes."""
+    """Return whether all of these builds exist, and will stay longer than any request or job takes."""
     wanted, present = set(keys), operated(session)
     seen = _seen(session, wanted)
     return len(seen) == len(wanted) and min(map(itemgetter(1), seen), default=present) >= present - FRESH

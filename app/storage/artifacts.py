@@ -52,7 +52,7 @@ class Artifacts(Protocol):
 
     @property
     def is_shared(self) -> bool:
-        """Return whether more servers than the one of a data folder may use the store."""
+        """Return whether several servers may share the store."""
         ...
 
     def put(self, *parts: bytes | memoryview) -> str:
@@ -100,7 +100,7 @@ class Artifacts(Protocol):
         ...
 
     def write_note(self, name: str, text: str) -> None:
-        """Write a note of the store under a name, in place of the one before."""
+        """Write a note of the store under a name, and replace any earlier one."""
         ...
 
     def probe(self) -> None:
@@ -186,7 +186,7 @@ class ArtifactStore:
             raise
 
     def exists(self, sha: str) -> bool:
-        """Return whether the artifact is there and its bytes still have this hash.
+        """Return whether the artifact exists and its bytes still have this hash.
 
         A damaged one is set aside.
         """
@@ -319,7 +319,7 @@ def require_name(sha: str) -> None:
     Raises
     ------
     ArtifactMissing
-        It is none.
+        It is not a hash.
     """
     if not SHA256.fullmatch(sha):
         raise ArtifactMissing(sha)

@@ -200,7 +200,10 @@ class BucketStore:
         return True
 
     def _is_put_back(self, sha: str) -> bool:
-        """Put back an object that the bucket has lost, from a good copy here; whether that was possible."""
+        """Put back an object that the bucket has lost, from a good copy here.
+
+        Return whether this was possible.
+        """
         data = self._copies.read(sha)
         if data is None:
             return False
@@ -228,7 +231,7 @@ class BucketStore:
         return opened is not None
 
     def _keep(self, data: bytes) -> None:
-        """Keep a copy if the disk takes one: the bucket has the bytes."""
+        """Keep a copy if the disk has room; the bucket has the bytes in any case."""
         try:
             self._copies.put(data)
         except OSError as error:

@@ -84,7 +84,7 @@ class OperationClock:
         return seconds
 
     def commit(self, seconds: int) -> None:
-        """Note that the raise is durable; if its transaction is lost, the next one makes up for it."""
+        """Record that the increase is durable; if its transaction is lost, the next one makes up for it."""
         self._counted += seconds
 
     def close(self) -> None:
@@ -104,7 +104,7 @@ class SharedClock:
         self._thread.start()
 
     def close(self) -> None:
-        """Move it a last time, and end the thread. A second call does nothing."""
+        """Move the counter a last time, and end the thread. A second call does nothing."""
         self._stopping.set()
         self._thread.join()
 

@@ -87,7 +87,7 @@ def require_connection(url: str) -> None:
 
 
 def require_database(url: str) -> None:
-    """Check that a URL names a kind of database that there is; raises NotForTeams."""
+    """Check that a URL names a supported kind of database; raises NotForTeams."""
     try:
         backend = make_url(url).drivername.partition("+")[0]
     except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted

@@ -103,7 +103,7 @@ class Copies:
             self._used = {sha: used for sha, used in self._used.items() if sha in files}
 
     def _last_use(self, file: StoredFile) -> float:
-        """Return when this process, or another one as far as the file system notes it, last used a copy."""
+        """Return when this process, or another as far as the file system records it, last used a copy."""
         with suppress(OSError):
             location = self._files.folder / file.sha[:2] / file.sha
             return max(location.stat().st_atime, file.modified, self._used.get(file.sha, 0.0))

@@ -94,11 +94,11 @@ class Database:
         return self._writer.write(unit)
 
     def submit(self, unit: Unit[T]) -> "Future[T]":
-        """Have a unit of work written; its future raises as `write` does."""
+        """Queue a unit of work for writing; its future raises as `write` does."""
         return self._writer.submit(unit)
 
     def write_through(self, around: Callable[[Writer], Writer]) -> None:
-        """Have all further units of work pass through what is put around the writer."""
+        """Send all further units of work through a wrapper around the writer."""
         self._writer = around(self._writer)
 
     def close(self) -> None:

@@ -38,7 +38,7 @@ class DataFolder:
         return self.path / "artifacts"
 
     def release(self) -> None:
-        """Let another process have the folder."""
+        """Release the folder for another process."""
         os.close(self._lock)
 
     def _acquire(self) -> None:

@@ -77,7 +77,7 @@ class Once:
         return self.find(session)
 
     def keep(self, session: Session, status: int, location: JsonObject) -> None:
-        """Remember what this request led to."""
+        """Store the answer of this request."""
         if self.key:
             upsert_values(session, _ROWS, self._new(operated(session), status, location))
 

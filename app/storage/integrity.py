@@ -51,7 +51,7 @@ def refuse_damage(url: str) -> None:
 
 
 def marker_of(path: Path) -> Path:
-    """Return the note beside a SQLite file that damage has shown while a service used it."""
+    """Return the path of the note beside a SQLite file that records damage found in use."""
     return path.with_name(f"{path.name}.damaged")
 
 
@@ -142,7 +142,7 @@ def _of_pages(connection: sqlite3.Connection, most: int) -> Iterator[str]:
 
 
 def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield rows with texts that should be JSON and are not.
+    """Yield the rows with texts that should be JSON but are not.
 
     A database of an older program may lack columns.
     """

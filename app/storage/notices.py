@@ -59,7 +59,7 @@ class Notices:
             thread.start()
 
     def stop(self) -> None:
-        """Send what waits, and end; a second call does nothing."""
+        """Send the waiting hints, and end; a second call does nothing."""
         self._stopping.set()
         self._waiting.put(None)
         for thread in self._threads:
@@ -158,7 +158,7 @@ def payloads(hints: Iterable[str]) -> Iterator[str]:
 
 
 def hints_of(payload: str) -> list[str]:
-    """Return the hints of a notification; none, if it is not one of ours."""
+    """Return the hints of a notification; none for a notification of another program."""
     try:
         hints = json.loads(payload)
     except ValueError:

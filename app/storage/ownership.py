@@ -59,7 +59,7 @@ def require_own_store(settings: Settings, folder: DataFolder) -> None:
 
 
 def _identity(session: Session) -> str:
-    """Return the identity of a database, chosen at random when it is first asked for; a backup keeps it."""
+    """Return the identity of a database, chosen at random at the first request; a backup keeps it."""
     repeatable(session)
     insert_new(session, CounterRow(name=NAME, value=secrets.randbits(63)))
     number = session.scalars(select(CounterRow.value).where(CounterRow.name == NAME)).one()

@@ -70,7 +70,7 @@ class PooledWriter:
         self._closed = True
 
     def _stored(self, unit: Unit[T]) -> tuple[T, list[Callable[[], object]]]:
-        """Return the result of a unit that is durable, and what is to follow it."""
+        """Return the result of a durable unit, and the functions to call after it."""
         is_unknown = False  # whether an earlier run may have been stored
         for pause in (2**n for n in range(RETRIES)):
             try:

@@ -73,7 +73,7 @@ class Bucket:
 
     @property
     def is_silent(self) -> bool:
-        """Return whether the bucket has just not answered."""
+        """Return whether the bucket failed to answer a moment ago."""
         return time.monotonic() < self._silent_until
 
     def head(self, key: str) -> Entry | None:
@@ -142,7 +142,10 @@ class Bucket:
 
     @contextmanager
     def _asked(self, operation: str) -> Iterator[None]:
-        """Leave the block without an error if what it asks for is missing; raises ArtifactsUnreachable."""
+        """Leave the block without an error if the requested object is missing.
+
+        Raises ArtifactsUnreachable.
+        """
         start, outcome = time.perf_counter(), "good"
         try:
             yield

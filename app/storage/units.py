@@ -48,7 +48,7 @@ class Writer(Protocol):
         ...
 
     def submit(self, unit: Unit[T]) -> Future[T]:
-        """Have a unit run; its future raises as `write` does."""
+        """Queue a unit; its future raises as `write` does."""
         ...
 
     def close(self) -> None:
@@ -57,7 +57,7 @@ class Writer(Protocol):
 
 
 def after_commit(session: Session, function: Callable[[], object]) -> None:
-    """Have a function called once the unit of work of this session is durable; never, if the unit is lost.
+    """Call a function once the unit of work of this session is durable; never if the unit is lost.
 
     It is called in the thread of the writer, before the caller of the unit goes on. It may not write.
     """
@@ -65,7 +65,7 @@ def after_commit(session: Session, function: Callable[[], object]) -> None:
 
 
 def repeatable(session: Session) -> None:
-    """Say that this unit of work does no harm if it runs again, even if it has been stored already.
+    """Declare that this unit of work may run again, even if it has been stored already.
 
     So it may be repeated when the connection is lost during its commit, and nobody knows if it is stored.
     """
@@ -73,7 +73,7 @@ def repeatable(session: Session) -> None:
 
 
 def follow(functions: list[Callable[[], object]]) -> None:
-    """Call what follows a unit; an error there takes nothing along."""
+    """Call the functions that follow a unit; an error in one does not affect the others."""
     for function in functions:
         try:
             function()
@@ -197,7 +197,7 @@ class _DriverStatement:
 
 
 def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
-    """Return the error as SQLAlchemy raises it."""
+    """Return the error in the form that SQLAlchemy raises."""
     return DBAPIError.instance(text, parameters, error, sqlite3.Error, dialect=_SQLITE)  # type: ignore[call-overload,no-any-return]
 
 

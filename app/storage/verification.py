@@ -36,11 +36,11 @@ class OpenFile:
         return stamp_of(self.file) == self.stamp
 
     def __enter__(self) -> OpenFile:
-        """Keep it open."""
+        """Keep the file open."""
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Close it."""
+        """Close the file."""
         self.file.close()
 
 
@@ -62,12 +62,12 @@ class Newest(Generic[T]):
         self._lock = threading.Lock()
 
     def knows(self, sha: str) -> bool:
-        """Return whether anything is noted of this name."""
+        """Return whether the notes have an entry for this name."""
         with self._lock:
             return sha in self._noted
 
     def has(self, sha: str, noted: T) -> bool:
-        """Return whether this is noted of a name."""
+        """Return whether the notes have this entry for a name."""
         with self._lock:
             if self._noted.get(sha) != noted:
                 return False
@@ -75,14 +75,14 @@ class Newest(Generic[T]):
             return True
 
     def add(self, sha: str, noted: T) -> None:
-        """Note this of a name, in place of anything else."""
+        """Store this entry for a name in place of any other."""
         with self._lock:
             self._noted[sha] = noted
             while len(self._noted) > self._most:
                 self._noted.popitem(last=False)
 
     def forget(self, sha: str) -> None:
-        """Note nothing of a name any more."""
+        """Remove the entry of a name."""
         with self._lock:
             self._noted.pop(sha, None)
 

@@ -42,7 +42,7 @@ class Vary(Bounded):
 
     @model_validator(mode="after")
     def one_of_both(self) -> Self:
-        """Require either bounds or a list."""
+        """Check that either bounds or a list is given."""
         if (self.between is None) == (self.values is None):
             raise ValueError("give either `between`, two bounds, or `values`, a list")
         return self
@@ -113,7 +113,7 @@ def study_of(raw: JsonObject) -> StudyIn:
     Raises
     ------
     InvalidBody
-        With everything that is wrong.
+        With all its faults.
     """
     try:
         return StudyIn.model_validate(raw)

@@ -38,7 +38,7 @@ class Chunk:
 def explored(
     task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
 ) -> Chunk | PendingSolids:
-    """Return rows number `first` to `last`, the last one excluded, as the method has them."""
+    """Return rows number `first` to `last`, the last one excluded, in the order of the method."""
     points = prepared(task).asked.points
     assert points is not None, "a table or an optimisation gives its rows itself"
     return calculated(task, points.rows(first, last), levels, criteria, solids)

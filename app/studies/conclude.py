@@ -26,7 +26,7 @@ class StudyConclusion:
         self._building = building
 
     def __call__(self, run: Run) -> StudyResult:
-        """Return the result of a study; raises what its design brings about."""
+        """Return the result of a study; raises the errors that its design causes."""
         return self._building.built(run, read_body(run.task.body), _concluded(run))
 
 
@@ -74,7 +74,7 @@ def _chosen(run: Run) -> StudyResult:
 
 
 def _shares_met(run: Run, stored: StoredRows, worst: AnyArray) -> dict[str, object]:
-    """Return the share of the rows that meet all criteria, and each of them; nothing where there are none."""
+    """Return the share of rows that meet all criteria, and each single one; nothing without criteria."""
     if not run.plan.required:
         return {}
     shares = {name: float(np.mean(is_met(stored.codes(name)))) for name in run.plan.required}
@@ -117,7 +117,7 @@ def _answered(**fields: object) -> StudyResult:
 
 
 def _trade(run: Run, stored: StoredRows, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
-    """Return the promise of each level of the exploration in some rows, and the true value there."""
+    """Return the estimate of each exploration level in some rows, and the accurate value there."""
     pairs = zip(
         rows_found(run, stored, explored, confirmed=False),
         rows_found(run, stored, confirmed, confirmed=True),

@@ -13,10 +13,7 @@ from templates.core.criteria.criterion import Criterion
 
 
 def criterion_of(engine: DesignEngine, name: str) -> Criterion:
-    """Return a criterion as it is judged.
-
-    As the design writes it, else as the template of its step declares it.
-    """
+    """Return a criterion from the design, else from the template of its step."""
     return subjects(engine.graph)[name].criterion
 
 

@@ -17,8 +17,8 @@ from app.studies.front import MOST_CONFIRMED, MOST_FRONT
 from app.studies.task import TaskState
 from templates.core.arrays import Array
 
-FEW, MANY = 8, 512  # rows of the two calls that are timed
-AFFORDABLE = 0.25  # for the call of many rows [s]
+FEW, MANY = 8, 1024  # rows of the two calls that are timed
+AFFORDABLE = 0.5  # for the call of many rows [s]
 SCANNED, CALLS = 4096, 100  # rows of the scan of a search, and calls of a few rows after it
 GENERATIONS, POPULATION = 500, 100  # calls of a search for several objectives, in all rounds; rows of each
 IN_CALL = 4096  # rows
@@ -43,8 +43,9 @@ def estimated(
     criteria: Collection[str],
     levels: Levels,
     confirm: Levels | None,
+    chunk: int,
 ) -> float:
-    """Return the processor time of a study of this number of rows [s]."""
+    """Return the processor time of a study of this number of rows, in chunks of so many [s]."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace
@@ -55,7 +56,7 @@ def estimated(
         return pace.seconds(rows, 1 + calls) + again.seconds(MOST_CONFIRMED)
     most = MOST_FRONT if several else MOST_CONFIRMED
     repeated = most if confirm is not None and ready.asked.objectives else 0
-    return pace.seconds(count) + again.seconds(min(count, repeated))
+    return pace.seconds(count, -(-count // chunk)) + again.seconds(min(count, repeated))
 
 
 def paced(ready: TaskState, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:

@@ -60,5 +60,5 @@ def _undominated(sorted_rows: Array) -> Mask:
 
 
 def signed(columns: Array, maximised: Sequence[bool]) -> Array:
-    """Return objectives as something to minimise."""
+    """Return objectives with their sign changed where they are maximised."""
     return columns * np.where(maximised, -1.0, 1.0)

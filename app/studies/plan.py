@@ -62,6 +62,11 @@ class Plan:
         return min(1.0, done + (1.0 - building) * rows / max(1, self.rows))
 
     @property
+    def estimate(self) -> float | None:
+        """Return the estimated time of all rows [s]; None of a search, and where solids have to be built."""
+        return None if self.searched or self.solids else self.seconds
+
+    @property
     def chunks(self) -> int:
         """Number of chunks that explore; those that confirm follow. An optimisation has no such number."""
         return MOST_CHUNKS if self.searched else -(-self.rows // self.chunk)
@@ -100,7 +105,7 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     _refuse_curves(first.columns, ready.asked.wanted)
     required = criteria if body.hold is not None else _checked(criteria, first, task)
     levels: dict[str, str | None] = {**behind, **first.levels}
-    needed = counted(ready, count, given, levels, solid_seconds)
+    needed = counted(ready, count, given, levels)
     if body.explore is not None:
         levels |= _levels(ready, probe, criteria, body.explore.tolerance, SHARE)
     confirm = None
@@ -108,6 +113,7 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
         confirm = {**levels, **_levels(ready, probe, criteria, body.confirm.tolerance, 1.0)}
     names = [*task.varied, *map(str, ready.asked.wanted)]
     limits = {name: criterion_of(ready.engine, name).unit for name in criteria}
+    chunk = min(count, _chunk(ready, criteria, levels))
     plan = Plan(
         places=list(task.varied),
         outputs=[str(output) for output in ready.asked.wanted],
@@ -117,10 +123,11 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
         levels=levels,
         confirm=confirm,
         rows=count,
-        chunk=min(count, _chunk(ready, criteria, levels)),
+        chunk=chunk,
         confirm_chunk=_chunk(ready, criteria, confirm or levels),
         searched=_searched(ready, levels, confirm),
-        seconds=estimated(ready, probe, count, criteria, levels, confirm) + needed.solids * solid_seconds,
+        seconds=estimated(ready, probe, count, criteria, levels, confirm, chunk)
+        + needed.solids * solid_seconds,
         measured=dict(task.measured),
         solids=needed.solids,
         solid_seconds=solid_seconds if needed.solids else 0.0,

@@ -23,7 +23,10 @@ SetAside = Annotated[
 class Estimate(Answer):
     """The estimated cost of a study before it begins."""
 
-    seconds: float = Field(description="of one calculation process; an order of magnitude")
+    seconds: float | None = Field(
+        description="processor time of one calculation process; null of a search, which ends as it settles, "
+        "and where solids have to be built"
+    )
     solids: int = Field(0, description="that have to be built")
 
 

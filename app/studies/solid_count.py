@@ -1,4 +1,4 @@
-"""Count the solids of a study before it begins; refuse too many solids or hours."""
+"""Count the solids of a study before it begins; refuse too many solids."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from templates.core.errors import Fault, InvalidInputs
 NEEDS_SOLIDS = "needs_solids"
 MOST_SOLIDS, MOST_ANALYSED = 500, 100
 """Solids that are built for a study; solids that are analysed by finite elements for it."""
-HOUR = 3600.0  # s
 AT_ONCE = 65_536  # rows that are compared with those before
 MOST_COMPARED = 20_000  # distinct sets of values; if there are more, all rows are said to differ
 MOST_TRIED = 4096  # distinct sets of values from which solids are counted exactly
@@ -33,8 +32,8 @@ class SolidCount:
     analysed: int = 0
 
 
-def counted(ready: TaskState, count: int, given: Array | None, levels: Levels, seconds: float) -> SolidCount:
-    """Return the solids that the rows of a study need; to build one takes so long [s].
+def counted(ready: TaskState, count: int, given: Array | None, levels: Levels) -> SolidCount:
+    """Return the solids that the rows of a study need.
 
     Raises
     ------
@@ -45,24 +44,23 @@ def counted(ready: TaskState, count: int, given: Array | None, levels: Levels, s
     if not solids.measures:
         return SolidCount()
     if points is None and given is None:
-        raise InvalidInputs(_refused(ready, count, count, seconds, SEARCHES))
+        raise InvalidInputs(_refused(ready, count, count, SEARCHES))
     several = {model.name: _of_model(ready, model, count, given, levels) for model in solids.models}
     needed = SolidCount(sum(several.values()), sum(several[name] for name in solids.analysed))
     if needed.solids > MOST_SOLIDS:
         why = f"a study builds at most {MOST_SOLIDS}"
-        raise InvalidInputs(_refused(ready, count, needed.solids, seconds, why))
+        raise InvalidInputs(_refused(ready, count, needed.solids, why))
     if needed.analysed > MOST_ANALYSED:
         why = f"a study analyses at most {MOST_ANALYSED} by finite elements"
-        raise InvalidInputs(_refused(ready, count, needed.analysed, seconds, why))
+        raise InvalidInputs(_refused(ready, count, needed.analysed, why))
     return needed
 
 
-def _refused(ready: TaskState, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
+def _refused(ready: TaskState, rows: int, solids: int, why: str) -> Iterator[Fault]:
     """Yield a fault for each measure, which names the chain from what varies."""
     graph, measures = ready.engine.graph, ready.solids.measures
-    hours = f"about {solids * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
     for fault in solids_in_the_way(graph, measures, ready.engine.design.moving):
-        yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids, {hours}; {why}")
+        yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids; {why}")
 
 
 def _of_model(ready: TaskState, model: Block, count: int, given: Array | None, levels: Levels) -> int:

@@ -52,7 +52,7 @@ def study(session: Session, row: Row) -> Study:
         "levels": _named(plan.levels),
         "set_aside": plan.set_aside,
         "objectives": {name: way for way in ("minimise", "maximise") for name in row.body.get(way, ())},
-        "estimate": Estimate(seconds=plan.seconds, solids=plan.solids),
+        "estimate": Estimate(seconds=plan.estimate, solids=plan.solids),
         "created": row.created,
         "changed": row.updated,
     }
@@ -75,7 +75,7 @@ def estimate(plan: Plan) -> StudyEstimate:
         levels=_named(plan.levels),
         confirm=_named(plan.confirm or {}),
         set_aside=plan.set_aside,
-        estimate=Estimate(seconds=plan.seconds, solids=plan.solids),
+        estimate=Estimate(seconds=plan.estimate, solids=plan.solids),
     )
 
 

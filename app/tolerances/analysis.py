@@ -199,7 +199,7 @@ class Analysis:
         if seconds > LONGEST:
             levels = ", ".join(f"{step}: {level}" for step, level in self.levels.items())
             remedy = 'name cheaper ones, as in "levels": {"film": "map"}, or ask for fewer points'
-            detail = f"{rows} rows at these levels ({levels}) take about {seconds:.2g} s; {remedy}"
+            detail = f"{rows} rows at these levels ({levels}) take too long to calculate; {remedy}"
             raise_if([Fault("levels", "too_expensive", detail)])
 
 

@@ -140,12 +140,12 @@ class BearingLoad(Cylinder):
 
     @shared
     def grid(self) -> CrankGrid:
-        """The angles at which the greatest values are sought."""
+        """The angles at which the maxima are calculated."""
         return crank_grid(self.strokes, self.step, self.gas.corners())
 
     @shared
     def everywhere(self) -> Motion:
-        """The mechanism at these angles."""
+        """The mechanism at all these angles."""
         return crank_motion(self.grid.theta, self.n)
 
     @shared

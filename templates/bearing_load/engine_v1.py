@@ -196,7 +196,7 @@ class Engine(ArticulatedEngine):
 
     @require("main_positions", remedy="give two or more, ascending")
     def mains_ascend(self) -> Truth:
-        """The mains stand one after the other along the shaft."""
+        """The positions of the mains ascend along the shaft."""
         return mains_ascend(self.z_m)
 
     @require("support_stiffness", "main_positions", missing=True,
@@ -232,7 +232,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def mains(self) -> Vectors:
-        """Loads of the mains, determinate."""
+        """Statically determinate loads of the mains."""
         return determinate(self.z_m, self.loads)
 
     @shared
@@ -250,7 +250,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Loads of mains with play; none where they have none, or the crank is not given."""
+        """Loads of mains with clearance; none if they have none, or the crank is not given."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,

@@ -189,7 +189,7 @@ class Flywheel(Cylinder):
 
     @require("damper_position", "flywheel_position", remedy="balance needs two planes")
     def two_planes_differ(self) -> Truth:
-        """Damper and flywheel stand in different planes."""
+        """Damper and flywheel are in different planes."""
         return self.z_d != self.z_f
 
     @shared

@@ -147,7 +147,7 @@ class MeasuredCurves(Template):
 
     @require("measured_angle", "cycle", remedy="measure one whole cycle, or give its length")
     def measured_all_round(self) -> Truth:
-        """The measurement is of one cycle, without a gap above a quarter of it."""
+        """The measurement covers one cycle, without a gap above a quarter of it."""
         return covers(self.theta_m, self.cycle)
 
     @profile("um", "film as measured", along=CYCLE, symbol=r"h_{m}")

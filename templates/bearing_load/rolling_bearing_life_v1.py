@@ -104,7 +104,7 @@ class RollingBearingLife(Template):
 
     @require("axial_load", "rolling_elements", remedy="give the equivalent load as radial_load")
     def axial_load_on_balls(self) -> Truth:
-        """X and Y are those of deep groove ball bearings."""
+        """X and Y apply to deep groove ball bearings."""
         return is_bearable(self.F_a, self.elements)
 
     @shared

@@ -38,18 +38,18 @@ def may_write() -> bool:
 
 
 def file(name: str) -> str | bool:
-    """Return the file for Lark's `cache`, which checks by itself what it finds there.
+    """Return the file for Lark's `cache`, which validates its content.
 
-    False if there can be none.
+    The result is False if no file is possible.
     """
     kept = place(name)
     return str(kept) if may_write() or kept.is_file() else False
 
 
 def from_folder(name: str, make: Callable[[Path | None], T]) -> T:
-    """Make something with the help of a folder that holds its parts ready; without one, if there is none.
+    """Create something with a folder of prepared parts; without one, if there is none.
 
-    A folder is filled under another name and renamed, so that who finds it finds all of it.
+    A folder is filled under another name and then renamed, so that it is always complete.
 
     Parameters
     ----------

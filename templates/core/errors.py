@@ -143,7 +143,7 @@ def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) ->
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the names in a sentence, however many there are."""
+    """Return the names as a list in a sentence, limited in length."""
     more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
     return ", ".join(names[:MOST_LISTED]) + more
 
@@ -163,7 +163,7 @@ def excerpt(raw: Any) -> str:
 
 
 def plain(name: str, most: int = 80) -> str:
-    """Return a name that was sent, short and fit for JSON.
+    """Return a received name, shortened and valid in JSON.
 
     Lone surrogates are escaped, other letters kept.
     """

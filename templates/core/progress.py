@@ -12,7 +12,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(fraction: float, text: str) -> None:
-    """Say what fraction (0 to 1) of the work is done, and what is done next."""
+    """Report the completed fraction (0 to 1) of the work, and the next action."""
     reporter = _reporter.get()
     if reporter is not None:
         reporter(fraction, text)
@@ -20,7 +20,7 @@ def report(fraction: float, text: str) -> None:
 
 @contextmanager
 def reporting(reporter: Reporter | None) -> Iterator[None]:
-    """Let `report` reach this reporter within the context."""
+    """Send reports to this reporter within the context."""
     token = _reporter.set(reporter)
     try:
         yield

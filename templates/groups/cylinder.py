@@ -98,12 +98,12 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("kg", "rod mass at crankpin", symbol="m_{3A}", source=DYREMI)
     def m_3A(self) -> Array:
-        """Share of the rod's mass at the big end."""
+        """Part of the rod's mass at the big end."""
         return self.m_3 * self.a_g / self.l
 
     @formula("kg", "rod mass at wristpin", symbol="m_{3B}", source=DYREMI)
     def m_3B(self) -> Array:
-        """Share of the rod's mass at the small end."""
+        """Part of the rod's mass at the small end."""
         return self.m_3 * self.b_g / self.l
 
     @formula("kg", "rotating mass", symbol="M", source=DYREMI)
@@ -118,12 +118,12 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("cm**2", "bore area", symbol="A")
     def A(self) -> Array:
-        """The area on which the gas presses."""
+        """The area of the piston under the gas pressure."""
         return np.pi * self.D**2 / 4
 
     @formula("kg*m**2", "inertia excess", symbol=r"\Delta I", source=DYREMI, absent=NO_INERTIA)
     def dI(self) -> Array:
-        """Excess of the two masses' inertia over that of the rod."""
+        """Excess of the moment of inertia of the two masses over that of the rod."""
         return self.m_3 * self.a_g * self.b_g - self.I_3
 
     @formula("kg*m**2", "inertia correction", symbol=r"\Delta I_{c}", source=DYREMI,

@@ -74,7 +74,7 @@ class EngineMotion(EngineBalance):
 
     @shared
     def grid(self) -> CrankGrid:
-        """The angles at which all is calculated, of which some are returned."""
+        """The crank angles of the calculation; some of them are returned."""
         return crank_grid(self.strokes, self.step, corners(self.gas, self.layout))
 
     @shared
@@ -109,7 +109,7 @@ class EngineMotion(EngineBalance):
 
     @shared
     def pins(self) -> Vectors:
-        """The same in the engine's axes."""
+        """Force of each rod on its pin in the engine's axes [N], complex."""
         return in_engine_axes(self.rod_forces, self.layout.bank)
 
     @shared

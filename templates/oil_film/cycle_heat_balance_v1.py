@@ -160,17 +160,17 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
     def sleeve_hole_counts(self) -> Truth:
-        """A hole in the sleeve feeds the film at level supplied alone."""
+        """A hole in the sleeve feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.sleeve_holed
 
     @require("pin_hole_length", warning="unused_input", remedy="take level supplied")
     def pin_hole_counts(self) -> Truth:
-        """A hole in the pin feeds the film at level supplied alone."""
+        """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
     @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
     def pressure_counts(self) -> Truth:
-        """The supply pressure drives oil from a groove; from holes at level supplied alone."""
+        """The supply pressure drives oil from a groove; from holes only at level supplied."""
         return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
 
     def ladder(self) -> tuple[str, ...]:
@@ -268,7 +268,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("1", "shear loss", symbol=r"\delta_{\gamma}", source=CROSS)
     def shear_loss(self) -> Array:
-        """The share of the viscosity that shear takes."""
+        """The relative reduction of the viscosity by shear."""
         return 1 - self.eta_e / self.eta
 
     @formula("W", "power loss", symbol="P",
@@ -295,7 +295,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}", latex="Q+Q_{p}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return all_flow(self.Q, self.Q_p)
 
     @shared

@@ -187,7 +187,7 @@ class ElasticFilm(Oil, Journal):
         return (self.level != RIGID) | (self.alpha == 0)
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels for which what gives way is known."""
+        """The levels whose elastic data are known."""
         known = {
             RIGID: True, LINER: bool(np.all(self.t_l > 0)), HOUSING: bool(np.all(np.isfinite(self.D_h))),
             ELASTIC: bool(len(self.C_b)),
@@ -268,7 +268,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def film(self) -> ElasticJournalFilm:
-        """The film, where it bears the load."""
+        """The film if it carries the load."""
         return self.unbounded_film.admitted(self.eps)
 
     @text("boundary condition")
@@ -287,7 +287,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("um", "minimum film thickness", symbol="h_{0}")
     def h_0(self) -> Array:
-        """The least gap, wherever it is."""
+        """The least gap of the whole bearing."""
         return self.c * self.film.least / 2
 
     @formula("1", "mesh error", symbol="e_{h}", absent=RIGID_HAS_NONE)
@@ -349,5 +349,5 @@ class ElasticFilm(Oil, Journal):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q

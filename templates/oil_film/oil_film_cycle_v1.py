@@ -200,12 +200,12 @@ class OilFilmCycle(FedBearing):
 
     @require("sleeve_hole_length", warning="unused_input", remedy=MARCH_IT)
     def sleeve_hole_counts(self) -> Truth:
-        """A hole in the sleeve feeds the film at level supplied alone."""
+        """A hole in the sleeve feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.sleeve_holed
 
     @require("pin_hole_length", warning="unused_input", remedy=MARCH_IT)
     def pin_hole_counts(self) -> Truth:
-        """A hole in the pin feeds the film at level supplied alone."""
+        """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
     @require("supply_pressure", warning="unused_input", remedy="leave it out, or see the other warnings")
@@ -328,7 +328,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def orbit(self) -> FedOrbit:
-        """The orbit, where it bears the load."""
+        """The orbit if its film carries the load."""
         return self.any_orbit.admitted(self.eps_max)
 
     @shared
@@ -409,7 +409,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}", absent=STARVED)
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q
 
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,

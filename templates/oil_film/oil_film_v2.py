@@ -323,7 +323,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def film(self) -> StaticFilm:
-        """The film, where it bears the load."""
+        """The film if it carries the load."""
         return self.unbounded_film.admitted(self.eps)
 
     @text("boundary condition")
@@ -341,7 +341,7 @@ class OilFilm(WarmOil, Journal):
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}")
     def h_0(self) -> Array:
-        """The least gap, wherever it is."""
+        """The least gap of the whole bearing."""
         return self.c * self.film.least / 2
 
     @formula("1", "mesh error", symbol=r"e_{h}", absent=NO_MESH)
@@ -396,7 +396,7 @@ class OilFilm(WarmOil, Journal):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q
 
     @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=ISO)

@@ -206,7 +206,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def case(self) -> ThermalCase:
-        """The bearing with its oil."""
+        """The bearing and its oil."""
         return ThermalCase(
             F=self.F, D=self.D, W=self.b * self.D, psi=self.psi, omega=self.omega, pressure=self.p_s,
             angle=self.phi_g, extent=self.ext_g, length=self.l_g, carry_over=self.kappa, supply=self.T_film,
@@ -307,7 +307,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("l/min", "total oil flow", symbol="Q_{t}")
     def Q_t(self) -> Array:
-        """What the supply has to deliver: all that leaves by the ends."""
+        """Flow that the supply must deliver: all oil that leaves at the ends."""
         return self.Q
 
     @formula("W", "heat generated", symbol=r"\Phi")
@@ -340,7 +340,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("mPa*s", "effective viscosity", symbol=r"\eta_\mathrm{eff}")
     def eta_one(self) -> Array:
-        """At that temperature."""
+        """Viscosity at the effective temperature."""
         return warm_viscosity(self.case, self.T_one)
 
     @formula("um", "film of one temperature", symbol="h_{1}", source=ISO, absent=ONE_HAS_NONE)
@@ -350,7 +350,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("W", "loss of one temperature", symbol="P_{1}", source=ISO, absent=ONE_HAS_NONE)
     def P_one(self) -> Array:
-        """The power loss that it gives."""
+        """The power loss that the effective temperature gives."""
         return self.film.one_torque * self.eta * self.omega**2 * self.W * self.D**2 / (4 * self.psi)
 
     @formula("1", "film ratio", symbol="h_{1}/h_{0}", absent=ONE_HAS_NONE)

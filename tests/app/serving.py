@@ -315,6 +315,16 @@ def settled(http: httpx.Client, id: str, seconds: float = 60.0) -> dict:
     return until(ask, lambda design: design["state"] != "regenerating", seconds)
 
 
+def ended(http: httpx.Client, response: httpx.Response) -> dict:
+    """The job of an accepted request, after its end."""
+    assert response.status_code == 202, response.text
+    job = response.headers["Location"]
+    with http.stream("GET", f"{job}/events") as events:
+        for _ in events.iter_lines():
+            pass
+    return http.get(job).json()
+
+
 def pages(http: httpx.Client, path: str, limit: int, most: int):
     """The items of a list, page by page; fail if it goes on beyond so many pages."""
     cursor = {}

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from seeds import seeded
 
+from benchmarks.step_bound import random_duties
 from templates.core.arrays import Array
 from templates.physics.orbits import journal_orbit
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
@@ -269,19 +270,6 @@ def test_one_case_and_many_agree() -> None:
     for k, (S, ratio) in enumerate(zip(sizes, ratios, strict=True)):
         alone = periodic_orbit(duty(S), law(MapLaw, ratio=ratio))
         assert many.eps[:, k] == pytest.approx(alone.eps[:, 0], rel=1e-9, abs=1e-12, nan_ok=True)
-
-
-def random_duties(rng: np.random.Generator, count: int, points: int) -> tuple[CyclicLoad, Array]:
-    """Harmonics and a firing at random, six decades of load, speeds of both signs and none, B/D 0.05 … 5."""
-    angle = angles(points)
-    order = np.arange(8)[:, None, None]
-    size = rng.random((8, count, 4)) * (rng.random((8, count, 1)) < 0.5) / (1 + order)
-    waves = np.stack([np.cos(order * angle / 2), np.sin(order * angle / 2)])
-    S = np.einsum("ocf,foan->fcn", size[..., :2] - size[..., 2:] / 2, waves)
-    S[0] += 3 * rng.random((count, 1)) * np.exp(8 * (np.cos((angle - 6.3 * rng.random((count, 1))) / 2) - 1))
-    S *= 10 ** rng.uniform(-3, 3, (count, 1))
-    w = rng.choice([0.5, 0.5, 1.0, -0.5, 0.0, 0.1, 3.0], (count, 1)) * np.ones(points)
-    return CyclicLoad(angle, FOUR_STROKE, S, w), 10 ** rng.uniform(-1.3, 0.7, count)
 
 
 def check_random(count: int, seed: int) -> None:

@@ -53,6 +53,11 @@ SEIZED = {"thermal_clearance": "diametral_clearance"}
 STEPS = {
     ("combustion_cycle", "peak_pressure_angle"): "of two peaks another becomes the higher",
     ("combustion_cycle", "energy_balance_error"): "below 1e-9 it is 0",
+    ("engine", "governing_main"): "it is the number of a bearing",
+    ("engine", "governing_elastic_main"): "it is the number of a bearing",
+    ("oil_film_cycle", "numerical_error"): "the orbit goes over to a finer ring, by which it is stated",
+    ("oil_film_cycle", "minimum_film_angle"): "of two narrow places another becomes the narrower",
+    ("oil_film_cycle", "maximum_pressure_angle"): "it is one of the angles given",
     ("oil_film", "smallest_permissible_film"): "the table of ISO 7902-3 has steps",
     ("oil_film", "fit_exponent"): "the paper's fit has three rows",
     ("oil_film", "fit_factor"): "the paper's fit has three rows",

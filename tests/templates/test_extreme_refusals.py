@@ -52,3 +52,18 @@ def test_what_is_borne_for_1000_cycles_is_below_the_ultimate_strength():
     raw = typed(cls, {**starting(cls), **strengths})
     share = evaluate(cls, raw, outputs=["strength_share"]).outputs["strength_share"].value
     assert share == pytest.approx([0.9, 0.9, 0.9, 0.8249588882], rel=1e-9)
+
+
+def test_a_point_whose_groove_is_wider_than_the_bearing_has_its_reason_at_level_supplied():
+    cls = get("oil_film_cycle", 1).template
+    narrow = typed(cls, {**starting(cls), "bearing_width": np.array([1e-9, 1e-12])})
+    film = evaluate(cls, narrow, outputs=["supply_flow"], level="supplied").outputs["supply_flow"]
+    assert np.isnan(film.value).all()
+    assert all(film.reasons)
+
+
+def test_a_film_without_viscosity_has_its_reason_at_level_field():
+    cls = get("thermal_film", 1).template
+    thin = typed(cls, {**starting(cls), "reference_density": np.array([5e-324, 5e-324])})
+    film = evaluate(cls, thin, outputs=["minimum_film_thickness"], level="field")
+    assert all(film.outputs["minimum_film_thickness"].reasons)

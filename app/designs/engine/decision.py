@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -19,21 +19,24 @@ from app.designs.engine.calculate import recalculated
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block
-from app.pool.cost import estimated_seconds
+from app.pool.cost import level_seconds
 from app.pool.steps import announce
 from app.reference import Reference
 from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.language.levels import accuracy, next_levels
+from templates.core.language.template import Template
 
-Stop = Literal["decided", "no_finer_level", "budget", "pending"]
+Stop = Literal["decided", "no_finer_level", "budget", "pending", "estimated"]
+STOPS: tuple[Stop, ...] = ("pending", "estimated", "budget", "no_finer_level", "decided")
+"""Most telling first, where several designs are decided together."""
 
 
 @dataclass(frozen=True)
 class Trial:
     """One step at one level: what it decided, what it took [s], and why it was of no use.
 
-    `expected` is the time that was estimated before [s].
+    `expected` is the time that was estimated before [s]. `variant` is empty for the design itself.
     """
 
     step: str
@@ -43,13 +46,18 @@ class Trial:
     decided: tuple[str, ...] = ()
     reason: str | None = None
     expected: float = 0.0
+    variant: str = ""
 
 
 @dataclass(frozen=True)
 class ClimbResult:
-    """Criteria as far as they could be decided, worst first, and what that took."""
+    """Criteria as far as they could be decided, worst first, and what that took.
+
+    `asked` are those of the `wanted` ones that a level might decide; all are wanted where it is None.
+    """
 
     criteria: Sequence[Judgement]
+    wanted: Collection[str] | None
     asked: tuple[str, ...]
     trials: tuple[Trial, ...]
     skipped: tuple[Trial, ...]
@@ -62,9 +70,9 @@ class ClimbResult:
 
     @property
     def error_unknown(self) -> list[str]:
-        """Return the requested criteria whose values still have an unknown error."""
-        asked = [j for j in self.criteria if j.name in self.asked]
-        return [j.name for j in asked if j.is_open and j.verdict != "undecided"]
+        """Return the wanted criteria whose values still have an unknown error."""
+        wanted = [j for j in self.criteria if self.wanted is None or j.name in self.wanted]
+        return [j.name for j in wanted if j.is_open and j.verdict != "undecided"]
 
 
 @dataclass(frozen=True)
@@ -85,11 +93,12 @@ class _Move:
 
 @dataclass
 class Climb:
-    """One design whose criteria are decided; `budget` is in s."""
+    """One design whose criteria are decided, or a variant of one; `budget` is in s."""
 
     calculation: Calculation
     wanted: Collection[str] | None
     budget: float
+    variant: str = ""
     trials: list[Trial] = field(default_factory=list)
     skipped: dict[tuple[str, str], Trial] = field(default_factory=dict)
     _tried: set[tuple[str, str]] = field(default_factory=set)
@@ -106,8 +115,27 @@ class Climb:
             stopped = self._next(open_now, self.budget - (time.monotonic() - start))
             if stopped is None:
                 judgements |= self._judged(open_now)
-        ordered = worst_first(judgements.values())
-        return ClimbResult(ordered, asked, tuple(self.trials), tuple(self.skipped.values()), stopped)
+        result = self._result(judgements, asked, self.trials, stopped)
+        is_open = stopped == "decided" and result.error_unknown
+        return replace(result, stopped="no_finer_level") if is_open else result
+
+    def estimated(self) -> ClimbResult:
+        """Return the level that would be calculated first, as a trial that took no time; nothing is."""
+        judgements = {judgement.name: judgement for judgement in Verdicts(self.calculation).all()}
+        asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and self._is_asked(j))
+        moves = list(self._moves(asked))
+        first = [self._trial(max(moves, key=lambda move: move.gain))] if moves else []
+        return self._result(judgements, asked, first, "estimated")
+
+    def _result(
+        self,
+        judgements: Mapping[str, Judgement],
+        asked: tuple[str, ...],
+        trials: Sequence[Trial],
+        stopped: Stop,
+    ) -> ClimbResult:
+        ordered, skipped = worst_first(judgements.values()), tuple(self.skipped.values())
+        return ClimbResult(ordered, self.wanted, asked, tuple(trials), skipped, stopped)
 
     def _is_asked(self, judgement: Judgement) -> bool:
         """Return whether a criterion is undecided, or of an unknown error that a level would state."""
@@ -150,7 +178,7 @@ class Climb:
                 most = block.cls.most_points[finer.level]
                 self._skip(block.name, finer.level, f"it takes at most {most} points at once, not {points}")
                 continue
-            seconds = self._seconds(block, finer.level, open_now)
+            seconds = self._seconds(block, evaluation.template, finer.level, open_now)
             yield _Move(block, finer.level, before, _largest(finer.error), seconds)
 
     def _note_levels(self, block: Block, reference: Reference) -> None:
@@ -170,7 +198,14 @@ class Climb:
             self._skip(block.name, level, reason)
 
     def _skip(self, step: str, level: str, reason: str) -> None:
-        self.skipped.setdefault((step, level), Trial(step, level, 0, 0.0, reason=reason))
+        self.skipped.setdefault(
+            (step, level), Trial(step, level, 0, 0.0, reason=reason, variant=self.variant)
+        )
+
+    def _trial(self, move: _Move) -> Trial:
+        """Return a step at a finer level before it is calculated."""
+        rows = math.prod(self.calculation.evaluations[move.block.name].template.shape_of_points())
+        return Trial(move.block.name, move.level, rows, 0.0, expected=move.seconds, variant=self.variant)
 
     def _needed(self, block: Block, open_now: Sequence[str]) -> tuple[str, ...]:
         """Return the outputs of a step that the open criteria and relations use."""
@@ -179,10 +214,10 @@ class Climb:
         used = (*named, *self.calculation.graph.used.get(block.name, ()))
         return tuple(sorted({r.member for r in used if r.member in block.cls.formulas}))
 
-    def _seconds(self, block: Block, level: str, open_now: Sequence[str]) -> float:
+    def _seconds(self, block: Block, template: Template, level: str, open_now: Sequence[str]) -> float:
         typed = self.calculation.typed
         raw = {name: typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
-        return estimated_seconds(block.cls, raw, level, None, self._needed(block, open_now))
+        return level_seconds(template, raw, level, self._needed(block, open_now))
 
     def _climb(self, move: _Move, open_now: Sequence[str]) -> Stop | None:
         """Calculate a step at a finer level, and keep the result if its error is smaller."""
@@ -191,10 +226,10 @@ class Climb:
         self.skipped.pop((name, level), None)
         needed = {name: self._needed(move.block, open_now)}
         levels = {**self.calculation.levels_used(), name: level}
-        rows = math.prod(self.calculation.evaluations[name].template.shape_of_points())
-        announce(f"{name} at level {level}: {rows} points, about {move.seconds:.2g} s")
+        trial = self._trial(move)
+        announce(_announcement(trial))
         finer = recalculated(self.calculation, {}, levels, again=[name], outputs=needed)
-        trial = Trial(name, level, rows, time.perf_counter() - start, expected=move.seconds)
+        trial = replace(trial, seconds=time.perf_counter() - start)
         if finer.deferred:
             self.trials.append(replace(trial, reason="it is still calculated"))
             return "pending"
@@ -211,6 +246,12 @@ class Climb:
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
         """Return the criteria with these names, judged again."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
+
+
+def _announcement(trial: Trial) -> str:
+    """Return what is calculated next, and how long it is expected to take."""
+    points = f", {trial.rows} points" if trial.rows > 1 else ""
+    return f"{trial.step} at level {trial.level}{points}, about {trial.expected:.2g} s"
 
 
 def _largest(error: object) -> float:

@@ -1,4 +1,4 @@
-"""`/designs/{id}/decide`: refine levels only where a criterion is undecided."""
+"""`/designs/{id}/decide`: refine levels where a criterion is undecided, or its error unknown."""
 
 from __future__ import annotations
 
@@ -33,7 +33,12 @@ async def decide_criteria(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """Decide the criteria of the newest revision: finer levels where they are undecided; nothing is saved."""
+    """Decide the criteria of the newest revision and of its variants; nothing is saved.
+
+    Finer levels are calculated where a criterion is undecided, or met or not met by a value of unknown error.
+    """
     wanted = body or DecideIn()
-    asked = DecisionQuestion(id, wanted.criteria, read_budget(wanted.budget), units=units)
+    asked = DecisionQuestion(
+        id, wanted.criteria, read_budget(wanted.budget), units=units, estimate_only=wanted.estimate_only
+    )
     return await answered(decisions, asked, request, client, patience(prefer, LONGEST_BUDGET))

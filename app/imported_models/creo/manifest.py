@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from typing import Literal, Self
 
-from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
+from app.imported_models.manifests import LINE, NAME, STRICT, TITLE, read_manifest
 from app.schemas.bounds import Bounded
-from cad.errors import UnreadableModel
 from cad.imported_models import Description, Parameter
 
-LONGEST = 2**18
-"""Largest size of a manifest [bytes]."""
-_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
-_LINE = r"^[^\x00-\x1f\x7f]*$"
 _PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # others CREOSON refuses
-_TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 MM: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 
 
 class Driven(Bounded):
     """One number of the model: a dimension or a parameter of Creo."""
 
-    model_config = _STRICT
+    model_config = STRICT
 
-    name: str = Field(max_length=60, pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$", description="in relations")
-    words: str = Field("", max_length=100, pattern=_LINE, description="what it is; the name if not given")
+    name: str = Field(max_length=60, pattern=NAME, description="in relations")
+    words: str = Field("", max_length=100, pattern=LINE, description="what it is; the name if not given")
     dimension: str | None = Field(
-        None, min_length=1, max_length=80, pattern=_LINE, description="its symbol in Creo: `D`"
+        None, min_length=1, max_length=80, pattern=LINE, description="its symbol in Creo: `D`"
     )
     parameter: str | None = Field(
         None, max_length=31, pattern=_PARAMETER, description="its name in Creo: `SCALE`"
@@ -75,10 +70,10 @@ class Driven(Bounded):
 class Manifest(Bounded):
     """A model of Creo and what may be driven."""
 
-    model_config = _STRICT
+    model_config = STRICT
 
     program: Literal["creo"]
-    title: str = Field(max_length=100, pattern=_TITLE)
+    title: str = Field(max_length=100, pattern=TITLE)
     file: str = Field(
         pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,30}\.(prt|asm)$",
         description="the model in Creo: `bearing.prt`",
@@ -114,12 +109,4 @@ def read(content: bytes) -> Manifest:
     UnreadableModel
         Naming all faults.
     """
-    if len(content) > LONGEST:
-        raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")
-    try:
-        return Manifest.model_validate_json(content)
-    except ValidationError as error:
-        wrong = (
-            f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
-        )
-        raise UnreadableModel("manifest", f"the manifest for Creo is not valid: {'; '.join(wrong)}") from None
+    return read_manifest(Manifest, content, "the manifest for Creo")

@@ -65,7 +65,7 @@ async def analyse_model(
     prefer: Annotated[str | None, Header()] = None,
     units: Units = "si",
 ) -> Response:
-    """Build a model, then find stiffness, frequency or stress on its solid. An equal question is asked once.
+    """Build a model, then find stiffness, frequency or stress on its solid; equal questions run once.
 
     The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
     plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
@@ -96,7 +96,7 @@ def show_analysis(
     load: Annotated[str, Query(max_length=60, description="the load of the stress")] = "1 N*m",
     units: Units = "si",
 ) -> Analysis:
-    """All outputs of one question about one solid. They were computed once for all loads."""
+    """Return all outputs of one question about one solid. They were computed once for all loads."""
     wrong = load_faults(load)
     analysis = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
     if wrong:
@@ -106,7 +106,7 @@ def show_analysis(
 
 @router.get("/builds/{key}/analyses", responses=refusals(404))
 def list_analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> AnalysisList:
-    """All analyses of one solid: every question that was asked about it, its answers under 1 N·m."""
+    """Return all analyses of one solid: every question about it, with the answers under 1 N·m."""
     return AnalysisList(items=analyses.of_build(key)).in_units(units)
 
 

@@ -70,19 +70,19 @@ class BuildIn(Bounded):
 
 @router.get("/models")
 def list_models(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
-    """Every version of every CAD model."""
+    """Return every version of every CAD model."""
     return listed(catalogues.models, limit, cursor)
 
 
 @router.get("/models/{id}", responses=refusals(404))
 def list_model_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
-    """The versions of one model."""
+    """Return the versions of one model."""
     return versions_of(catalogues.models, id)
 
 
 @router.get("/models/{id}/versions/{number}", responses=refusals(404))
 def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheDatabase) -> ModelAnswer:
-    """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed."""
+    """Return one model: its parameters as JSON Schema, its measures, and its possible analyses."""
     cls = catalogues.models.get(id, number)
     described = describe(cls)
     parameters = described.pop("inputs")
@@ -120,7 +120,7 @@ async def show_picture(
     client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """A picture (PNG) of the model's example."""
+    """Return a picture (PNG) of the model's example."""
     cls = catalogues.models.get(id, number)
     shape = cls.from_quantities(cls.example)
     job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
@@ -165,7 +165,7 @@ async def build_model(
 
 @router.get("/builds/{key}", responses=refusals(404))
 def show_build(key: str, models: TheModels) -> Build:
-    """A build: its files and what was measured on it."""
+    """Return a build: its files and its measures."""
     return models.show(key)
 
 
@@ -230,7 +230,7 @@ async def read_artifact(
     jobs: TheJobs,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """The bytes of this hash; they never change. A file that was lost is made again from its row."""
+    """Return the bytes of this hash; they never change. A file that was lost is made again from its row."""
     if answer := await lost(sha256, healing, jobs, prefer, same=True):
         return answer
     headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}

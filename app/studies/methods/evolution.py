@@ -39,7 +39,7 @@ class Algorithm(Protocol):
         ...
 
     def tell(self, *, infills: Population) -> object:
-        """Take members that have been evaluated."""
+        """Receive evaluated members."""
         ...
 
 

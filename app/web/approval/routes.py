@@ -36,7 +36,7 @@ class Place(NamedTuple):
 
 @router.post("/designs/{id}/revisions/{number}/approvals")
 async def sign(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
-    """Take a step of the approval."""
+    """Record one step of the approval, and return the changed part of the page."""
     typed = await fields(request)
     said = {"step": typed.get("step", "")}
     said |= {name: typed[name] for name in ("reason", "acknowledged") if typed.get(name, "").strip()}
@@ -66,7 +66,7 @@ async def comment(id: Id, number: Number, request: Request, services: ThePageSer
 async def resolve(
     id: Id, number: Number, comment: Id, request: Request, services: ThePageServices
 ) -> Response:
-    """Say that a comment is dealt with."""
+    """Mark a comment as resolved, and return the changed part of the page."""
     place = _place(id, number, await fields(request))
     resolved = services.run(services.comments.resolve, id, number, comment)
     return await _sent(request, services, place, resolved, "Not resolved", "comments")
@@ -84,7 +84,7 @@ async def _sent(
     failure: str,
     part: str,
 ) -> Response:
-    """Carry out what a form says; then show a part of its page, which says why if it was refused."""
+    """Carry out the action of a form; return the changed part of the page, with the reason of a refusal."""
     try:
         await action
     except Refused as refused:

@@ -25,7 +25,7 @@ async def audit(
     principal: Text = "",
     action: Annotated[str, Query(max_length=100)] = "",
 ) -> Response:
-    """Changes, page by page: all, or those that fit what was typed into the filter."""
+    """Return the page of changes: all, or those that match the filter."""
     typed = {"object": object.strip(), "principal": principal.strip(), "action": action.strip()}
     wanted = {name: text for name, text in typed.items() if text}  # a form sends empty fields too
     page = await services.run(list_audit, services.database, 50, cursor or None, **wanted)

@@ -102,5 +102,5 @@ async def compared(
     design: Text = "",
     of: Text = "",
 ) -> Response:
-    """Two revisions, of this design or of this and another one."""
+    """Return the comparison of two revisions, of one design or of two."""
     return await compare_page(request, services, id, CompareForm(revision, number, design, of))

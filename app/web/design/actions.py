@@ -90,7 +90,7 @@ async def _created(services: PageServices, document: Mapping[str, JsonValue]) ->
 
 @router.post("/designs/{id}")
 async def save(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A new revision; where it is refused, the form again with what was typed and what is wrong."""
+    """Save a new revision; return the form with its entries and their faults if it is refused."""
     typed = await fields(request)
     design = await services.run(services.designs.show, id)
     based = typed.get("revision", "")
@@ -126,7 +126,7 @@ async def add(id: Id, request: Request, services: ThePageServices) -> Response:
 
 
 async def _add_step(id: str, request: Request, services: PageServices, typed: Mapping[str, str]) -> Response:
-    """Add a step; show its form where that is not filled in, or was refused."""
+    """Add a step; return its form if the form is empty or was refused."""
     step, design = await new_step(services, typed), await services.run(services.designs.show, id)
     patch: Patch = {"steps": {step.name: step.plain()}}
     try:
@@ -145,7 +145,7 @@ async def _add_step(id: str, request: Request, services: PageServices, typed: Ma
 
 @router.post("/designs/{id}/auto-map")
 async def auto_map(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Save those proposals that the user chose."""
+    """Save the proposals that the user chose."""
     typed = await fields(request)
     proposed = await services.calculate(None, services.designs.proposals, id)
     chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
@@ -161,28 +161,28 @@ async def auto_map(id: Id, request: Request, services: ThePageServices) -> Respo
 
 @router.post("/designs/{id}/copy")
 async def copy(id: Id, services: ThePageServices) -> Response:
-    """A copy, shown at once."""
+    """Copy the design, and redirect to the copy."""
     saved = await services.save(services.designs.copy, id, None, services.once)
     return go(f"/designs/{saved.design}")
 
 
 @router.post("/designs/{id}/delete")
 async def delete(id: Id, services: ThePageServices) -> Response:
-    """Take a design from the lists."""
+    """Delete a design from the lists."""
     await services.run(services.designs.delete, id)
     return go("/#designs")
 
 
 @router.post("/designs/{id}/revisions/{number}/restore")
 async def restore(id: Id, number: Number, services: ThePageServices) -> Response:
-    """A new revision equal to an old one."""
+    """Save a new revision equal to an old one."""
     await services.save(services.designs.restore, id, number, None, None, services.once)
     return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/jobs/{job}/cancel")
 async def cancel(id: Id, job: Id, services: ThePageServices) -> Response:
-    """Stop the regeneration; a job that has ended meanwhile is left as it is."""
+    """Cancel the regeneration; a job that has ended meanwhile stays unchanged."""
     await services.cancel(job)
     return go(f"/designs/{id}")
 
@@ -243,7 +243,7 @@ _LIST = re.compile(r"/(designs(\?[!-~]*)?)?")
 
 @router.post("/designs/{id}/rename")
 async def rename(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Another name; the results stay."""
+    """Rename the design; the results stay."""
     typed = await fields(request)
     await services.change(id, typed.get("revision", ""), {"name": typed.get("name", "").strip()})
     return _back(typed)
@@ -251,7 +251,7 @@ async def rename(id: Id, request: Request, services: ThePageServices) -> Respons
 
 @router.post("/designs/{id}/labels")
 async def label(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Tags more or less, into the archive or out of it."""
+    """Add or remove tags, or move the design into the archive or out of it."""
     typed = await fields(request)
     await _label(services, id, typed)
     return _back(typed)

@@ -1,4 +1,5 @@
 // The button "Decide": a finer calculation where, and only where, a criterion is undecided or its error unknown.
+// Its cost is stated before it begins; what takes long begins at the second click.
 import { call, units } from "../shared/api.js";
 import { calculated } from "../shared/calculation.js";
 import { plain } from "../shared/numbers.js";
@@ -9,20 +10,35 @@ const STOPPED = {
   budget: "the time allowed is used up",
   pending: "a level is still being calculated: press again",
 };
+const SHORT = 2, ALLOWED = 60, LONGEST = 600; // s: begun at once; budget at least and at most
+const BUSY = 10; // times the processor time that is estimated: a server has other work too
 
 export function startDecide(api, patch) {
   const button = document.querySelector("[data-decide]"), place = document.querySelector("[data-decided]");
+  const variants = document.querySelector("[data-decided-variants]");
   if (!button) return;
+  let allowed = null; // [s], once the cost was stated
   button.hidden = button.dataset.wanted === undefined;
   button.addEventListener("click", async () => {
     if (Object.keys(patch()).length) return (place.textContent = "save your changes first");
     button.disabled = true;
-    place.textContent = "calculating at finer levels where that decides …";
     try {
-      const payload = await decision(api);
-      showVerdict(payload);
+      if (allowed === null) {
+        place.textContent = "estimating the time …";
+        const estimate = await asked(api, { estimate_only: true });
+        if (!estimate.planned.length) return (place.textContent = summary(estimate));
+        allowed = Math.min(LONGEST, Math.max(ALLOWED, Math.ceil(BUSY * estimate.expected)));
+        place.textContent = cost(estimate, allowed);
+        if (estimate.expected > SHORT) return (button.textContent = `Decide, about ${seconds(estimate.expected)}`);
+      }
+      const payload = await asked(api, { budget: `${allowed} s` });
+      await showVerdict(payload);
       place.textContent = summary(payload);
+      variants.replaceChildren(...(payload.variants ?? []).map(headline));
+      allowed = null;
+      button.textContent = "Decide";
     } catch (error) {
+      allowed = null;
       place.textContent = error.message;
     } finally {
       button.disabled = false;
@@ -30,17 +46,39 @@ export function startDecide(api, patch) {
   });
 }
 
-async function decision(api) {
-  const answer = await call("POST", `${api}/decide?units=${units()}`, {}, { headers: { Prefer: "wait=2" } });
+async function asked(api, body) {
+  const answer = await call("POST", `${api}/decide?units=${units()}`, body, { headers: { Prefer: "wait=2" } });
   return (answer.status === 202 ? await calculated(answer.location) : answer).payload;
 }
 
-function summary({ tried, undecided, error_unknown: unknown = [], stopped, seconds }) {
+const seconds = (time) => `${plain(Number(time.toPrecision(2)))} s`;
+
+function headline({ name, verdict }) {
+  const item = document.createElement("li"), strong = document.createElement("strong");
+  strong.textContent = name;
+  item.append(strong, `: ${verdict?.headline ?? "not judged"}`);
+  return item;
+}
+
+// What is calculated, each step at its level once, and for how many designs.
+function named(trials) {
+  const times = new Map();
+  for (const { step, level } of trials) {
+    const name = `${step} at level ${level.replaceAll("_", " ")}`;
+    times.set(name, (times.get(name) ?? 0) + 1);
+  }
+  return [...times].map(([name, count]) => (count > 1 ? `${name} (${count} times)` : name)).join(", ");
+}
+
+function cost({ planned, expected }, allowed) {
+  return `First ${named(planned)}: about ${seconds(expected)} of processor time. No level begins after ${allowed} s.`;
+}
+
+function summary({ tried, planned = [], undecided, error_unknown: unknown = [], stopped, seconds: spent }) {
   const open = undecided.length + unknown.length;
-  if (!tried.length && open && stopped === "no_finer_level")
+  if (!tried.length && open && (stopped === "no_finer_level" || (stopped === "estimated" && !planned.length)))
     return `No finer level gives an error estimate for ${open === 1 ? "this one" : `these ${open}`}. Nothing was saved.`;
-  const levels = tried.map(({ step, level }) => `${step} at level ${level.replaceAll("_", " ")}`).join(", ");
-  const spent = levels ? `Calculated ${levels} in ${plain(Number(seconds.toPrecision(2)))} s` : "Nothing was calculated";
+  const done = tried.length ? `Calculated ${named(tried)} in ${seconds(spent)}` : "Nothing was calculated";
   const left = open ? `; ${open} still open: ${STOPPED[stopped] ?? stopped}` : "; all decided";
-  return `${spent}${left}. Nothing was saved.`;
+  return `${done}${left}. Nothing was saved.`;
 }

@@ -78,7 +78,7 @@ def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, t
 
 
 def _refused(line: Line, refusal: Refusal) -> Line:
-    """Return the line with what was typed and what is wrong, if its form was refused."""
+    """Return the line with its entries and their faults if its form was refused."""
     part = refusal.part
     if isinstance(line, AnalysisLine):
         is_its = part.get("declare") == "analysis" and part.get("model") == line.model
@@ -128,7 +128,7 @@ def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
 
 
 def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
-    """Return the merge patch that a form of this page asks for; None for another form."""
+    """Return the merge patch for a form of this page; None for another form."""
     match typed.get("declare", ""):
         case "analysis":
             name = typed.get("kind", "").strip()  # an analysis is called by its kind

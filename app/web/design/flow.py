@@ -89,7 +89,7 @@ class _Item:
 
 
 def drawing(network: DesignNetwork) -> Drawing | None:
-    """Return the drawing of a design; None where nothing drives anything."""
+    """Return the drawing of a design; None if no relation connects two blocks."""
     if not network.relations:
         return None
     items = [*_blocks(network), *_lanes(network)]

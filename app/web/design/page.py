@@ -95,10 +95,7 @@ async def design_page(
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
-    """Return the newest revision in a form.
-
-    Or a form that was refused, with what was typed and what is wrong.
-    """
+    """Return the page with the newest revision in a form, or with a refused form and its faults."""
     design = await services.run(services.designs.show, id)
     revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
         request, services, design, refusal

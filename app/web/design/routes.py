@@ -15,13 +15,19 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/designs/{id}")
 async def design(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
+    """Return the page of a design at its newest revision.
+
+    It is read-only while its template is quarantined.
+    """
     return await or_stored(request, services, id, None, design_page(request, services, id))
 
 
 @router.get("/designs/{id}/step")
 async def step(id: Id, request: Request, services: ThePageServices, name: Text = "") -> Response:
-    """One step of the newest revision of a design; the page of a long design fetches it when it is opened."""
+    """Return one step of a design's newest revision.
+
+    The page of a long design loads it when it is unfolded.
+    """
     return await step_section(request, services, id, name)
 
 
@@ -37,6 +43,6 @@ async def step(id: Id, request: Request, services: ThePageServices, name: Text =
 @router.get("/designs/{id}/revisions/{_}/restore")
 @router.get("/designs/{id}/jobs/{_}/cancel")
 async def after_a_form(id: Id, request: Request) -> Response:
-    """The design: a form that was refused is shown at the address to which it was sent."""
+    """Redirect to the design when a browser loads the address of a refused form again."""
     query = f"?{request.url.query}" if request.url.query else ""
     return go(f"/designs/{id}{query}")

@@ -47,7 +47,7 @@ async def designs(
     tag: Text = "",
     archived: Text = "",
 ) -> Response:
-    """Designs, page by page: all, or those that fit what was typed into the filter."""
+    """Return the page of designs: all, or those that match the filter."""
     typed = {
         "name": name,
         "state": state,

@@ -14,6 +14,6 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/templates/faults")
 async def faults(request: Request, services: ThePageServices, cursor: Text = "") -> Response:
-    """The files of a team that have faults."""
+    """Return the page with the faulty files of a team."""
     faulty = await services.run(list_catalogue_faults, services.catalogues, cursor=cursor or None)
     return show(request, "faults/faults.html", faulty=faulty)

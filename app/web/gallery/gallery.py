@@ -85,7 +85,7 @@ GALLERY = {
 
 
 def offered(templates: Iterable[TemplateSummary], models: Iterable[TemplateSummary]) -> dict[str, Example]:
-    """Return the examples whose templates and models are there."""
+    """Return the examples whose templates and models exist."""
     present = {(item.id, item.version) for item in (*templates, *models)}
     return {name: example for name, example in GALLERY.items() if _uses(example) <= present}
 

@@ -86,7 +86,7 @@ async def impact_page(
     name: Text = "",
     tag: Text = "",
 ) -> Response:
-    """The form; with a job, how far that is, or what it found."""
+    """Return the page with the form, or with the progress or result of a job."""
     impact, refusal = None, None
     if job:
         try:
@@ -100,7 +100,7 @@ async def impact_page(
 
 @forms.post("/templates/{id}/{version}/impact")
 async def ask(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Begin a calculation, and show it."""
+    """Start a calculation, and redirect to its page."""
     typed = await fields(request)
     asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
     try:
@@ -117,7 +117,7 @@ async def ask(id: Id, version: Number, request: Request, services: ThePageServic
 
 @forms.post("/templates/{id}/{version}/impact/cancel")
 async def cancel(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Stop a calculation; one that has ended meanwhile stays as it is."""
+    """Cancel a calculation; one that has ended meanwhile stays unchanged."""
     job = (await fields(request)).get("job", "")[:64]
     await services.cancel(job)
     return go(f"/templates/{id}/{version}/impact?{urlencode({'job': job})}")

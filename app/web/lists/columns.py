@@ -91,7 +91,7 @@ def _sent(pasted: PastedTable) -> FileText:
 
 
 def text_of(column: TableColumn) -> str:
-    """Return a column as it stands in a field: `[0, 15, 30] deg`."""
+    """Return a column as the text of a field: `[0, 15, 30] deg`."""
     numbers = json.dumps([int(v) if v.is_integer() and abs(v) < 1e15 else v for v in column.values])
     return numbers if column.unit == "1" else f"{numbers} {column.unit}"
 
@@ -153,9 +153,9 @@ def _words(text: str) -> set[str]:
 
 
 def _plain(text: str) -> str:
-    """Return letters and figures alone: `F_{x}` and `Fx` are the same.
+    """Return only the letters and digits: `F_{x}` and `Fx` are the same.
 
-    A text without any is like no other.
+    A text without any matches no other.
     """
     return re.sub(r"[^a-z0-9]", "", text.lower()) or text
 

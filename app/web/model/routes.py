@@ -127,12 +127,12 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/models/{id}")
 async def newest_model(id: Id, services: ThePageServices) -> Response:
-    """The latest version."""
+    """Redirect to the latest version of a model."""
     versions = await services.run(list_model_versions, id, services.catalogues)
     return go(f"/models/{id}/{next(item.version for item in versions.items if item.latest)}")
 
 
 @router.get("/models/{id}/{version}")
 async def model(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """A CAD model, with a form to build it; what is typed stands in the address."""
+    """Return the page of a CAD model, with a form to build it; the address holds the entries."""
     return await model_page(request, services, id, version)

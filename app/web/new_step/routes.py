@@ -135,7 +135,7 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/designs/new")
 async def new_design(request: Request, services: ThePageServices) -> Response:
-    """The empty form of a new design's first step."""
+    """Return the page with an empty form for a new design's first step."""
     typed = dict(request.query_params)
     step = await new_step(services, typed)
     hidden = {"design_name": "new design", **beside(typed)}
@@ -144,7 +144,7 @@ async def new_design(request: Request, services: ThePageServices) -> Response:
 
 @router.get("/designs/{id}/steps/new")
 async def another_step(id: Id, request: Request, services: ThePageServices) -> Response:
-    """The empty form of one more step of a design."""
+    """Return the page with an empty form for another step of a design."""
     typed = dict(request.query_params)
     step, design = await new_step(services, typed), await services.run(services.designs.show, id)
     hidden = {**beside(typed), "add": "template", "revision": str(design.revision)}

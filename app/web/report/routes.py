@@ -12,5 +12,5 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/designs/{id}/report")
 async def report(id: Id, request: Request) -> Response:
-    """The report, as the interface answers it to be read."""
+    """Return the report as a page."""
     return go(f"/api/v1/designs/{id}/report.html?units={units_of(request)}")

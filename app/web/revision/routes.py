@@ -156,6 +156,6 @@ async def revision(
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
     comments: Text = "",
 ) -> Response:
-    """A revision, and what differs from another; `comments` is where a page of comments begins."""
+    """Return the page of a revision and its differences; `comments` is the start of a page of comments."""
     page = revision_page(request, services, id, number, other, cursor=comments)
     return await or_stored(request, services, id, number, page)

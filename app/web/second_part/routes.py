@@ -68,9 +68,9 @@ def _model(design: Design, name: str) -> DesignModel:
 async def _manifest(
     services: PageServices, model: DesignModel, typed: Mapping[str, str]
 ) -> dict[str, JsonValue]:
-    """Return the manifest of the model's assembly with the part that was typed.
+    """Return the manifest of the model's assembly with the part from the form.
 
-    A new one if it is no assembly.
+    If the model is not an assembly, the manifest is new.
     """
     described = await services.run(
         show_model, model.id, model.version, services.catalogues, services.database
@@ -85,7 +85,7 @@ async def _manifest(
 
 
 def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the entry of a part, as far as anything was typed."""
+    """Return the entry of a part from the filled fields."""
     entry: dict[str, JsonValue] = {"name": typed.get("component", "")}
     if model := typed.get("source", ""):
         id, _, version = model.partition(":")

@@ -74,7 +74,7 @@ class FileForm:
         return answer
 
     async def send(self, request: Request, services: PageServices) -> Response:
-        """Send the chosen file; where it is refused at once, the form again with the reason."""
+        """Import the chosen file; return the form with the reason if it is refused at once."""
         parts = await parts_of(request)
         id = parts["id"].text.strip() if "id" in parts else ""
         chosen = parts.get("file")

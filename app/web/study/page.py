@@ -57,7 +57,7 @@ async def study_page(
         notice=notice,
         sort=sort,
         where=where,
-        estimate=numbers.in_line({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
+        estimate=study.estimate.seconds,
     )
 
 

@@ -39,7 +39,7 @@ def digest(cls: type[Template]) -> str:
 
 
 def digest_of(sources: Iterable[str]) -> str:
-    """Return the digest of the text of files: that of a template, then those of its groups."""
+    """Return the digest of the text of a template's file and of its groups."""
     return _digest_of(tuple(sources))
 
 
@@ -50,7 +50,7 @@ def _digest_of(sources: tuple[str, ...]) -> str:
 
 
 def release_file(cls: type[Template]) -> Path | None:
-    """Return the file of the digest of a released version, beside its own file; None of a worksheet."""
+    """Return the digest file of a released version, beside its own file; None for a worksheet."""
     path = file_of(cls)
     return path and path.with_name(f"{path.stem}.release.json")
 
@@ -65,7 +65,7 @@ def _sources(cls: type[Template]) -> Iterator[str]:
 
 
 def _declares(base: type) -> bool:
-    """Return whether a base declares anything of its own; the bases that are the language do not."""
+    """Return whether a base declares anything itself; the bases of the language do not."""
     return any(isinstance(value, (Declaration, Requirement, Shared)) for value in vars(base).values())
 
 
@@ -105,7 +105,7 @@ def _is_silent(node: Any, within_class: bool) -> bool:
 
 
 def _is_text(node: Any) -> bool:
-    """Return whether a statement is a docstring, or another text that does nothing."""
+    """Return whether a statement is a docstring, or another text without effect."""
     constant = node.value if isinstance(node, ast.Expr) else None
     return isinstance(constant, ast.Constant) and isinstance(constant.value, str)
 

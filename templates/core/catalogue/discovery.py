@@ -104,9 +104,9 @@ def find(
     id: str | None = None,
     version: int | None = None,
 ) -> Catalogue[T]:
-    """Import every versioned file below the folders and collect what it declares, if that is a `base`.
+    """Import every versioned file below the folders and collect its declaration, if it is a `base`.
 
-    With an `id` or a `version` it imports only files that have them in their names.
+    With an `id` or a `version` it imports only files with this name.
 
     Raises
     ------
@@ -141,14 +141,14 @@ def declared_in_file(path: Path) -> type[Template]:
 
 
 def _imported(path: Path) -> ModuleType:
-    """Return the module of a file: by its package's name where it has one, else from its content."""
+    """Return the module of a file: by its package's name if it has one, else from its content."""
     if package := package_of(path.parent):
         return importlib.import_module(f"{package}.{path.stem}")
     return load(path, path.read_bytes())
 
 
 def package_of(folder: Path) -> str:
-    """Return the name of the package that a folder is; empty if it is none."""
+    """Return the package name of a folder; empty if it is not a package."""
     if not (folder / "__init__.py").exists():
         return ""
     parent = package_of(folder.parent)

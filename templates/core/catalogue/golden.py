@@ -48,9 +48,9 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
 
 
 def codes(refusal: InvalidInputs) -> list[str]:
-    """Return why inputs are refused.
+    """Return why inputs are refused, each code once.
 
-    Each code once, because how many faults one cause makes is not a result.
+    The number of faults per cause is not a result.
     """
     return sorted({fault.code for fault in refusal.faults})
 
@@ -61,9 +61,9 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the record of a version that is to be released, and its digest beside its file; where it stands.
+    """Write the record of a version before its release, and its digest beside its file; return the path.
 
-    Cases besides those around the example stand in the folder's `more`, in a file of the record's name.
+    Further cases are in the folder's `more`, in a file with the record's name.
 
     Raises
     ------
@@ -82,9 +82,9 @@ def freeze(cls: type[Template], folder: Path) -> Path:
 
 
 def _as_text(content: Mapping[str, Any]) -> str:
-    """Return a record as JSON with a line for each case.
+    """Return a record as JSON with one line per case.
 
-    Numbers with `DIGITS` more than its precision asks for.
+    Numbers have `DIGITS` more digits than the precision requires.
     """
     lists = {name: value for name, value in content.items() if isinstance(value, list)}
     parts = [f"{_json(name)}: {_json(value)}" for name, value in content.items() if name not in lists]
@@ -113,9 +113,9 @@ def _to(digits: int, value: Any) -> Any:
 
 
 def mark_released(cls: type[Template]) -> Path | None:
-    """Record the digest of a version beside its file, where the service reads them; never over a record.
+    """Record the digest of a version beside its file, where the service reads it; never overwrite a record.
 
-    A worksheet has no file: whoever keeps its text records its release.
+    A worksheet has no file: its release is recorded with its text.
     """
     path = release_file(cls)
     if path and not path.exists():
@@ -141,7 +141,7 @@ def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 
 def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[str, Any]:
-    """Return the example at a level, but for other quantities."""
+    """Return the example at a level with some quantities replaced."""
     inputs = _given(cls, others)
     case: dict[str, Any] = {"level": level, "inputs": _plain(inputs)}
     if level in cls.level_precision:
@@ -153,14 +153,14 @@ def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[st
 
 
 def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the example's inputs in SI with defaults; without what is missing or shown as an output."""
+    """Return the example's inputs in SI with defaults, without missing ones and those shown as outputs."""
     template = cls.from_quantities({**cls.example, **(others or {})})
     reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 def _steps(declared: Input, value: Any) -> list[Any]:
-    """Return other values of one input: the other options, a number more or fewer, 10 % below and above."""
+    """Return other values of one input: other options, one more or fewer, 10 % below and above."""
     if value is None or isinstance(value, tuple):
         return []
     if isinstance(declared, Choice):
@@ -176,7 +176,7 @@ def results(cls: type[Template], inputs: Mapping[str, Any], level: str = "") -> 
     Raises
     ------
     InvalidInputs
-        Where the template refuses.
+        If the template refuses the inputs.
     """
     template = cls.from_si(inputs)
     template = template.at(level) if level else template

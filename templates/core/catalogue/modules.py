@@ -39,14 +39,14 @@ class _Text:
 
 
 def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
-    """Return the module that the content of a file makes.
+    """Return the module created from the content of a file.
 
-    Made once for each digest, by default that of the content.
+    It is created once for each digest, by default that of the content.
 
     Raises
     ------
     Exception
-        Whatever the file raises: SyntaxError, ImportError, …
+        Any error of the file: SyntaxError, ImportError, …
     """
     digest = digest or hashlib.sha256(content).hexdigest()
     name = _name(path, digest)
@@ -74,20 +74,20 @@ def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
 
 
 def origin(module: ModuleType) -> tuple[bytes, str] | None:
-    """Return the content from which a module was made, and its digest; None if `load` did not make it."""
+    """Return the content from which `load` created a module, and its digest; None for other modules."""
     parts = vars(module)
     return (parts[_CONTENT], parts[_DIGEST]) if _CONTENT in parts else None
 
 
 def text_of(module: ModuleType) -> str | None:
-    """Return the text from which a module was made, if `load` made it."""
+    """Return the text from which `load` created a module."""
     return decode_source(source[0]) if (source := origin(module)) else None
 
 
 def is_outside(cls: type) -> bool:
     """Return whether a class comes from outside the packages of this program.
 
-    A team's file, worksheet or model.
+    These are a team's files, worksheets and models.
     """
     return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, IMPORTED)
 

@@ -20,9 +20,9 @@ NEW_VERSION = "undo the edit, and put the change into a new version"
 
 
 def records(path: Path) -> tuple[Path, ...]:
-    """Return the files in which a golden record may stand.
+    """Return the possible files of a golden record.
 
-    Beside a team's file, or in a folder `golden` there.
+    They are beside a team's file, or in a folder `golden` there.
     """
     return path.with_suffix(".json"), path.parent / "golden" / f"{path.stem}.json"
 
@@ -55,7 +55,7 @@ def _against(cls: type[Template], file: Path) -> Iterator[FileFault]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """Return a record as JSON; None if there is none that can be read."""
+    """Return a record as JSON; None if there is no readable one."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):

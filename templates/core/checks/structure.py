@@ -22,7 +22,7 @@ MOST_CYCLES = 10
 
 
 def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield every fault of the text; if there is one, to calculate the template would only repeat it."""
+    """Yield every fault of the text; with such faults, calculating the template would only repeat them."""
     if cls.sheet:
         return  # it was read and checked whole
     yield from _docstring(cls)
@@ -130,7 +130,7 @@ def _lines(function: Callable[..., Any]) -> dict[str, int]:
 
 
 def _cycles(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the formulas that follow from themselves; of each loop that is left the path."""
+    """Yield the formulas that depend on themselves, with the path of each remaining loop."""
     nodes = {**cls.declarations, **cls.intermediates}
     uses = {name: set(getattr(node, "uses", ())) & nodes.keys() for name, node in nodes.items()}
     for _ in range(MOST_CYCLES):

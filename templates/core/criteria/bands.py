@@ -65,7 +65,7 @@ class Estimate:
 
     @property
     def is_known(self) -> Truth:
-        """Return where the error is known, beside the values."""
+        """Return a mask of the values with a known error."""
         if isinstance(self.error, float):
             return not math.isnan(self.error)
         known: Mask = ~np.isnan(spread(self.error, self.axes))
@@ -79,7 +79,7 @@ class Estimate:
         return not np.isnan(self.error).any()
 
     def bounds(self) -> Bounds:
-        """Return the band of the value; the value itself where its error is not known."""
+        """Return the band of the value; the value itself if its error is unknown."""
         if self.is_exact or self.is_known is False:
             return self.value, self.value
         error = spread(self.error, self.axes)
@@ -120,7 +120,7 @@ def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Ar
 
 
 def band(value: Value, error: Value) -> Bounds:
-    """Return the range in which the truth may lie, for values of a stated relative error.
+    """Return the range of the truth, for values with a stated relative error.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _band_of_one(value: float, error: float) -> tuple[float, float]:
 
 
 def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
-    """Return the range in which the truth may lie, for an error relative to a scale such as 90°.
+    """Return the range of the truth, for an error relative to a scale such as 90°.
 
     The scale is that of the values calculated; that of the truth may be larger by 1/(1 - e).
     """
@@ -179,15 +179,15 @@ def largest_true(size: Value, error: Value) -> Value:
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
 ) -> tuple[Value, Bounds, Truth]:
-    """Return the value of a side of a comparison, its band as far as that is known, and where it is.
+    """Return the value of a side of a comparison, its known band, and where the band is known.
 
-    Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
-    are those of `shifts`, by which values from which the names follow were shifted.
+    Each uncertain name is shifted to both ends of its band with the others unchanged, and the changes are
+    added. The changes of `shifts`, which come from upstream values, are added too.
 
     Raises
     ------
     FaultyText
-        With code `shape`, where arrays of different lengths meet.
+        With code `shape`, if arrays have different lengths.
     """
     name = side.only_name
     if name and not shifts:
@@ -207,7 +207,7 @@ def value_and_bounds(
 def _own_shifts(
     side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
 ) -> Iterator[Shift]:
-    """Yield a side with each uncertain name at both ends of its band, the others kept."""
+    """Yield a side with each uncertain name at both ends of its band and the others unchanged."""
     for name in sorted(side.names):
         if not estimates[name].is_exact:
             low, high = estimates[name].bounds()
@@ -225,7 +225,7 @@ def _changes(
 
 
 def relative_width(value: float, low: float, high: float) -> float | None:
-    """Return the relative error that a band stands for; None where the band is open or not known."""
+    """Return the relative error of a band; None if the band is open or unknown."""
     ends = [end for end in (low, high) if end != value]
     if not ends:
         return 0.0
@@ -237,7 +237,7 @@ def relative_width(value: float, low: float, high: float) -> float | None:
 def aligned(estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Estimate]:
     """Return estimates whose arrays broadcast together.
 
-    Those of points alone go with places along a curve too.
+    Values per point also broadcast along a curve.
     """
     if not axes:
         return estimates

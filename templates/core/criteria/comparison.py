@@ -31,7 +31,7 @@ Codes = int | NDArray[np.int8]
 
 
 def is_met(codes: NDArray[Any]) -> Mask:
-    """Return which verdicts are met, whether or not every error behind them is known."""
+    """Return which verdicts are met, whether or not all their errors are known."""
     mask: Mask = np.isin(codes, (MET_ERROR_UNKNOWN, MET))
     return mask
 
@@ -55,7 +55,10 @@ class Comparison:
     axes: int
 
     def filled(self, rows: Codes) -> Comparison:
-        """With other verdicts at the points where a side has no value; of a curve nothing changes."""
+        """Return other verdicts at the points where a side has no value.
+
+        Verdicts of a curve do not change.
+        """
         if self.axes:
             return self
         codes = np.where(np.equal(self.codes, NOT_CHECKED), rows, self.codes).astype(np.int8)
@@ -78,13 +81,13 @@ def compare(
 ) -> Comparison:
     """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
 
-    `shifts` are the values of all names, with something upstream shifted to either end of its band;
-    `is_known` says where the errors of all that is upstream are known.
+    `shifts` are the values of all names with an upstream value shifted to either end of its band; `is_known`
+    states where all upstream errors are known.
 
     Raises
     ------
     FaultyText
-        With code `shape`, where arrays of different lengths meet.
+        With code `shape`, if arrays have different lengths.
     """
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)
@@ -101,7 +104,7 @@ def compare(
 
 
 def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
-    """Return shifted values, those of points alone as arrays that go with a curve."""
+    """Return shifted values; values per point become arrays that broadcast along a curve."""
     return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
@@ -120,9 +123,9 @@ def verdicts(
     limit_bounds: Bounds,
     is_known: Truth = True,
 ) -> Codes:
-    """Return the verdict where each side lies in its band; equality meets.
+    """Return the verdict for each side in its band; equality meets the criterion.
 
-    The bands are as wide as the known errors make them; `is_known` says where these are all.
+    The bands include the known errors; `is_known` states where all errors are known.
     """
     safe, bad = _opposed(sign, value_bounds, limit_bounds)
     if not np.ndim(is_known) and all(isinstance(end, float) for end in (value, limit, *safe, *bad)):

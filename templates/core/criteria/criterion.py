@@ -118,7 +118,7 @@ class Criterion:
 
     @cached_property
     def limits_last(self) -> tuple[str, ...]:
-        """Return the names in the order of the text, those of limits behind the others."""
+        """Return the names in the order of the text, with those of limits last."""
         return tuple(sorted(self.names, key=self.limits_by_name.__contains__))
 
     @cached_property
@@ -151,7 +151,7 @@ class Criterion:
 
     @cached_property
     def subject(self) -> str | None:
-        """Return the name that is judged, where the value is a name alone."""
+        """Return the judged name, if the value is a single name."""
         return self.value.only_name
 
 
@@ -162,7 +162,7 @@ def is_angle(name: str) -> bool:
 
 
 def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription]) -> Criterion:
-    """Read a criterion as it is declared: its `require` alone, or an object that holds it.
+    """Read a criterion as declared: only its `require`, or an object that contains it.
 
     Parameters
     ----------
@@ -215,11 +215,8 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription])
 def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     """Return the two sides of a comparison and its sign.
 
-    Raises
-    ------
-    FaultyText
-        With code `syntax` if it has not one `>=` or `<=`; `index`, `no_truth` or `shape`, if a side holds an
-        item, a condition or a list; or as `parse`.
+    Raises ------ FaultyText With code `syntax` without exactly one `>=` or `<=`; with `index`, `no_truth` or
+    `shape` if a side contains an item, a condition or a list; or as raised by `parse`.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
         raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
@@ -289,19 +286,19 @@ def _missing(
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
-    """Return the names in the order in which they stand in the text."""
+    """Return the names in the order of the text."""
     return tuple(sorted(names, key=text.find))
 
 
 def _as_compared(
     sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]
 ) -> tuple[Relation, Relation]:
-    """Return both sides; a number in degC beside a difference of temperatures is one.
+    """Return both sides; a number in degC is read as a difference if the other side is one.
 
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, beside a value in K that may be either.
+        With code `unit_mismatch`, if the other side is a value in K that may be either.
     """
     one, other = value.kind(kinds), limit.kind(kinds)
     meant = as_compared(sign, other, value.tree, limit.tree), as_compared(sign, one, limit.tree, value.tree)
@@ -327,7 +324,7 @@ def _in_kind(name: str, kind: Kind) -> str:
 
 
 def _shown_unit(kind: Kind, declared: list[NameDescription]) -> str:
-    """Return the unit of the first name that measures what the sides do, else the SI base unit."""
+    """Return the unit of the first name with the kind of the sides, else the SI base unit."""
     fitting = (one.unit for one in declared if _is_alike(one.measured, kind))
     return next(fitting, None) or kind.unit
 

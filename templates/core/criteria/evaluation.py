@@ -49,7 +49,7 @@ class Instead:
 
     @property
     def rows(self) -> Codes:
-        """Return the verdicts that stand in: what does not exist cannot be violated for certain."""
+        """Return the replacing verdicts: a missing value cannot violate a criterion with certainty."""
         codes = self.judgement.rows
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
@@ -123,9 +123,9 @@ def judge(
 
 
 def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Mapping[str, Absent]) -> Parts:
-    """Return a criterion of which names have no value.
+    """Return a criterion with missing values.
 
-    The side that has one is reported if it is a single value.
+    A single value on the other side is reported.
     """
     parts: Parts = {"verdict": "not_checked"}
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
@@ -140,7 +140,7 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
 
 
 def _unknown(criterion: Criterion, estimates: Mapping[str, Estimate]) -> list[str]:
-    """Return the names whose own error is not known, at some point at least."""
+    """Return the names whose own error is unknown at some point."""
     return [n for n in criterion.names if n in estimates and not estimates[n].is_known_throughout]
 
 
@@ -224,7 +224,7 @@ def _own_place(point: tuple[int, ...], shape: tuple[int, ...]) -> tuple[int, ...
 
 
 def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate]) -> Parts:
-    """Return the value, limit, band and what follows from them, in the unit of the criterion."""
+    """Return the value, limit, band and derived numbers, in the unit of the criterion."""
     scale, is_temperature = criterion.scale, criterion.is_temperature
     subject = estimates[criterion.subject] if criterion.subject else None
     is_open = parts["verdict"] == "undecided" and worst.is_known
@@ -246,7 +246,7 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
 
 
 def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
-    """Return the stated error of a name that is judged alone; of an expression, that of its band."""
+    """Return the stated error of a directly judged name; for an expression, the error of its band."""
     if subject is None:
         return relative_width(worst.value, worst.low, worst.high)
     at = subject.error
@@ -264,9 +264,9 @@ def _utilisation(criterion: Criterion, worst: Worst) -> float | None:
 
 
 def _needs(worst: Worst, subject: Estimate | None) -> float:
-    """Return the relative error of the value below which the limit lies outside of its band.
+    """Return the relative error below which the limit would be outside the band.
 
-    Where the limit is uncertain too, the same relative error of both.
+    If the limit is uncertain too, both are given the same relative error.
     """
     gap = abs(worst.value - worst.limit)
     if subject is not None and (subject.axes or subject.scale is not None):
@@ -280,7 +280,7 @@ def _needs(worst: Worst, subject: Estimate | None) -> float:
 def _reason(
     criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
 ) -> str | None:
-    """Return a remark on a verdict beside its numbers."""
+    """Return a remark on a verdict."""
     if not worst.is_known:
         return unknown_error(map(in_words, _unknown(criterion, estimates)), parts["verdict"])
     if parts["verdict"] != "undecided":
@@ -306,5 +306,5 @@ def unknown_error(names: Iterable[str], verdict: Verdict) -> str:
 
 
 def in_words(name: str) -> str:
-    """Return the name of a value in words, behind that of its step."""
+    """Return the name of a value in words, after the name of its step."""
     return name.replace(".", ": ").replace("_", " ")

@@ -89,7 +89,7 @@ class Judgement:
 
     @property
     def is_open(self) -> bool:
-        """Return whether a finer calculation may tell more: undecided, or compared with an unknown error."""
+        """Return whether a finer calculation may change the verdict: undecided, or with an unknown error."""
         is_compared = self.verdict in ("met", "not_met") and self.margin is not None
         return self.verdict == "undecided" or (is_compared and not self.error_known)
 
@@ -106,12 +106,12 @@ class Judgement:
 
     @property
     def has_fixed_limit(self) -> bool:
-        """Return whether the limit is a number that stands in the criterion itself."""
+        """Return whether the limit is a literal number in the criterion."""
         return _is_number(_parts_of(self.require).limit)
 
     @property
     def misses(self) -> bool:
-        """Return whether the value, its error aside, lies beyond the limit."""
+        """Return whether the value itself, without its error, violates the limit."""
         return self.margin is not None and self.margin < 0
 
 
@@ -137,7 +137,7 @@ def verdict_sentence(
     error_known: bool,
     truth: str | None,
 ) -> str:
-    """Return the sentence on what is required, with value, limit and their unit where there are any."""
+    """Return the sentence on a requirement, with value, limit and their unit if present."""
     parts = _parts_of(require)
     words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
     if numbers is None or not all(map(math.isfinite, numbers[:2])):
@@ -177,7 +177,7 @@ def _is_number(side: str) -> bool:
 
 
 def is_model(truth: str | None) -> bool:
-    """Return whether a truth is a model named in words, such as `rigid film`; others are names of levels."""
+    """Return whether a truth is a model described in words, such as `rigid film`, not a level."""
     return truth is not None and " " in truth
 
 
@@ -187,14 +187,14 @@ def not_judged(judgement: Judgement) -> str:
 
 
 def _in_words(text: str) -> str:
-    """Return a side in words; a number stands for itself, and is shown as the value."""
+    """Return a side in words; a number is shown as it is."""
     if _is_number(text):
         return ""
     return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="
 
 
 def _name(text: str) -> str:
-    """Return names in words, without the steps before them; a number stays as it is written."""
+    """Return names in words, without the steps before them; a number stays as written."""
     return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
 
 
@@ -219,7 +219,7 @@ def compared(left: Side, sign: str, right: Side, unit: str) -> str:
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Return two numbers in so many digits that they differ, unless they are equal."""
+    """Return two numbers with enough digits to differ, unless they are equal."""
     texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
     digits = DIGITS
     while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:

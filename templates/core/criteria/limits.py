@@ -113,7 +113,7 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
 
 
 def _of_row(text: str, declared: str) -> Value:
-    """Return a value of a row in SI; its own unit tells a temperature from a difference, which K does not."""
+    """Return a value of a row in SI; its own unit distinguishes a temperature from a difference."""
     own, want = unit(text.partition(" ")[2]), unit(declared)
     is_temperature = own.offset and compatible(own, want) and not want.difference
     return read(text, own.text if is_temperature else declared).si

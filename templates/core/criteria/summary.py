@@ -57,7 +57,7 @@ def rank(judgement: Judgement) -> tuple[int, bool, float, float, str]:
 def summarised(ordered: Sequence[Judgement]) -> Summary:
     """Return the verdict over criteria in order.
 
-    Waived criteria are counted and listed as what they are, but no longer make the verdict worse than met.
+    Waived criteria are counted and listed, but do not worsen the verdict.
     """
     verdicts = [judgement.verdict for judgement in ordered]
     counts = {verdict: verdicts.count(verdict) for verdict in SHOWN}
@@ -72,7 +72,7 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
 
 
 def _subject(judgement: Judgement) -> tuple[str, str]:
-    """Return the step and the text of what is judged."""
+    """Return the step and the text of the judged value."""
     return judgement.name.rpartition(".")[0], judgement.sides[0]
 
 
@@ -84,7 +84,10 @@ def _may_govern(judgement: Judgement, waiting: Collection[tuple[str, str]]) -> b
 
 @lru_cache(maxsize=1024)
 def _headline(counts: tuple[int, ...], unknown: int, waived: int) -> str:
-    """Return the number of criteria of each verdict in `SHOWN`, in words; met with an unknown error apart."""
+    """Return the number of criteria of each verdict in `SHOWN`, in words.
+
+    Met with an unknown error separately.
+    """
     met, *others = counts
     words = ["met", "met (error unknown)", *(verdict.replace("_", " ") for verdict in SHOWN[1:])]
     numbers = [met - unknown, unknown, *others]

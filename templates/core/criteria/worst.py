@@ -77,12 +77,10 @@ def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tup
 
 
 def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
-    """Return the distance of the worst bound from the limit, on its safe side.
+    """Return the distance of the worst bound from the limit, positive on the safe side.
 
-    Relative where the limit is not zero.
-
-    Where the band is open the value itself counts; what does not exist has a finite number too,
-    so that it differs from what is not asked about.
+    It is relative if the limit is not zero. If the band is open the value itself is used; a missing value
+    gets a finite number, to distinguish it from masked points.
     """
     value, limit, low, high, limit_low, limit_high = sides
     with np.errstate(all="ignore"):

@@ -52,7 +52,7 @@ def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault
 def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
     """Return the profile of a single point.
 
-    Refused unless all of it means something, or none of it exists.
+    It is refused unless it is completely valid or completely missing.
     """
     inside = declaration.meaning.at(self.level).admits(value)
     if not inside.all():
@@ -64,7 +64,7 @@ def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
-    """Return the results with NaN where they mean nothing, the reason noted.
+    """Return the results with NaN where they are invalid, and note the reason.
 
     A profile is masked as a whole.
     """

@@ -29,7 +29,7 @@ class Body(ABC):
         """Return the SI value for the values of a template."""
 
     def seconds(self, points: int) -> float:
-        """Return the time that it takes at a number of points, an order of magnitude [s]."""
+        """Estimate its time at a number of points, an order of magnitude [s]."""
         return 0.0
 
     @abstractmethod

@@ -26,7 +26,7 @@ class Written(Protocol):
         """Return the worksheet as it was written."""
 
     def digest(self) -> str:
-        """Return the SHA-256 of what it calculates, without prose and layout."""
+        """Return the SHA-256 of the calculating statements, without prose and layout."""
 
 
 class Calculation:
@@ -66,7 +66,7 @@ class Calculation:
     ledger: Ledger
 
     def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
-        """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""
+        """Set SI values by attribute, unchecked; user input goes through `from_quantities`."""
         self.__dict__.update(values)
         self.__dict__.setdefault("level", self.default_level)
         self.__dict__["ledger"] = ledger or Ledger()
@@ -81,9 +81,10 @@ class Calculation:
         self.__setattr__(name, None)
 
     def as_given(self, attribute: str) -> Any:
-        """Return the value of an input as it was given, or its default; NaN where its formula has to make it.
+        """Return the given or default value of an input; NaN if its formula must compute it.
 
-        Name the attribute by a literal: the language reads from the source which inputs a formula depends on.
+        Name the attribute by a literal, because the language finds the dependencies of a formula in its
+        source.
         """
         return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
 

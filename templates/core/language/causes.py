@@ -22,9 +22,9 @@ BROKEN = "inconsistent"
 
 
 def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
-    """Return the inputs that can have broken a rule of a single point, by API name.
+    """Return the inputs that may have broken a rule at a single point, by API name.
 
-    Those that were given come before those that follow from others, else in the order of the rule.
+    Given inputs come before derived ones, otherwise in the order of the rule.
     """
     with np.errstate(all="ignore"):
         sides = list(_compared(outcome(template, rule)))
@@ -35,7 +35,7 @@ def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
 
 
 def _compared(result: Outcome) -> Iterator[Operand]:
-    """Yield the operands of those parts of a rule that do not hold; a side of unknown causes where one is."""
+    """Yield the operands of the false parts of a rule; all operands if a part has unknown causes."""
     if result.comparison is not None:
         yield from (result.comparison.left, result.comparison.right)
     elif result.parts:
@@ -56,9 +56,9 @@ def _inputs_of(template: Calculation, side: Operand) -> set[str]:
 
 
 def by_cause(faults: Iterable[Fault]) -> list[Fault]:
-    """Return the faults of broken rules joined by the input that explains most of them.
+    """Return the faults of broken rules, joined at the input that explains most of them.
 
-    Others as they are.
+    Other faults are unchanged.
     """
     faults = list(faults)
     broken = [fault for fault in faults if fault.code == BROKEN]

@@ -64,7 +64,7 @@ class _RecordingValue(NDArrayOperatorsMixin):
         return bool(self.value)
 
     def __getattr__(self, name: str) -> Any:
-        """Return any other attribute of numpy's values, as `shape` and `max`, of the plain value."""
+        """Return any other attribute of numpy's values, such as `shape` and `max`, from the plain value."""
         if name.startswith("__") or name == "value":
             raise AttributeError(name)
         return getattr(self.value, name)
@@ -114,7 +114,7 @@ class Comparison:
 
     @property
     def actual(self) -> Sign:
-        """Return the sign that is true of the values: the opposite one where the comparison does not hold."""
+        """Return the true sign between the values: the opposite one if the comparison does not hold."""
         return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else OPPOSITE[self.sign]
 
     @property
@@ -124,9 +124,9 @@ class Comparison:
 
     @property
     def share(self) -> float | None:
-        """Return the side that must be smaller over the other, at the worst point that counts.
+        """Return the ratio of the side that must be smaller to the other, at the worst point.
 
-        None where it has no meaning: a side is the constant 0, or is not an amount at one of the points.
+        It is None if a side is the constant 0 or is negative at one of the points.
         """
         small, large = self.ordered
         if small.constant == 0 or large.constant == 0:
@@ -135,9 +135,9 @@ class Comparison:
 
 
 def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
-    """Return the largest ratio of what must be smaller to what must be larger, over the points in `where`.
+    """Return the largest ratio of the side that must be smaller to the other, over the points in `where`.
 
-    None if no point has both values, or one of the values is not an amount: below 0, or 0 as the larger.
+    It is None if no point has both values, or if a value is negative or the larger side is 0.
     """
     low, high, counts = np.broadcast_arrays(
         np.asarray(small, dtype=float), np.asarray(large, dtype=float), np.asarray(where)
@@ -161,10 +161,9 @@ class Outcome(_RecordingValue):
     equated: tuple[Operand, ...] = ()
 
     def decisive(self, where: Truth = True) -> Iterator[Comparison]:
-        """Yield the comparisons on which the truth depends, each with the points at which it does.
+        """Yield the comparisons that decide the truth, each with the points where it does.
 
-        Of alternatives the last counts, at points where no other holds: the others say where it does not
-        apply.
+        Of several alternatives the last one counts, at points where none of the others holds.
         """
         if self.comparison is not None:
             if np.any(where):
@@ -199,7 +198,7 @@ def _none_of(guards: Sequence[Outcome], where: Truth) -> Mask:
 def outcome(template: Calculation, rule: Requirement) -> Outcome:
     """Run a rule and record its comparisons.
 
-    A rule that does not run with operands has its truth alone.
+    For a rule that cannot run with operands only its truth is known.
     """
     truth = rule.function(template)
     try:
@@ -232,14 +231,14 @@ def _read(attribute: str, value: Any) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """Return a value without what was recorded about it."""
+    """Return a value without its recorded comparison."""
     if isinstance(value, _RecordingValue):
         return value.value
     return type(value)(map(plain, value)) if type(value) in (list, tuple) else value
 
 
 def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
-    """Return the result of a ufunc with what it follows from."""
+    """Return the result of a ufunc with its dependencies."""
     if ufunc in _SIGNS:
         left, right = map(_operand, inputs)
         return Outcome(result, Comparison(left, _SIGNS[ufunc], right, result))

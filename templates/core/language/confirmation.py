@@ -41,9 +41,9 @@ class Root:
 def confirmed(
     requested: SampledCurve, scanned: SampledCurve, places: Sequence[Place], bounds: tuple[float, float]
 ) -> list[Root]:
-    """Return the solutions at the level requested.
+    """Return the solutions at the requested level.
 
-    One of the scan where that has none near, or after so many.
+    A scanned solution is returned if the level has none nearby, or after a maximum number.
     """
     is_other = requested.chooses or not requested.is_at_levels_of(scanned)
     most = CONFIRMED if is_other else len(places)
@@ -90,7 +90,7 @@ def _polished(
     bounds: tuple[float, float],
     outputs: Outputs,
 ) -> tuple[float, Outputs] | None:
-    """Return the crossing of a curve near that of the scan, by slope and secants, and the output."""
+    """Return the crossing of a curve near that of the scan, by slope and secants, with the output."""
     x, slope = place.x, _slope(scanned, place.x, bounds)
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])
     miss = curve.miss_of(outputs)
@@ -109,7 +109,7 @@ def _polished(
 
 
 def _slope(curve: SampledCurve, x: float, bounds: tuple[float, float]) -> float:
-    """Return the slope of the curve, from values within the bounds; NaN where there is none."""
+    """Return the slope of the curve, from values within the bounds; NaN if missing."""
     step = STEP * (abs(x) or bounds[1] - bounds[0])
     low, high = max(bounds[0], x - step), min(bounds[1], x + step)
     return (curve.miss(high) - curve.miss(low)) / (high - low)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, reduce
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,8 @@ class EvaluatedValues:
         Relative, as `Evaluation.error`; `measured` is the table behind them.
     is_joined
         Whether the answers come from several instances.
+    computed
+        The names of outputs that have to be computed here: not those that were given.
     """
 
     template: Template
@@ -52,16 +54,15 @@ class EvaluatedValues:
     shown_in: Mapping[str, Unit] = field(default_factory=dict)
     level: Any = None
     is_joined: bool = False
+    computed: frozenset[str] = field(init=False)
     estimates: dict[str, Estimate | Absent] = field(default_factory=dict, init=False)  # those wanted so far
 
-    @cached_property
-    def computed(self) -> frozenset[str]:
-        """Return the names of outputs that have to be computed here: not those that were given."""
-        template = self.template
-        if template.ledger.handed.isdisjoint(template._results):
-            return template._result_names
-        handed = template.ledger.handed
-        return frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
+    def __post_init__(self) -> None:
+        handed, template = self.template.ledger.handed, self.template
+        if handed.isdisjoint(template._results):
+            self.computed = template._result_names
+        else:
+            self.computed = frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
 
     def value(self, name: str) -> Value:
         """Return the SI value of an output that exists; NaN in an array where there is none."""
@@ -86,7 +87,7 @@ def is_due(evaluated: EvaluatedValues, criterion: Criterion) -> bool:
 
 
 def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue | None:
-    """The criterion's rule for a value that is missing, where another comparison can be judged instead.
+    """Return the criterion's rule for a missing value, if another comparison can be judged instead.
 
     It computes no output beyond those evaluated.
     """
@@ -156,14 +157,14 @@ def estimates_of(
 
 
 def _with_those_of_limits(evaluated: EvaluatedValues, criterion: Criterion) -> str | None:
-    """Return the source of the criterion, and those of the limits that a library gave."""
+    """Return the source of the criterion, and the sources of limits from a library."""
     given = [evaluated.limits[limit.name] for limit in criterion.limits if limit.name in evaluated.limits]
     sources = [criterion.source, *(limit.source for limit in given)]
     return "; ".join(dict.fromkeys(filter(None, sources))) or None
 
 
 def estimate_of(evaluated: EvaluatedValues, name: str) -> Estimate | Absent:
-    """Return the value of an input or output with its error, or why there is none."""
+    """Return the value of an input or output with its error, or why it is missing."""
     estimate = evaluated.estimates.get(name)
     if estimate is None:
         find = _estimate_of_output if name in evaluated.computed else _estimate_of_input
@@ -186,7 +187,7 @@ def _estimate_of_input(evaluated: EvaluatedValues, name: str) -> Estimate | Abse
 
 
 def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
-    """Return a limit of the user: one for all, one for each point, or a curve beside a curve."""
+    """Return a limit of the user: one for all points, one for each, or a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
         return _default(evaluated, limit) if limit.default else _not_given(limit)
@@ -221,13 +222,13 @@ def _not_given(limit: Limit) -> Absent:
 
 
 def _stated_reason(evaluated: EvaluatedValues, missing: MissingValue) -> Absent | None:
-    """Return why an output has no value, where the criterion says so and the output beside it has one."""
+    """Return the criterion's reason why an output has no value although another output has one."""
     beside = evaluated.answers.get(missing.beside)
     return Absent((), missing.reason) if beside and beside.value is not None else None
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
-    """Return whether an array of this shape goes with one of the wanted shape without making it larger."""
+    """Return whether an array of this shape broadcasts to the wanted shape."""
     try:
         return np.broadcast_shapes(shape, wanted) == wanted
     except ValueError:
@@ -248,7 +249,7 @@ def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Abs
 
 
 def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
-    """Return an error that says nothing at the points where what it is relative to does not exist."""
+    """Return an error with NaN at the points where its reference value is missing."""
     if not np.ndim(scale):
         return float("nan"), None
     return np.where(np.isnan(scale), np.nan, error), scale
@@ -274,14 +275,14 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
-    """Return why an output does not exist: optional inputs to give, or a reason of its own."""
+    """Return why an output is missing: optional inputs to give, or its own reason."""
     missing = sorted(template.ledger.missing & template.ancestors(formula.attribute))
     give = tuple(template.declarations[attribute].name for attribute in missing)
     return Absent(give, reason or absence(template, formula))
 
 
 def error_of(evaluated: EvaluatedValues, name: str) -> Any:
-    """Return the relative error of an output, NaN where it is not known.
+    """Return the relative error of an output, NaN if unknown.
 
     A template of which no errors were measured, or one without levels whose table does not name the output,
     states none.
@@ -312,7 +313,7 @@ def _places(template: Template, axis: Declaration) -> Along | None:
 
 
 def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
-    """Yield a warning for every criterion that declares one and is not met, or whose value misses its limit.
+    """Yield a warning for every criterion that declares one and whose value misses its limit.
 
     Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
     whose error is not known is warned of all the same. So is a check of a worksheet that cannot be judged.

@@ -78,7 +78,7 @@ def _exact(samples: Samples) -> Iterator[Place]:
 
 
 def _sign(miss: Array, i: int) -> float:
-    """Return on which side of the target a sample is; 0 beyond the bounds, or where there is no value."""
+    """Return the side of the target on which a sample lies; 0 beyond the bounds, or without a value."""
     return float(np.nan_to_num(np.sign(miss[i]))) if 0 <= i < miss.size else 0.0
 
 
@@ -105,9 +105,9 @@ def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
 
 
 def _closed(curve: SampledCurve, samples: Samples, i: int) -> Place | Leap:
-    """Return the crossing between two samples, closed in to rounding.
+    """Return the crossing between two samples, located to rounding.
 
-    A leap, if the output has no such value.
+    It is a jump if the output never equals the target.
     """
     low, high = (float(samples.x[k]) for k in (i, i + 1))
     root = float(brentq(curve.miss, low, high, xtol=1e-300, rtol=4e-15, disp=False))

@@ -61,14 +61,14 @@ def given(
 
     An optional input that is missing is NaN; outputs that need it do not exist, and say so. An `alternative`
     is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
-    Of a `single` one arrays are refused: all points share its value.
+    A `single` input refuses arrays: all points share its value.
     """
     meant = meaning(unit, words, **keywords)
     return Given(meant, default, optional=optional, alternative=alternative, single=single)
 
 
 def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Unpack[Keywords]) -> Any:
-    """Declare an optional input that is a list of at most so many rows; every column is in `unit`."""
+    """Declare an optional input that is a list with a maximum number of rows; every column is in `unit`."""
     return Table(meaning(unit, words, **keywords), columns, most)
 
 
@@ -167,7 +167,7 @@ def require(
 def units(
     *arguments: str | None, returns: str | tuple[str, ...], latex: str | None = None
 ) -> Callable[[F], F]:
-    """Declare the units in which a physics function takes its arguments and returns its result.
+    """Declare the units of a physics function's arguments and result.
 
     For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
     test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
@@ -193,7 +193,7 @@ def units(
 
 
 def on_paper(words: str | Mapping[str, str]) -> Callable[[F], F]:
-    """Say how a physics function makes what no formula writes, for reports: `solved numerically by …`.
+    """Declare how a physics function computes a result without a formula, in words for reports.
 
     Where that depends on the level, `words` are by level.
     """

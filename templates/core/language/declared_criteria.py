@@ -37,7 +37,7 @@ def declared_criteria(
 
 
 def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
-    """A limit that nobody gives follows from an input that is a list, not from a result."""
+    """Check that the default of a limit comes from an input that is a list, not from a result."""
     for limit in criterion.limits:
         if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
             raise FaultyText("syntax", f"the default of {limit.name} must name an input that is a list")

@@ -35,7 +35,7 @@ def faults(cls: type[Template]) -> list[str]:
 
 
 def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
-    """Yield each formula or rule whose dimensions are wrong, with a sentence that says how."""
+    """Yield each formula or rule with wrong dimensions, with a sentence that explains the fault."""
     with np.errstate(all="ignore"):
         template = cls.from_quantities(cls.example)
         for part in _checked(cls):
@@ -104,7 +104,7 @@ def _quantity(template: Template, name: str) -> Any:
 
 
 def _magnitude(result: Any, declared: str) -> Any:
-    """Return the SI magnitude of a result, or None if it does not measure what is declared."""
+    """Return the SI magnitude of a result, or None if it does not have the declared kind."""
     wanted = unit(declared).base
     quantity = result if isinstance(result, pint.Quantity) else registry.Quantity(result, "")
     if quantity.dimensionality != registry.get_dimensionality(wanted):
@@ -173,12 +173,12 @@ def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _outside(result: Any, declared: str) -> Any:
-    """Return a result in its declared unit; whether something holds has none."""
+    """Return a result in its declared unit; a truth value has none."""
     return result if np.asarray(result).dtype == bool else registry.Quantity(result, unit(declared).base)
 
 
 def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str | None) -> Any:
-    """Return the magnitude of an argument, if it measures what the border declares."""
+    """Return the magnitude of an argument, if it has the declared kind."""
     name, value = argument
     if declared is None:
         return value

@@ -64,7 +64,7 @@ class Evaluation:
     criteria: list[Judgement] = field(default_factory=list)
 
     def count(self) -> int:
-        """Number of values that all outputs have together."""
+        """Return the total number of values of all outputs."""
         return sum(
             answer.value.size if isinstance(answer.value, np.ndarray) else 1
             for answer in self.outputs.values()
@@ -228,7 +228,7 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
 def _with_reasons(
     template: Template, formula: Formula[Any], si: Array
 ) -> tuple[Array, NDArray[np.object_] | None]:
-    """Return the values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
+    """Return the values with NaN where an upstream mask applies, and the reason for each NaN.
 
     A profile has one reason as a whole. A result beneath that means nothing is the reason before one that is
     only absent.
@@ -291,7 +291,7 @@ def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
 
 @lru_cache(maxsize=4096)  # worksheets come and go
 def default_of(declared: Given) -> UsedInput:
-    """Return the constant default of an input, as it is used."""
+    """Return the constant default of an input."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 
@@ -310,7 +310,7 @@ def _with_nulls(shown: Array) -> list[Any]:
 
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
-    """Return the warnings that hold for every calculation from these inputs.
+    """Return the warnings that apply to every calculation with these inputs.
 
     Of the version, and of tolerances.
     """
@@ -351,7 +351,7 @@ def evaluate_at_level(
 
 
 def notices_of(template: Template) -> list[Notice]:
-    """Return all warnings so far of a template at its level, but for those of criteria."""
+    """Return all present warnings of a template at its level, except those of criteria."""
     return [*_standing(type(template), template.ledger.typed), *_noticed([Rung(template, None)])]
 
 
@@ -376,7 +376,7 @@ def _noticed(rungs: list[Rung]) -> list[Notice]:
 def assumed(
     template: Calculation, outputs: Collection[str], criteria: Iterable[Judgement] = ()
 ) -> list[Assumption]:
-    """Return what the named outputs of a template, and its criteria as judged, take for granted."""
+    """Return the assumptions behind outputs of a template and its judged criteria."""
     cls, typed = type(template), template.ledger.typed
     own = [Assumption("", detail) for detail in cls.assumptions]
     given = frozenset(name for name in typed if isinstance(cls.inputs.get(name), Derived))
@@ -402,7 +402,7 @@ def _defaults(
 
 
 def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[str]) -> Iterator[str]:
-    """Yield the attributes that outputs follow from; nothing lies beneath an input that was given."""
+    """Yield the attributes on which outputs depend; a given input depends on none."""
     waiting = [cls.formulas[name].attribute for name in outputs]
     seen = set(waiting)
     while waiting:
@@ -416,12 +416,12 @@ def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[s
 
 
 def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> Iterator[Assumption]:
-    """Yield the limits that a template states itself for values whose user has given no limit."""
-    declared = {one.name: one.require for one in cls.declared_criteria}
+    """Yield the limits that a template provides where the user has given none."""
     open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
-    judged = {one.sides[0] for one in criteria if one.verdict != "not_checked" and not one.has_fixed_limit}
-    for one in criteria:
+    checked = [one for one in criteria if one.verdict != "not_checked"] if open_values else []
+    open_values.difference_update([one.sides[0] for one in checked if not one.has_fixed_limit])
+    declared = {(one.name, one.require) for one in cls.declared_criteria} if open_values and checked else ()
+    for one in checked:
         value, limit = one.sides
-        is_default = _AMOUNT.fullmatch(limit) is not None and declared.get(one.name) == one.require
-        if is_default and one.verdict != "not_checked" and value in open_values - judged:
+        if value in open_values and _AMOUNT.fullmatch(limit) and (one.name, one.require) in declared:
             yield Assumption(one.name, f"the limit of {value.replace('_', ' ')} is {limit}, a default")

@@ -48,7 +48,7 @@ def read_inputs(
 def _in_declared_sizes(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[Mapping[str, Any], list[Fault]]:
-    """Return inputs with a diametral size in the place of a radial one, or the other way round.
+    """Return inputs with radial sizes converted to diametral ones, or vice versa.
 
     A radial clearance is half the diametral one. Where both are given they must agree.
     """
@@ -74,13 +74,13 @@ def _in_declared_sizes(
 
 
 def other_sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
-    """Return the radial name of each diametral input that has none, and the other way round."""
+    """Return the radial name of each diametral input without one, and vice versa."""
     pairs = ((name, _DIAMETRAL.sub(_opposite, name)) for name in cls.inputs)
     return tuple((other, name) for name, other in pairs if other != name and other not in cls.inputs)
 
 
 def factor_of(name: str) -> float:
-    """Return by how much a size, radial or diametral, is larger than the other one."""
+    """Return the ratio of a size, radial or diametral, to the other one."""
     return 2.0 if name.startswith("diametral") else 0.5
 
 
@@ -173,7 +173,7 @@ class PlainText(NamedTuple):
 
 
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
-    """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
+    """Return the inputs of most requests, read and checked at once; None if any needs a closer look."""
     left_out = _defaults.get(cls) or _left_out(cls)
     if not left_out.needed <= raw.keys():
         return None
@@ -189,7 +189,8 @@ def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
-        missing.discard(declared.attribute)
+        if missing:
+            missing.discard(declared.attribute)
     return Plain(typed, values, missing)
 
 
@@ -222,7 +223,7 @@ def _left_out(cls: type[Calculation]) -> LeftOut:
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
 def plain_text(declared: Input, text: str) -> PlainText | None:
-    """Return an input as typed and its value [SI], if that needs no further look.
+    """Return an input as typed and its value [SI], if it needs no closer look.
 
     For texts short enough to keep.
     """
@@ -273,7 +274,7 @@ def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask |
 
 
 def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
-    """Return the fault of a tolerance by which a single value may lie outside its bounds."""
+    """Return the fault of a tolerance that lets a single value exceed its bounds."""
     ends = (si + tolerance.lower, si + tolerance.upper)
     outside = next((end for end in ends if not declared.meaning.admits(end)), None)
     if outside is None:
@@ -285,7 +286,7 @@ def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Faul
 
 
 def _along_a_cycle(declared: Curve, typed: TypedQuantity) -> tuple[Any, Fault | None]:
-    """Return a curve means something as a whole: one point out of its domain refuses it."""
+    """Check a curve as a whole: one point outside its domain refuses it."""
     meaning, value = declared.meaning, typed.si
     if not isinstance(value, np.ndarray):
         detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
@@ -295,7 +296,7 @@ def _along_a_cycle(declared: Curve, typed: TypedQuantity) -> tuple[Any, Fault | 
 
 
 def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
-    """Return the rows of a table; a single row may stand alone."""
+    """Return the rows of a table; a single row need not be in a list."""
     rows = np.atleast_2d(value)
     fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
     if not fits or not np.all(declared.meaning.admits(rows)):
@@ -385,7 +386,7 @@ def is_curve(self: Calculation, attribute: str) -> bool:
 
 
 def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]:
-    """Return the shape of the points that arrays of inputs, by attribute, make.
+    """Return the shape of the points in arrays of inputs, by attribute.
 
     A curve is one thing for each.
     """
@@ -394,7 +395,7 @@ def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]
 
 
 def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
-    """Return the faults of the rules that do not hold; points of arrays are masked instead."""
+    """Return the faults of broken rules; points of arrays are masked instead."""
     faults: list[Fault] = []
     missing = self.ledger.missing
     for rule in rules:
@@ -412,7 +413,7 @@ def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
 
 
 def _violation(self: Calculation, rule: Requirement) -> Fault:
-    """Return the fault of a rule that does not hold."""
+    """Return the fault of a broken rule."""
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     case = stated_case(self, rule) or values
@@ -420,7 +421,7 @@ def _violation(self: Calculation, rule: Requirement) -> Fault:
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
-    """Return the mask of the points at which a rule does not hold, if there are any."""
+    """Return the mask of the points at which a rule is broken, if there are any."""
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
@@ -431,7 +432,7 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
-    """Yield a warning for every rule that refuses nothing, where it does not hold, and for every remark."""
+    """Yield a warning for every broken rule that only warns, and for every remark."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             for name in rule.names:

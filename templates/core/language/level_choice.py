@@ -37,7 +37,7 @@ class Rung:
 def climb(
     template: Template, outputs: Iterable[str], tolerance: float, *, per_point: bool = False
 ) -> Iterator[Rung]:
-    """Yield the levels that answer a request with a tolerance; one, unless each point is to have its own.
+    """Yield the levels for a request with a tolerance; one, unless each point has its own.
 
     It is the cheapest level whose errors are within the tolerance for all outputs, else the finest within
     the budget. What has no value needs no error.
@@ -66,7 +66,7 @@ def states_any(cls: type[Template], level: str) -> bool:
 
 
 def is_affordable(cls: type[Template], level: str, points: int) -> bool:
-    """Return whether a level takes a number of points at once, at a stated cost within the budget.
+    """Return whether a level accepts a number of points at once, at a stated cost within the budget.
 
     Without a stated cost it does if it states an error.
     """
@@ -105,7 +105,7 @@ class _Search:
 
     @cached_property
     def start(self) -> str:
-        """Return the level that answers when nothing is known of any error."""
+        """Return the level used when no error is known."""
         return self.template.starting_level()
 
     @cached_property
@@ -117,7 +117,7 @@ class _Search:
         return {}
 
     def at(self, level: str) -> Template:
-        """Return the template at a level, all points; kept, with what it has computed."""
+        """Return the template at a level for all points; it is cached with its results."""
         if level not in self._at:
             self._at[level] = at_level(self.template, level)
         return self._at[level]
@@ -136,7 +136,7 @@ class _Search:
 
     @property
     def _promising(self) -> Iterator[str]:
-        """Yield the levels that may be known to serve: up to the starting one, and finer ones with errors."""
+        """Yield the levels that may be sufficient: up to the starting one, and finer ones with errors."""
         cls, start = type(self.template), self.start
         last = self.ladder.index(start) if start in self.ladder else 0
         for i, level in enumerate(self.ladder):

@@ -83,7 +83,7 @@ class Accuracy:
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
     def own(self, level: str) -> Mapping[str, float]:
-        """Return by output the error to expect at a level that states the error of each answer itself."""
+        """Return by output the expected error at a level that states the error of each answer itself."""
         of_level: Mapping[str, Mapping[str, float]] = self.content.get("levels", {}).get(level, {})
         return of_level.get("own", {})
 
@@ -98,7 +98,7 @@ class Accuracy:
 
     @cached_property
     def outputs(self) -> frozenset[str]:
-        """Return the outputs of which errors were measured at any level."""
+        """Return the outputs with measured errors at any level."""
         return frozenset(output for table in self.errors.values() for output in table)
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
@@ -116,7 +116,7 @@ class Accuracy:
         return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
-        """Return the errors stated for a level in the cell in which the template lies at its own level."""
+        """Return the errors stated for a level in the cell of the template at its own level."""
         names, levels = list(outputs), self.errors
         if self.cases:
             levels = self.cases.get(template.measured_case(), levels)
@@ -147,8 +147,27 @@ class Accuracy:
         return prod(factors)
 
     def _added(self, template: Template, output: str) -> float:
-        """Return what the conditions that hold add to the error of an output."""
+        """Return the error of an output that the active conditions add."""
         return sum(one.added(template, output) for one in self._conditions if one.holds(template))
+
+    def seconds(self, template: Template, level: str) -> float | None:
+        """Return the processor time to expect of all points at a level [s].
+
+        `expected_seconds` of the table has that of a point by level and case: one number, or one in each cell
+        of `grids` over the axes. None where it states none.
+        """
+        by_level = self.content.get("expected_seconds", {}).get(level, {})
+        stated = by_level.get("cases", {}).get(template.measured_case() if self.cases else "")
+        if stated is None:
+            return None
+        table = np.array(stated, dtype=float)
+        if table.ndim:
+            values = np.broadcast_arrays(*(np.asarray(getattr(template, axis), float) for axis in self.axes))
+            grids = (np.array(grid) for grid in by_level["grids"])
+            (rows, is_row), (columns, is_column) = map(_places, grids, values)
+            table = np.where(is_row & is_column, table[rows, columns], np.nan)
+        each = np.broadcast_to(table, template.shape_of_points())
+        return float(each.sum()) if np.isfinite(each).all() else None
 
     def truth(self, level: str, output: str) -> str | None:
         """Return the name of the solution against which an output was measured; None if none is stated."""
@@ -162,7 +181,7 @@ class Accuracy:
         )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
-        """Return row and column of the cell in which each point lies, and whether it lies in any."""
+        """Return row and column of the cell of each point, and whether there is one."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
             row, in_rows = _place(self._edges[0], first)
@@ -179,7 +198,7 @@ class Accuracy:
 
 
 def _same_at_all_levels(template: Template, output: str) -> bool:
-    """Return whether an output, which is not text, has no other value at another level."""
+    """Return whether an output, which is not text, has the same value at every level."""
     formula = template.formulas[output]
     if isinstance(formula, Text):
         return False
@@ -207,7 +226,7 @@ def _place(edges: list[float], value: float) -> tuple[int, bool]:
 
 
 def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Return the cell of the grid in which each value lies, and whether it lies in any."""
+    """Return the grid cell of each value, and whether there is one."""
     cells = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, grid.size - 2)
     return cells, (values >= grid[0]) & (values <= grid[-1])
 
@@ -276,7 +295,7 @@ def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
 
 
 def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
-    """Return the template at a level, if that takes as many points at once.
+    """Return the template at a level, if the level accepts this many points.
 
     Raises
     ------

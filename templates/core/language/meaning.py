@@ -62,7 +62,7 @@ class Bounds:
 
     @property
     def open(self) -> bool:
-        """Return whether there is no limit."""
+        """Return whether there is no bound."""
         return all(getattr(self, side) is None for side, _ in _RELATIONS)
 
 
@@ -95,7 +95,7 @@ class Meaning:
     read_as: str | None = None
 
     def at(self, level: str) -> Meaning:
-        """Return the meaning of the number at a level of fidelity, which may have limits of its own."""
+        """Return the meaning of the number at a level of fidelity, which may have its own bounds."""
         return self._at_levels.get(level, self) if self.per_level else self
 
     @cached_property
@@ -105,7 +105,7 @@ class Meaning:
 
     @property
     def wanted(self) -> str:
-        """Return the demand on the value, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
+        """Return the requirement on the value in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`."""
         limits = self.domain.text(self.unit)
         return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
 
@@ -130,7 +130,7 @@ class Meaning:
 
     @cached_property
     def accepted(self) -> str:
-        """Return the unit by which it is known what may be typed: of a temperature in K, degC."""
+        """Return the unit that decides which units may be typed: for a temperature in K, degC."""
         return self.read_as or self.unit
 
     @cached_property
@@ -163,7 +163,7 @@ _API_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 def _named(words: str, name: str | None) -> str:
-    """Return the explicit name, else the words as one.
+    """Return the explicit name, or the words converted to a name.
 
     Raises
     ------

@@ -105,7 +105,7 @@ def _faulty_inputs(
     declared: Input | None,
     ends: tuple[float, float],
 ) -> list[Fault]:
-    """Return the faults of the other inputs, seen with the unknown in the middle of its bounds."""
+    """Return the faults of the other inputs, with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]

@@ -32,7 +32,7 @@ def read_request(
     level: str | None = None,
     limits: Mapping[str, Any] | None = None,
 ) -> Request:
-    """Read inputs and limits as a user types them, and the names of what is asked for.
+    """Read inputs and limits as typed, and the names of the requested outputs.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Give
 
 
 def require_points(template: Template, level: str | None, tolerance: float | None) -> None:
-    """Check that the level that will be calculated takes as many points; raises InvalidInputs.
+    """Check that the level accepts the number of points; raises InvalidInputs.
 
     With a tolerance the level of each point follows from the calculation, so there is nothing to check.
     """
@@ -74,7 +74,7 @@ def read_options(
     units: Mapping[str, str] | None = None,
     level: str | None = None,
 ) -> tuple[list[str], dict[str, Unit], list[Fault]]:
-    """Return the outputs asked for, their units, and all that is wrong with these and with the level."""
+    """Return the requested outputs, their units, and all faults of these and of the level."""
     names = list(cls.formulas) if outputs is None else list(outputs)
     faults = unknown_names(filterfalse(cls.formulas.__contains__, names), cls.formulas, "output")
     shown_in = _units(cls, units or {}, faults)

@@ -149,7 +149,7 @@ def _traced(curve: SampledCurve, samples: Samples) -> TracedCurve:
 def _finer(
     requested: SampledCurve, scanned: SampledCurve, even: Samples, roots: Sequence[Root]
 ) -> Iterator[TracedCurve]:
-    """Yield the curve of each level that solutions were confirmed at, but for that of the scan.
+    """Yield the curve of each level that confirmed solutions, except that of the scan.
 
     A level that takes few points at once has a sample to both sides of each solution.
     """
@@ -177,7 +177,7 @@ def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Sa
 
 
 def _beside(even: Array, places: Array) -> NDArray[np.intp]:
-    """Return the samples that lie so many to both sides of some places."""
+    """Return the samples within a number of steps on both sides of some places."""
     nearest = np.searchsorted(even, places)
     return np.unique(np.clip(np.concatenate([nearest - BESIDE, nearest + BESIDE]), 0, even.size - 1))
 

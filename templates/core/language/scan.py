@@ -127,7 +127,7 @@ class SampledCurve(ABC):
 
     @property
     def rows(self) -> int:
-        """Number of samples that one call takes."""
+        """Return the number of samples in one call."""
         return CELLS
 
     def at_one_level(self, x: Array) -> tuple[Self, Samples]:
@@ -154,7 +154,7 @@ class SampledCurve(ABC):
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
-        """The curve at its level, the samples between the bounds, and those with all that was divided."""
+        """Return the curve at its level, the samples between the bounds, and those with all refinements."""
         curve, even = self.at_one_level(evenly(low, high))
         samples = even
         for turn in range(ROUNDS):
@@ -166,7 +166,7 @@ class SampledCurve(ABC):
         return curve, even, samples
 
     def unreachable(self, samples: Samples) -> Unreachable:
-        """Return the error that says what can be reached between the bounds, and why the target cannot."""
+        """Return the error with the reachable range between the bounds and the reason."""
         meaning, name = self.y, self.y.name
         if np.isnan(samples.miss).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
@@ -208,7 +208,7 @@ class TargetCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """Number of samples that one call takes."""
+        """Return the number of samples in one call."""
         curves = (n for n, declared in self.cls.inputs.items() if isinstance(declared, Curve))
         longest = max((np.size(_magnitude(self.raw.get(name))) for name in curves), default=1)
         most = self.cls.most_points.get(self.level or "", CELLS)
@@ -249,14 +249,14 @@ def _magnitude(raw: Any) -> Any:
 
 
 def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
-    """Return why there is no value at each point; None where there is one."""
+    """Return why values are missing at the points; None where they exist."""
     if answer.reasons is not None:
         return np.broadcast_to(answer.reasons, (count,))
     return np.full(count, answer.reason, dtype=object)
 
 
 def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
-    """Return values from one bound to the other.
+    """Return equally spaced values between the bounds.
 
     Even in the logarithm where both are positive and far apart.
     """
@@ -271,7 +271,7 @@ def _inside(low: float, high: float) -> Array:
 
 
 def _divided(samples: Samples, turn: int) -> NDArray[np.intp]:
-    """Return the intervals in which something happens, by the sample before each; so many of each kind."""
+    """Return the intervals to divide, by the sample before each; a maximum number of each kind."""
     crossed = samples.beside()[:CROSSINGS] if turn < CROSSED else np.empty(0, dtype=np.intp)
     near = samples.nearest()
     near = near[np.argsort(np.abs(samples.miss[near]), kind="stable")][:EXTREMA]

@@ -123,7 +123,10 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def unremarkable(self) -> tuple[float, float] | None:
-        """Return the range in which a single result needs no further check [SI]; None if all do."""
+        """Return the range in which a single result needs no further check [SI].
+
+        None if every result needs one.
+        """
         meaning = self.meaning
         if meaning.per_level or meaning.assumes:
             return None
@@ -133,7 +136,7 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def expression(self) -> ast.expr:
-        """Return the syntax tree of what the formula returns."""
+        """Return the syntax tree of the returned expression."""
         return returned(self.function)
 
     @cached_property

@@ -41,7 +41,7 @@ def lines_of(cls: type) -> tuple[list[str], int]:
 
 
 def _unlock_in_child() -> None:
-    """A process forked while another thread parsed would wait for that thread, which it does not have."""
+    """Unlock in a forked process: it would otherwise wait for a parsing thread that it does not have."""
     global _ONE_AT_A_TIME
     _ONE_AT_A_TIME = threading.RLock()
 

@@ -122,12 +122,12 @@ class Template(Calculation):
 
         Once, before any formula runs.
 
-        `pending` are inputs that come later: they are not missed, and no rule about them is checked.
+        `pending` are inputs that come later: they are not required, and no rule about them is checked.
 
         Raises
         ------
         InvalidInputs
-            Naming all that is wrong at once.
+            Naming all wrong inputs at once.
         """
         if (inputs := plain(cls, raw)) is not None:
             ledger = Ledger(typed=inputs.typed, missing=inputs.missing)
@@ -166,7 +166,7 @@ class Template(Calculation):
         return self.levels
 
     def is_measured(self) -> bool:
-        """Return whether the measured errors are those of such inputs."""
+        """Return whether the measured errors apply to such inputs."""
         return True
 
     def measured_case(self) -> str:
@@ -174,7 +174,7 @@ class Template(Calculation):
         return ""
 
     def states_own_errors(self) -> bool:
-        """Return whether what a level states of itself holds for such inputs, not the measured errors."""
+        """Return whether the level's own error estimate applies to such inputs, not the measured errors."""
         return True
 
     def own_error(self, output: str) -> Array:
@@ -182,12 +182,12 @@ class Template(Calculation):
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:
-        """Return the level that is taken when none is requested."""
+        """Return the default level."""
         ladder = self.ladder()
         return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
-        """Return the masks that come from inputs; those of formulas follow again at the new level."""
+        """Return the masks of inputs; those of formulas are recalculated at the new level."""
         inputs = {declared.attribute for declared in self.inputs.values()}
         return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
 
@@ -204,7 +204,7 @@ class Template(Calculation):
 
     @classmethod
     def _kept(cls, self: Self, pending: Collection[str]) -> Self:
-        """Return the template, if it keeps its rules."""
+        """Return the template, if it satisfies its rules."""
         with np.errstate(all="ignore"):
             faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:

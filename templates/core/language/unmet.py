@@ -20,7 +20,7 @@ CODE = "tolerance_unmet"
 def unmet(
     cls: type[Template], values: Mapping[str, Any], errors: Mapping[str, Any], level: Any, tolerance: float
 ) -> list[Notice]:
-    """Return a warning for every output whose error is larger, and one for all whose error is not stated.
+    """Return a warning for every output with a larger error, and one for all with an unknown error.
 
     `values` and `errors` are those of the answer, None or NaN where there is none; an output without a value
     needs no error.

@@ -28,7 +28,7 @@ _ATTRIBUTE = re.compile(r"\bself\.(\w+)")
 
 
 def violation(template: Calculation, rule: Requirement, name: str) -> str:
-    """Return a sentence on what violates a rule, for the warning about one of its names."""
+    """Return a sentence on the violation of a rule, for the warning about one of its names."""
     if stated := stated_case(template, rule):
         return stated
     if rule.warning == UNUSED:
@@ -44,14 +44,14 @@ def required(rule: Requirement) -> str:
 
 
 def stated_case(template: Calculation, rule: Requirement) -> str:
-    """Return the comparisons that do not hold, in words with their numbers; empty where one has none."""
+    """Return the false comparisons in words with their numbers; empty if one has no words."""
     with np.errstate(all="ignore"):
         written = [_written(template, one) for one in _broken(outcome(template, rule))]
     return "; ".join(written) if all(written) else ""
 
 
 def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np.bool_], str]]:
-    """Return where each comparison does not hold, with its words; nothing if one has none."""
+    """Return where each comparison is false, with its words; nothing if one has none."""
     with np.errstate(all="ignore"):
         broken = list(_broken(outcome(template, rule)))
     written = [(np.asarray(one.where), _related(template, one)) for one in broken]
@@ -59,7 +59,7 @@ def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np
 
 
 def _related(template: Calculation, comparison: Comparison) -> str:
-    """Return a comparison that does not hold, without numbers but those of the rule; empty without words."""
+    """Return a false comparison in words, with only the numbers of the rule; empty without words."""
     sides = comparison.left, comparison.right
     scale = _common_scale(template, comparison)
     words = [
@@ -81,7 +81,7 @@ def _common_scale(template: Calculation, comparison: Comparison) -> Unit | None:
 
 
 def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
-    """Yield the comparisons that do not hold, of alternatives those at points where none holds."""
+    """Yield the false comparisons; alternatives at the points where none holds."""
     fails = np.asarray(where, dtype=bool) & ~np.asarray(result.value, dtype=bool)
     if not fails.any():
         return
@@ -92,7 +92,7 @@ def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
 
 
 def _written(template: Calculation, comparison: Comparison) -> str:
-    """Return a comparison that does not hold, at its worst point; empty where it has no words."""
+    """Return a false comparison at its worst point; empty if it has no words."""
     left, right = comparison.left, comparison.right
     scale = _common_scale(template, comparison)
     if scale is None:
@@ -131,7 +131,7 @@ def _number_of(left: Operand, right: Operand) -> Unit | None:
 
 
 def _words(template: Calculation, side: Operand) -> str:
-    """Return a side in words; empty for a constant, and for what cannot be written."""
+    """Return a side in words; empty for a constant, and for unprintable expressions."""
     if side.node is None or side.constant is not None:
         return ""
     if side.attribute is not None:

@@ -39,12 +39,12 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 
 def symbol(declared: Declaration) -> str:
-    r"""Return the symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
+    r"""Return the printed symbol: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
     return declared.meaning.symbol or named_symbol(declared.attribute)
 
 
 def named_symbol(attribute: str) -> str:
-    r"""Return the symbol that a name makes: `nu_1` is `\nu_{1}`, and `width` an upright word."""
+    r"""Return the symbol for a name: `nu_1` is `\nu_{1}`, and `width` an upright word."""
     head, _, index = attribute.partition("_")
     plain = head if len(head) == 1 else rf"\mathrm{{{head}}}"
     letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else plain)
@@ -200,7 +200,7 @@ class Writer:
         return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
-        """Return the expression that a function returns, if it does nothing else and is a formula."""
+        """Return the expression that a function returns, if this is all that it does and it is a formula."""
         try:
             body, parameters = returned(function), syntax(function).args.args
             names = dict(zip((p.arg for p in parameters), arguments, strict=True))

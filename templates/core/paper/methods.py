@@ -30,7 +30,7 @@ def right_side(
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
-    """Return the method of a result in words, if no formula says it."""
+    """Return the method of a result in words, if it has no formula."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
         return None
     if isinstance(formula.function, Body):
@@ -58,7 +58,7 @@ def _of_self(node: ast.expr) -> str | None:
 
 
 def _maker(cls: type[Template], node: ast.expr, scope: Mapping[str, Any]) -> Callable[..., Any] | None:
-    """Return the physics function that returns a value, or the record of which the value is a part."""
+    """Return the physics function that returns a value, or the record that contains the value."""
     match node:
         case ast.Call(func=ast.Name(id=name)):
             function: Callable[..., Any] | None = scope.get(name)

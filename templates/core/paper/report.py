@@ -69,7 +69,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
 
 
 def shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
-    """Return the value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
+    """Return the value of a declaration with its unit, as LaTeX; empty if missing or an array.
 
     A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
     """

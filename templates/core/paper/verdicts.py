@@ -50,7 +50,7 @@ class Check:
 
 
 def checks(template: Template) -> Iterator[Check]:
-    """Every bound that says more than a sign, and every rule, as far as their values were calculated."""
+    """Return every bound other than a sign, and every rule, as far as their values are calculated."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
         if isinstance(value, (float, np.ndarray)) and _has_number(value):
@@ -111,7 +111,7 @@ def _share_of(bounds: Bounds, value: Any) -> float | None:
 
 
 def _of_rule(template: Template, rule: Requirement) -> Check | None:
-    """Return a rule as it was kept or violated; None where it compared nothing, for want of a limit."""
+    """Return a rule as satisfied or violated; None if it compared nothing because a limit is missing."""
     with np.errstate(all="ignore"):
         result = outcome(template, rule)
         decisive = list(result.decisive())

@@ -85,7 +85,7 @@ class Builder:
         return sort is not None and sort.kind.temperatures == EITHER
 
     def _finds_kind(self, statement: ParsedStatement) -> bool:
-        """Return whether the formula of a name in K says more of its kind than was known."""
+        """Return whether the formula of a name in K determines its kind."""
         name = str(statement.parts[0])
         try:
             _, got = self.reader.part(statement, statement.parts[3])
@@ -98,7 +98,7 @@ class Builder:
         return self.names.sorts[name].kind != own.kind
 
     def _goes_on(self, statement: ParsedStatement) -> bool:
-        """Return whether to go on with a statement: one fault of it is enough, or a worksheet too large."""
+        """Return whether to continue with a statement: a fault, or a worksheet that is too large, ends it."""
         return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
     def _try(self, step: Callable[[Any], None], statement: ParsedStatement | Chunk) -> None:
@@ -304,7 +304,7 @@ class Builder:
         return self.reader.fitting(statement, part, meant.unit, name, tree, axis), part[1].kind
 
     def _meant(self, statement: ParsedStatement, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
-        """Return the meaning of a declaration whose API name is no other's; its example is noted."""
+        """Return the meaning of a declaration with a unique API name, and note its example."""
         if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
             raise FollowsFromFault(missing[0])
         accepted = self._accepted(statement, unit_text)
@@ -320,7 +320,10 @@ class Builder:
         return replace(meant, read_as=accepted) if unit(accepted).absolute else replace(meant, unit=accepted)
 
     def _accepted(self, statement: ParsedStatement, unit_text: str) -> str:
-        """Return the unit that says the kind of what is declared in K, by its formula; else as declared."""
+        """Return the unit that determines the kind of a declaration in K from its formula.
+
+        Else as declared.
+        """
         if statement.kind not in ("formula", "given") or kind_of(unit_text).temperatures != EITHER:
             return unit_text
         found = self.names.sorts[str(statement.parts[0])].kind

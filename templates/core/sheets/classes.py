@@ -14,7 +14,7 @@ class SheetClass(type):
 
 
 def class_of(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Template]:
-    """Return the class of a worksheet; its module says which one it is, and exists nowhere."""
+    """Return the class of a worksheet; its module name identifies it, but no such module exists."""
     space = {**parts, "__module__": f"{WORKSHEETS}.{id}_v{version}", "sheet": sheet}
     name = "".join(word.capitalize() for word in id.split("_"))
     cls = SheetClass(name, (Template,), space)

@@ -63,7 +63,7 @@ class Built:
     def declarations(self) -> dict[str, Part]:
         """Return declarations and rules for another class.
 
-        Each learns its attribute from the class it is in.
+        Each gets its attribute from its class.
         """
         return {name: copy(part) for name, part in self.parts.items()}
 

@@ -53,7 +53,7 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
     Raises
     ------
     FaultyText
-        With code `check`, for what a criterion cannot say.
+        With code `check`, if a criterion cannot express it.
     """
     match node:
         case Constant(text=text) if text:

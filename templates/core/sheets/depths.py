@@ -22,7 +22,7 @@ _CALLS = 3  # of a formula, beside those within its expression
 
 
 def set_order(built: Built) -> Iterator[SheetFault]:
-    """Set what each formula of a worksheet without loops asks first; a fault for defaults nested too deep."""
+    """Set the formulas that each formula of a worksheet evaluates first; a fault if defaults are too deep."""
     bodies: dict[str, Any] = {
         n: m.function for n, m in built.parts.items() if isinstance(m, (Formula, Derived, Requirement))
     }

@@ -35,7 +35,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With the place of what is wrong.
+            With the place of the fault.
         """
         before = self.names.fuel
         try:

@@ -46,7 +46,7 @@ class ParsedStatement:
 
     @property
     def parts(self) -> list[Any]:
-        """Return its words and parts that say something, None where an optional one is left out."""
+        """Return its relevant words and parts, None for an omitted optional one."""
         return self.tree.children
 
     def text_of(self, tree: lark.Tree[Any]) -> str:
@@ -117,7 +117,7 @@ def _parts(tree: lark.Tree[Any]) -> int:
 
 
 def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> SheetFault:
-    """Return the fault of a statement that is not understood; at its end, where the parser says no place."""
+    """Return the fault of a statement that cannot be parsed; at its end, if the parser gives no place."""
     lines = chunk.text.split("\n")
     is_at_end = isinstance(error, lark.exceptions.UnexpectedEOF) or getattr(error, "token", None) == ""
     row, column = (

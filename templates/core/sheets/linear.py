@@ -63,7 +63,7 @@ class System:
 
 
 def _zero(template: Any) -> float:
-    """Return the coefficient of an unknown that does not stand in an equation."""
+    """Return the zero coefficient of an unknown that is not in an equation."""
     return 0.0
 
 
@@ -84,7 +84,7 @@ class LinearBody(Body):
         self.__qualname__ = f"line {line}"
 
     def __call__(self, template: Any) -> Any:
-        """Return the unknown [SI]; NaN where the equations do not determine it, and the ledger says why.
+        """Return the unknown [SI]; NaN if the equations do not determine it, with the reason in the ledger.
 
         Raises
         ------

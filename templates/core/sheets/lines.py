@@ -75,7 +75,7 @@ def _faults_of_text(text: str) -> Iterator[SheetFault]:
 
 
 def _is_no_text(sign: str) -> bool:
-    """Return whether a sign is a lone surrogate, controls a terminal, or shows another text than is read."""
+    """Return whether a character is a lone surrogate, a control character, or changes the text direction."""
     return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign in _CONTROLS
 
 

@@ -48,7 +48,7 @@ class Names:
     fuel: int = FUEL
 
     def name(self, text: str) -> Part:
-        """Return the part for which a name stands.
+        """Return the part that a name refers to.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Names:
             raise FaultyText("too_large", detail)
 
     def check_new(self, name: str) -> None:
-        """Refuse a name that is taken, or that means something in the language.
+        """Refuse a name that is in use, or that is reserved in the language.
 
         Raises
         ------

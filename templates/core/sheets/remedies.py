@@ -66,12 +66,12 @@ def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
 
 
 def declared_in(name: str, kind: Kind) -> str:
-    """Return the advice to declare a name in a unit that fits what its formula gives."""
+    """Return the advice to declare a name in a unit that fits its formula."""
     return f"declare {name} in {common_unit(kind)}, or correct the formula"
 
 
 def common_unit(kind: Kind) -> str:
-    """Return a unit that engineers write for a kind of value, such as MPa for a pressure."""
+    """Return the unit that engineers use for a kind of value, such as MPa for a pressure."""
     if kind.base == registry.kelvin:
         return kind.unit
     alike = (text for text in _COMMON if dimension_of(unit(text)) == dimension_of(kind))
@@ -99,7 +99,7 @@ def _spaced(part: re.Match[str], names: Names) -> str:
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:
-    """Return a sentence on what the operation at a place needs."""
+    """Return a sentence on the requirement of the operation at a place."""
     called = str(at.children[0])[:-1] if at.data == "call" else ""
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"

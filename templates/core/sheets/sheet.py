@@ -68,7 +68,7 @@ class Sheet:
 
     @property
     def tests(self) -> tuple[SheetTest, ...]:
-        """Return the tests that it holds; `run_tests` runs them."""
+        """Return its tests; `run_tests` runs them."""
         return tuple(self.built.tests)
 
     @cached_property

@@ -59,7 +59,7 @@ class SolveBody(Body):
         self.__qualname__ = f"line {line}"
 
     def __call__(self, template: Any) -> Any:
-        """Return the root [SI]; NaN where there is none, and the ledger says why."""
+        """Return the root [SI]; NaN if there is none, with the reason in the ledger."""
         for name in self.first:
             getattr(template, name)
         values = {name: attrgetter(name)(template) for name in self._others}
@@ -79,7 +79,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """Return the time that the search takes at a number of points, an order of magnitude [s]."""
+        """Estimate the time of the search at a number of points, an order of magnitude [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property

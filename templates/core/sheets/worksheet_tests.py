@@ -87,7 +87,7 @@ def _missed(template: Template, test: SheetTest) -> Iterator[str]:
 
 
 def _distance(value: Any, wanted: Any, scale: Unit) -> str:
-    """Return the difference of a single value from what is expected, in words: `: 8.3 MPa (28 %) too low`."""
+    """Return the difference of a single value from the expected one, in words: `: 8.3 MPa (28 %) too low`."""
     if np.ndim(value) or np.ndim(wanted) or np.isnan(value):
         return ""
     difference, size = float(value) - float(wanted), abs(float(scale.from_si(wanted)))

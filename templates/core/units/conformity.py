@@ -23,7 +23,7 @@ _OF_TURNS = re.compile(r"(?:(2)\s*\*\s*)?pi\s*\*\s*(.+)", re.DOTALL)
 
 
 def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
-    """Return why a value cannot stand where a unit is declared, and a remedy; None if it can.
+    """Return why a value does not fit a declared unit, and a remedy; None if it fits.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
 
 
 def _counted(text: str) -> str:
-    """Return the ways to say what a rate in 1/s counts."""
+    """Return the possible meanings of a rate in 1/s."""
     if not text:
         return "multiply it by 1 turn or by 1 rad"
     text, minutes = _without_minutes(text)
@@ -100,7 +100,7 @@ def _in_brackets(text: str) -> str:
 
 
 def turns_remark(kind: Kind, want: Unit, text: str) -> str:
-    """Return both readings of a formula that takes a speed given in turns; empty where there is one only.
+    """Return both readings of a formula with a speed given in turns; empty if there is only one.
 
     Parameters
     ----------

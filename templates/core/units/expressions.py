@@ -64,10 +64,7 @@ class Scope(Protocol):
         """
 
     def function(self, name: str) -> Callable[[list[Part]], Part] | None:
-        """Return a function of the user's own, called with its arguments.
-
-        None if there is none of this name.
-        """
+        """Return the user's function of that name, called with its arguments; None if there is none."""
 
     def spend(self) -> None:
         """Count an operation.
@@ -100,7 +97,7 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
 
 
 def built(tree: lark.Tree[Any]) -> Any:
-    """Return the tree of an expression of which no name is known yet.
+    """Return the tree of an expression before any of its names is known.
 
     Every unit, function and number is checked.
 
@@ -189,7 +186,7 @@ class _Builder:
         return self.apply(operation, arguments)
 
     def compared(self, sides: list[Part], signs: list[str]) -> Part:
-        """Return a comparison; of a chain, all of them hold.
+        """Return a comparison; a chain of comparisons holds if all of them hold.
 
         Raises
         ------
@@ -240,7 +237,10 @@ class _CheckedBuilder(_Builder):
         return applied(operation, self.compared_alike(operation, *parts) if operation in _COMPARED else parts)
 
     def compared_alike(self, operation: Operation, one: Part, other: Part) -> list[Part]:
-        """Return both sides of a comparison; a number in degC beside a difference of temperatures is one."""
+        """Return both sides of a comparison.
+
+        A number in degC is read as a difference beside a temperature difference.
+        """
         meant = [
             as_compared(operation.sign, beside[1].kind, side[0], beside[0])
             for side, beside in ((one, other), (other, one))

@@ -28,12 +28,12 @@ class Step:
 
 
 def deviations(zone: str, size: float) -> tuple[float, float]:
-    """Lower and upper limit deviation [m] of a zone such as `H7` or `js6` at a nominal size [m].
+    """Return the lower and upper limit deviation [m] of a zone such as `H7` or `js6` at a nominal size [m].
 
     Raises
     ------
     FaultyText
-        If the zone is not shipped, or not for this size.
+        If the zone is not in the tables, or not for this size.
 
     References
     ----------

@@ -31,7 +31,7 @@ def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
 
 
 def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) -> Value:
-    """Return the item of an array along its first axis, or along the first behind that of the rows.
+    """Return one item of an array along its first axis, or along the axis after that of the rows.
 
     Parameters
     ----------

@@ -48,12 +48,15 @@ class Kind:
 
     @property
     def is_difference(self) -> bool:
-        """Return whether it is a difference of temperatures and nothing else."""
+        """Return whether the value can only be a temperature difference."""
         return self._is_kelvin and self.temperatures == DIFFERENCE
 
     @property
     def unit(self) -> str:
-        """Return the unit in which a value of this kind is shown, by which its kind is known again."""
+        """Return the unit in which a value of this kind is shown.
+
+        Reading this unit gives the same kind again.
+        """
         if not self._is_kelvin or self.temperatures is None:
             return base_text(self)
         if 0.0 in self.temperatures:
@@ -123,7 +126,7 @@ class Item:
 
     @property
     def text(self) -> str:
-        """Return the reference as it is written: `loads.main_load_x[2]`."""
+        """Return the reference as the user writes it: `loads.main_load_x[2]`."""
         return f"{self.name}[{self.index}]"
 
 

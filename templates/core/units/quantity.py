@@ -69,7 +69,7 @@ class TypedQuantity:
 
 
 def read(raw: Any, declared: str) -> TypedQuantity:
-    """Read a quantity in any of its written forms, for something declared in the unit `declared`.
+    """Return a quantity from any of its written forms; `declared` is the declared unit of the value.
 
     Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of such, and a bare number
     or list of numbers where the declared unit is `1`. A text or an object may hold a tolerance:
@@ -97,9 +97,9 @@ def read(raw: Any, declared: str) -> TypedQuantity:
 
 
 def read_beside(raw: Any, declared: str) -> TypedQuantity:
-    """Read a limit or a target, which takes the kind of what it belongs to.
+    """Return a limit or a target, which has the same kind as the value that it limits.
 
-    Beside a difference of temperatures `30 degC` is one of 30 K.
+    For a temperature difference, `30 degC` means 30 K.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def _read_text(text: str, declared: str) -> TypedQuantity:
 
 
 def _refuse_decimal_comma(text: str, declared: str) -> None:
-    """Refuse a text that is a quantity but for its decimal commas, and say how to write it.
+    """Refuse a quantity written with decimal commas, and show it with decimal points.
 
     Raises
     ------
@@ -213,7 +213,7 @@ def _in_points(match: re.Match[str]) -> str:
 
 
 def _toleranced(number: float, written: Written, declared: str) -> TypedQuantity:
-    """Return a quantity whose text holds a tolerance."""
+    """Return a quantity from a text with a tolerance."""
     if written.unit == "1" != declared:
         raise FaultyText("missing_unit", f'the unit is missing; write it at the end, as in "… {declared}"')
     typed = _quantity(number, written.unit, declared)

@@ -11,7 +11,7 @@ _PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
 
 
 def quotient(over: str, under: str) -> str:
-    """Return a unit divided by another, as `units.unit` reads it.
+    """Return the quotient of two units, in a form that `units.unit` reads.
 
     Of temperatures by that of their difference.
 
@@ -33,7 +33,7 @@ def _quotient(over: str, under: str) -> str:
 
 
 def _parts(name: str) -> tuple[list[str], list[str]]:
-    """Return the factors above and below the line; `1` is none."""
+    """Return the factors in the numerator and the denominator of a unit; `1` counts as no factor."""
     top, bottom = list[str](), list[str]()
     for sign, product, factor in _PART.findall(name.replace("**", "^")):
         factors = re.split("[*·]", product) if product else [factor]

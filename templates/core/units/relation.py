@@ -54,7 +54,7 @@ class Relation:
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
-        """Return the names whose values are used whole, not an item of them."""
+        """Return the names that are used as whole arrays, not item by item."""
         if not self.items:
             return self.names
         return frozenset(node.name for node in nodes_of(self.tree) if isinstance(node, Name))
@@ -82,7 +82,7 @@ class Relation:
 
     @cached_property
     def has_lists(self) -> bool:
-        """Return whether it makes or sums up lists; every other operation goes place by place."""
+        """Return whether the relation makes or sums lists; all other operations act item by item."""
         return any(node.operation in LISTWISE for node in applied_in(self.tree))
 
     @cached_property
@@ -102,7 +102,7 @@ class Relation:
         return _checked(self.text, self._kinds(kinds))
 
     def misfit(self, kinds: Mapping[str, Kind], declared: str) -> str:
-        """Return why the value cannot stand where a unit is declared, and a remedy; empty if it can.
+        """Return why the value does not fit the declared unit, and a remedy; empty if it fits.
 
         The text follows the name of what is declared and its unit: `, but this gives a length`.
 
@@ -117,7 +117,7 @@ class Relation:
         return tuple((name, kinds[name]) for name in sorted(self.names - self.choices))
 
     def value(self, values: Mapping[str, Value]) -> Value:
-        """Return the value in SI, from the SI values of its names; not finite where the arithmetic is not.
+        """Return the value in SI from the SI values of its names; it may be infinite or NaN.
 
         Items that are known already stand among the values, by their text: `loads.main_load_x[2]`.
 
@@ -145,7 +145,7 @@ class Relation:
             raise FaultyText("shape", f"{self.text!r} combines arrays of different lengths") from None
 
     def _with_items(self, values: Mapping[str, Value]) -> Mapping[str, Value]:
-        """Return the values, and those of items of arrays by their text."""
+        """Return the values, with the items of arrays added under their text, as `loads[2]`."""
         chosen = {item.text: item_of(item, values) for item in self.items if item.text not in values}
         return {**values, **chosen}
 
@@ -196,7 +196,10 @@ def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
 
 @lru_cache(maxsize=REMEMBERED)
 def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
-    """Return the kind of a relation, from those of its names; raises as `Relation.kind`."""
+    """Return the kind of a relation from the kinds of its names.
+
+    Raises the same errors as `Relation.kind`.
+    """
     forget_units()
     sort = _sort(parse(text).tree, dict(kinds))
     if sort.truth:
@@ -207,7 +210,7 @@ def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
 
 @lru_cache(maxsize=REMEMBERED)
 def _misfit(text: str, kinds: tuple[tuple[str, Kind], ...], declared: str) -> str:
-    """Return what `Relation.misfit` does."""
+    """Return the same as `Relation.misfit`, without its cache."""
     kind, want, written = _checked(text, kinds), unit(declared), text.removeprefix("=").strip()
     if mismatch := misfit(kind, want, written):
         why, remedy = mismatch

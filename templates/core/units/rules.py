@@ -43,7 +43,7 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
 
 
 def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
-    """Return the base units that two values share; 1/s beside rad/s or Hz is that."""
+    """Return the common kind of two operands; 1/s takes the unit of rad/s or Hz beside it."""
     detail = f"{sign} needs equal units, not {in_words(one)} and {in_words(other)}"
     if not compatible(one, other):
         is_of_rates = is_rate(one.base) and is_rate(other.base)
@@ -61,7 +61,7 @@ def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
 
 
 def _counted(node: Any) -> str:
-    """Return the ways to say what a number in 1/s counts; empty for anything else."""
+    """Return a hint to write a number in 1/s in turn/s or rad/s; empty for any other operand."""
     per = node.text.partition(" 1/") if isinstance(node, Constant) else ("", "", "")
     return f"write {per[0]} turn/{per[2]} or {per[0]} rad/{per[2]}" if per[1] else ""
 
@@ -113,9 +113,9 @@ def as_difference(text: str) -> str:
 
 
 def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
-    """Return a number typed in degC or degF as it is meant in a comparison; empty where it stands as typed.
+    """Return a number typed in degC or degF as a comparison reads it; empty if it is read as typed.
 
-    It takes the kind of the other side: beside a difference it is one.
+    Beside a temperature difference the number is a difference too.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> K
 
 
 def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return a product or a quotient; a written 2*pi makes an angle of a cycle, or takes it away."""
+    """Return a product or a quotient; a written factor 2*pi turns cycles into an angle, or back."""
     relative(operation, kinds, nodes)
     one, other = kinds
     sign = -1 if operation.sign == "/" else 1
@@ -184,7 +184,7 @@ def _scaled(sign: str, nodes: tuple[Any, ...], one: Kind, other: Kind) -> Temper
 
 
 def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return a power; of a quantity with a unit its exponent is known beforehand."""
+    """Return a power; a quantity with a unit needs a constant exponent."""
     relative(operation, kinds, arguments)
     base, exponent = kinds
     if not is_number(exponent):
@@ -210,7 +210,7 @@ def _raised(kind: Kind, exponent: float) -> Kind:
 
 
 def plain_number(node: Any) -> float | None:
-    """Return the value of a pure number, or of one divided by another, such as 1/3.
+    """Return the value of a pure number, or of a quotient of two, such as 1/3; None for everything else.
 
     None of everything else.
     """
@@ -250,7 +250,7 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return a pure number; refuse a quantity, whose whole part depends on its unit: 3.7 mm are 0.0037 m."""
+    """Return a pure number; refuse a quantity: its whole part depends on the unit (3.7 mm is 0.0037 m)."""
     if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(
@@ -274,6 +274,6 @@ def in_words(kind: Kind) -> str:
 
 @cache
 def _named() -> dict[str, Any]:
-    """Return the derived units that engineers call by name, and what they are in SI base units."""
+    """Return the derived units with names of their own, such as N, in SI base units."""
     names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
     return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}

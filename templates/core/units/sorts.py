@@ -83,7 +83,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
 
 
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
-    """Return whether the result is a condition, if conditions and quantities stand in their places."""
+    """Return the condition that follows from the operands; refuse operands of the wrong sort."""
     if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
         raise FaultyText("no_truth", f"a choice is not a quantity: test it, as in law is {words[0]}")
     truths = [sort.truth for sort in sorts]

@@ -65,12 +65,12 @@ class Written:
     zone: str | None = None
 
     def of(self, si: float, name: str, declared: str) -> tuple[Tolerance, dict[str, Any]]:
-        """Return the tolerance of a value [SI] in the unit `name`, and how an answer states it.
+        """Return the tolerance of a value [SI] in the unit `name`, and its text for an answer.
 
         Raises
         ------
         FaultyText
-            If the limits make no sense.
+            If the limits contradict each other or the value.
         """
         if self.zone is not None:
             return in_zone(self.zone, si, name)
@@ -80,12 +80,12 @@ class Written:
 
 
 def split(text: str) -> Written | None:
-    """Return the text behind the number of a quantity, where it holds a tolerance; None where it does not.
+    """Return the text after the number of a quantity if it contains a tolerance, else None.
 
     Raises
     ------
     FaultyText
-        If it begins as a tolerance does, but is none.
+        If the text begins like a tolerance but cannot be read as one.
     """
     first = match[0] if (match := _FIRST.match(text)) else ""
     rest = text[len(first) :].strip()
@@ -108,7 +108,7 @@ def split(text: str) -> Written | None:
 
 
 def _written(first: str, lower: float, upper: float, last: str) -> Written:
-    """Return the limits in the unit that stands last, or else in that of the value; the value likewise."""
+    """Return the value and its limits in the last unit of the text, or else in the unit of the value."""
     last = last.strip()
     return Written(first or last or "1", lower, upper, last or first or "1")
 
@@ -196,7 +196,10 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
 
 
 def _of_text(name: str, declared: str) -> Unit:
-    """Return the unit of a tolerance in a text of its own, where a temperature is a difference: not degC."""
+    """Return the unit of a tolerance that has its own text.
+
+    A tolerance on a temperature is a difference, not degC.
+    """
     if not name and declared != "1":
         raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
     scale = unit(name or "1")
@@ -206,7 +209,7 @@ def _of_text(name: str, declared: str) -> Unit:
 
 
 def _difference(name: str, declared: str) -> Unit:
-    """Return the unit of a deviation; 5 degC beside a temperature are 5 K."""
+    """Return the unit of a deviation; a deviation of 5 degC is 5 K."""
     scale = unit(name)
     return scale if scale.difference and _is_temperature(declared) else require_same_kind(name, declared)
 
@@ -277,7 +280,7 @@ def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
 
 
 def _short(number: float) -> float:
-    """Return a number without the last digits, which come from conversions."""
+    """Return a number without its last digits, which are rounding errors of the conversion."""
     return float(f"{number:.12g}")
 
 

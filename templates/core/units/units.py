@@ -88,7 +88,7 @@ class Unit:
 
     @property
     def absolute(self) -> bool:
-        """Return whether this is a temperature scale with a zero of its own, such as degC."""
+        """Return whether the unit is a temperature scale with its own zero, such as degC."""
         return self.offset != 0.0
 
     def to_si(self, value: Value) -> Value:
@@ -106,7 +106,7 @@ MOST_REMEMBERED = 20_000
 
 
 def forget_units() -> None:
-    """Keep what Pint remembers of units bounded: it keeps every unit that it ever parsed.
+    """Clear the caches of Pint when they are large: Pint keeps every unit that it ever parsed.
 
     Call it where units come in that a user made up. What was forgotten is calculated again.
     """
@@ -118,12 +118,12 @@ def forget_units() -> None:
 
 @lru_cache(maxsize=4096)
 def unit(text: str) -> Unit:
-    """Read a unit such as `kN`, `mm²/s`, `N*m`, `rpm` or `degC`; `1` is a pure number.
+    """Return a unit from its text, such as `kN`, `mm²/s`, `N*m`, `rpm` or `degC`; `1` is a pure number.
 
     Raises
     ------
     FaultyText
-        If the text is not a unit, or one that Pint does not know.
+        If the text is not a unit, or Pint does not know the unit.
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
         raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
@@ -179,7 +179,7 @@ def base_text(measured: Measured) -> str:
 
 
 def is_rate(base: pint.Unit) -> bool:
-    """Return whether base units are a power of time, beside angles."""
+    """Return whether base units are a power of time, with or without angles."""
     return dict(registry.get_dimensionality(base)).keys() == {"[time]"}
 
 
@@ -190,7 +190,7 @@ def radians(base: pint.Unit) -> float:
 
 
 def compatible(one: Measured, other: Measured) -> bool:
-    """Return whether one value can be compared with the other.
+    """Return whether two values can be compared.
 
     A rate in rad/s and one in Hz can not; 1/s may be either.
     """
@@ -217,7 +217,7 @@ def dimension_of(measured: Measured) -> str:
 
 @lru_cache(maxsize=4096)
 def require_same_kind(typed: str, declared: str) -> Unit:
-    """Return the unit `typed`, if a quantity declared in `declared` can be given in it.
+    """Return the unit `typed` if it fits a quantity declared in the unit `declared`.
 
     Raises
     ------
@@ -241,9 +241,9 @@ def difference_in(name: str) -> str:
 
 
 def beside(typed: str, declared: str) -> str:
-    """Return the unit of a limit, a target or a shown value, which takes the kind of what it belongs to.
+    """Return the unit of a limit, a target or a shown value, so that it has the kind of the value itself.
 
-    Beside a difference of temperatures degC is delta_degC.
+    For a temperature difference, degC becomes delta_degC.
     """
     return difference_of(typed) if unit(declared).difference else typed
 
@@ -279,7 +279,7 @@ def _why_not(got: Unit, want: Unit) -> tuple[str, str]:
 
 
 def _of_other_kind(got: Unit, want: Unit) -> str:
-    """Return a sentence on a temperature in place of a difference, and the other way round."""
+    """Return a sentence if a temperature was given for a temperature difference, or the reverse."""
     if want.absolute:
         return f"{got.text} does not fit: here a temperature, not a difference, is wanted; {_remedy(want)}"
     other = difference_of(got.text)
@@ -296,7 +296,7 @@ def _remedy(want: Unit) -> str:
 
 
 def _meant(got: Unit, want: Unit) -> str:
-    """Return a hint on well-known slips of the pen.
+    """Return a hint on units that are often mistaken.
 
     Pint takes C for coulomb, F for farad, U for an enzyme unit.
     """
@@ -316,7 +316,7 @@ _KINDS = {
 
 
 def _measured(scale: Unit) -> str:
-    """Return the quantity that a unit measures, in words where there are usual ones."""
+    """Return the name of the quantity that a unit measures, such as `a length`, if there is a usual one."""
     dimensions = registry.get_dimensionality(scale.base)
     if radians(scale.base) and not dimensions:
         return "an angle"
@@ -328,9 +328,9 @@ def _measured(scale: Unit) -> str:
 
 @lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
-    """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+    """Return the printed form of a unit, with its order kept: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 
-    Nothing for a pure number.
+    Empty for a pure number.
     """
     if text == "1":
         return ""

@@ -37,7 +37,7 @@ class LinearFilm:
     """(2, 2) by velocity over omega_h times the radial clearance."""
 
     def turned(self, attitude: float) -> "LinearFilm":
-        """Return the same in axes x, y, of which x lies behind the line of centres by the attitude [rad]."""
+        """Return the same values in axes x, y; the line of centres is ahead of x by the attitude [rad]."""
         cos, sin = np.cos(attitude), np.sin(attitude)
         turn = np.array([[cos, -sin], [sin, cos]])
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)

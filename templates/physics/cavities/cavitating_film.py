@@ -127,7 +127,7 @@ def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
 
 
 def _between(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
-    """Return the node before each place, and how much of the way to the next one it lies."""
+    """Return the node before each place, and the fraction of the interval up to the place."""
     before = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, nodes.size - 2)
     return before, np.clip((places - nodes[before]) / np.diff(nodes)[before], 0.0, 1.0)
 

@@ -143,7 +143,7 @@ class _Pattern:
 
 @lru_cache(maxsize=16)
 def _pattern(n: int, m: int) -> _Pattern:
-    """Return that of n nodes around, m across."""
+    """Return the sparsity pattern of n nodes around and m across."""
     node = np.arange(n * m).reshape(n, m)
     ahead = np.roll(node, -1, axis=0)
     pressure = [*_exchanged(node, ahead), *_exchanged(node[:, :-1], node[:, 1:])]
@@ -155,7 +155,7 @@ def _pattern(n: int, m: int) -> _Pattern:
 
 
 def _exchanged(one: Numbers, other: Numbers) -> list[tuple[Numbers, Numbers]]:
-    """Return the rows and columns of what two neighbours lose to each other."""
+    """Return the rows and columns of the flows between neighbouring nodes."""
     return [(one, one), (other, other), (one, other), (other, one)]
 
 

@@ -129,7 +129,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
 
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
-    """Find the film that bears So; None if there is none or the search fails.
+    """Return the film that carries So; None if there is none or the search fails.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ class Search:
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
     def solved(self, place: Place, mesh: tuple[int, int], near: RingSolution | None) -> RingSolution:
-        """Return the film at a place, from one nearby if there is one that leads to it."""
+        """Return the film at a place; the search starts from a film nearby if there is one."""
         grooves = self.feed.placed(place.attitude)
         if near is not None:
             with suppress(ArithmeticError):
@@ -248,7 +248,7 @@ class Search:
 
 
 def _peak(film: CavitatingFilm) -> float:
-    """Place of the largest pressure at mid-width, by a parabola through the three nodes about it [rad]."""
+    """Return the angle of the largest pressure at mid-width [rad], by a parabola through three nodes."""
     P = film.P[:, 0]
     k = min(max(int(P.argmax()), 1), P.size - 2)
     x = film.phi[k - 1 : k + 2] - film.phi[k]

@@ -42,7 +42,7 @@ class ColumnScaledSum:
 
     @classmethod
     def of(cls, first: csc_array, second: csc_array) -> ColumnScaledSum:
-        """Return the sum of two square matrices of one size.
+        """Return the scaled sum of two square matrices of the same size.
 
         One pattern with the whole diagonal is cheapest.
         """

@@ -96,7 +96,7 @@ class BearingCase:
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
-        """Return the journal displaced by e."""
+        """Return the position of the journal after a displacement by e."""
         return Lie(e, self.tilt)
 
 
@@ -121,7 +121,7 @@ class Balance:
 
     @property
     def is_settled(self) -> bool:
-        """Return whether three meshes bear the load and the last of them changes little."""
+        """Return whether three meshes carry the load and the last step changes little."""
         step, _ = self._steps
         moved = float(np.hypot(*step)) <= SETTLED * self.fine.lie.eps
         return self.before is not None and moved and abs(self.fine.gap / self.coarse.gap - 1) <= SETTLED
@@ -135,7 +135,7 @@ class Balance:
 
     @property
     def place_error(self) -> float:
-        """Return how far the journal may lie from where it is said to, over its displacement [-]."""
+        """Return the error of the journal's position over its displacement [-]."""
         step, previous = (float(np.hypot(*step)) for step in self._steps)
         moved = max(step, min(previous / 4, _SUDDEN * step))
         return self._trust * SAFETY * moved / max(self.fine.lie.eps, 1e-300)
@@ -168,13 +168,13 @@ class Balance:
 
     @property
     def _steps(self) -> tuple[Array, Array]:
-        """The last displacement by refinement, and the one before it."""
+        """Return the last displacement by refinement, and the one before it."""
         e = self.coarse.lie.e
         return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
 
 def balance(loaded: BearingCase) -> Balance:
-    """Find where the journal lies.
+    """Return the equilibrium position of the journal.
 
     Raises
     ------
@@ -251,7 +251,7 @@ def stable_film(
 def _agreed(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
-    """Return the balance on a mesh graded to it, whose line of supply lies opposite it."""
+    """Return the balance on a mesh that is graded to it, with the line of supply opposite."""
     line = loaded.lie(e).attitude
     for turn in range(_TURNS):
         before = narrowest(loaded.bore, loaded.lie(e))[0]
@@ -308,7 +308,7 @@ def _nearer(
 def _solved(
     loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> ShapedFilm:
-    """Return the film at a displacement, begun from a near one if there is any."""
+    """Return the film at a displacement; the search starts from a film nearby if there is one."""
     start = None if near is None else _carried(near, nodes)
     lie = loaded.lie(e)
     try:

@@ -63,7 +63,7 @@ class ShapedFilm:
         return self.borne(self.P)
 
     def borne(self, P: Array) -> Array:
-        """Return the force of a pressure."""
+        """Return the force that a pressure exerts on the journal."""
         return np.asarray(directions(self.nodes.phi[:-1]) @ (P * self.nodes.weight).sum(axis=1))
 
     @cached_property

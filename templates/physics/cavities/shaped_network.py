@@ -50,7 +50,7 @@ class Nodes:
 
     @property
     def is_half(self) -> bool:
-        """Return whether they span half the width, of which the other half is the mirror image."""
+        """Return whether the nodes cover only half the width; the other half is its mirror image."""
         return bool(self.zeta[0] == 0)
 
     @cached_property

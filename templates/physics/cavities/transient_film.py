@@ -84,7 +84,7 @@ def stepped(
 
 
 def _share(eps: Array, de: Array) -> float:
-    """Return the share of a step that keeps the journal in its bearing."""
+    """Return the fraction of a step after which the journal is still inside the bearing."""
     share, gap = 1.0, 1 - np.hypot(*eps)
     while share > 1e-6 and 1 - np.hypot(*(eps + share * de)) < _THINNER * gap:
         share /= 2

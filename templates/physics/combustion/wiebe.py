@@ -138,7 +138,10 @@ def closed_cylinder(
 @on_paper("by quadrature of the first law with closed valves; constant in suction and exhaust")
 @units(None, "rad", "Pa", "Pa", returns="Pa")
 def cycle_pressure(cylinder: ClosedCylinder, theta: Array, p_s: Array, p_e: Array) -> Array:
-    """Return the pressure over the whole cycle [Pa], (…, K); from the exhaust's opening linear to 540°."""
+    """Return the pressure over the whole cycle [Pa], (…, K).
+
+    After exhaust opening the pressure is linear up to 540°.
+    """
     closes, opens = _column(cylinder.closes), _column(cylinder.opens)
     inside = np.clip(theta, closes, opens)
     closed = cylinder.pressure(inside)

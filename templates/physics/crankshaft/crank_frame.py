@@ -57,12 +57,12 @@ class Frame:
         return len(self.nodes) - 1
 
     def bar(self, i: int, j: int, diameter: float) -> None:
-        """A round member."""
+        """Return a member of round section."""
         area, inertia = np.pi * diameter**2 / 4, np.pi * diameter**4 / 64
         self.members.append((i, j, area, inertia, inertia, 2 * inertia, _SHEAR_ROUND * area))
 
     def web(self, i: int, j: int) -> None:
-        """A flat member across the shaft."""
+        """Return a flat member that runs across the shaft."""
         t, b = self.sections.web_thickness, self.sections.web_width
         thin, wide = min(t, b), max(t, b)
         twist = wide * thin**3 / 3 * (1 - 0.63 * thin / wide) * self.sections.web_torsion

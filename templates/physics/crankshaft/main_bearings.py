@@ -64,7 +64,7 @@ def in_engine_axes(forces: Vectors, banks: Array) -> Vectors:
 
 @units("m", returns="1")
 def mains_ascend(mains: Array) -> Truth:
-    """Return whether there are two mains or more, one after the other along the shaft, if any are given."""
+    """Return whether the mains are absent, or at least two in ascending order along the shaft."""
     if np.ndim(mains) == 0:
         return True
     return np.ndim(mains) == 1 and np.size(mains) > 1 and bool(np.all(np.diff(mains) > 1e-6))

@@ -44,7 +44,7 @@ class Supports:
 
     @property
     def have_play(self) -> bool:
-        """Return whether any has a clearance or stands off the line."""
+        """Return whether any main has a clearance or is out of line."""
         return bool(np.any(self.clearance > 0) or np.any(self.offset != 0))
 
 

@@ -192,7 +192,7 @@ def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibr
 
 
 def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> FilmEquilibrium:
-    """Return the balance after a step of the turn, or after as much of it as settles."""
+    """Return the balance after a turn step, shortened until the search converges."""
     for _ in range(_SHORTER):
         try:
             return _turned(found, So, turn + step)
@@ -202,7 +202,7 @@ def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> Film
 
 
 def _turned(found: FilmEquilibrium, So: float, turn: float) -> FilmEquilibrium:
-    """Return the balance at another turn, on a mesh graded to its gap."""
+    """Return the balance at another turn angle, on a mesh graded to its gap."""
     film = replace(found.film, softness=replace(_softness(found), turn=turn))
     film = replace(film, eps=film.eps + float(found.film.H.min() - film.H.min()))
     after = settled(film, found.inside, So, found.graded, found.steps)

@@ -73,12 +73,12 @@ class Bore:
 def bore_film_at(
     level: str, So: Array, ratio: Array, elasticity: Elasticity, bore: Bore
 ) -> ElasticJournalFilm:
-    """Return the film that bears So at one of `ALL_LEVELS`.
+    """Return the film that carries So at one of `ALL_LEVELS`.
 
     Parameters
     ----------
     level
-        What gives way.
+        Which parts are elastic.
     So
         Sommerfeld number, 0 or more [-].
     ratio
@@ -143,7 +143,7 @@ def _changed(
 
 
 def _change(before: dict[str, float], after: dict[str, float]) -> dict[str, float]:
-    """Return the logarithms of ratios, differences, and what the soft film alone has."""
+    """Return the changes: logarithms of ratios, differences of angles, and the elastic film's own values."""
     change = {name: float(np.log(after[name] / before[name])) for name in _RATIOS}
     change |= {name: after[name] - before[name] for name in _DIFFERENCES}
     return change | {name: after[name] for name in _OWN}
@@ -155,7 +155,7 @@ def neglected_in_bore(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array, rows: Rows, bore_width: Array, peak: Array,
 ) -> Array:  # fmt: skip
-    """Estimate the displacement, under the largest pressure, of what a level leaves out [m].
+    """Estimate the displacement, under the largest pressure, of the parts that a level takes as rigid [m].
 
     With a matrix the bore is the one that the matrix describes, not a ring. The shape of the pressure is that
     of `neglected_deformation`, about the place of the largest.

@@ -89,7 +89,7 @@ def is_mutual(rows: Rows) -> Truth:
 def gains_no_energy(rows: Rows) -> Truth:
     """Return whether no pressure moves the bore against itself.
 
-    One that is not square is judged elsewhere.
+    Another rule checks that the matrix is square.
     """
     if len(rows) != len(MODES):
         return True

@@ -103,12 +103,12 @@ class ElasticJournalFilm:
     }
 )
 def elastic_film_at(level: str, So: Array, ratio: Array, elasticity: Elasticity) -> ElasticJournalFilm:
-    """Return the film that bears So at one of `LEVELS`.
+    """Return the film that carries So at one of `LEVELS`.
 
     Parameters
     ----------
     level
-        What gives way.
+        Which parts are elastic.
     So
         Sommerfeld number, 0 or more [-].
     ratio
@@ -265,7 +265,7 @@ def neglected_deformation(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array,
 ) -> Array:  # fmt: skip
-    """Estimate the displacement, under the largest pressure, of what a level leaves out [m].
+    """Estimate the displacement, under the largest pressure, of the parts that a level takes as rigid [m].
 
     The mean pressure across is 2/3 of the largest. Around it is a cosine squared as wide as the load needs.
 
@@ -298,7 +298,7 @@ def neglected_deformation(
 def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
     """Estimate the displacement of a bore in an endless body of steel under the largest pressure [m].
 
-    The shape of the pressure is that of `neglected_deformation`, of which this is the least case.
+    The shape of the pressure is that of `neglected_deformation`, and this is its least case.
 
     Parameters
     ----------

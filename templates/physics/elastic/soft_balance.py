@@ -99,7 +99,7 @@ def _shared(So: float, softness: Softness, at: FilmEquilibrium) -> FilmEquilibri
 
 
 def _opened(film: SoftFilm, before: SoftFilm) -> float:
-    """Return the eccentricity at which the least gap of a softer bearing is that of before."""
+    """Return the eccentricity at which a softer bearing has the same least gap as before."""
     return film.eps + float(film.H.min() - before.H.min())
 
 

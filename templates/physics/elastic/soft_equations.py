@@ -72,7 +72,7 @@ class Modes:
 
 
 def modes(mesh: Mesh, ring: Array) -> Modes:
-    """Return the harmonics 0, 2, 3, … of a ring on a mesh; none of a stiff one."""
+    """Return the harmonics 0, 2, 3, … of a ring on a mesh; none for a stiff ring."""
     order = np.concatenate([[0], np.arange(2, HARMONICS + 1)]) if np.any(ring > 0) else np.zeros(0, int)
     cos, sin = np.cos(np.outer(mesh.phi, order)), np.sin(np.outer(mesh.phi, order[1:]))
     shapes = np.concatenate([cos, sin], axis=1)

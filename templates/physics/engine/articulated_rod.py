@@ -259,7 +259,7 @@ def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
 
 @units("1", "1", "rad", "rad", returns="1")
 def masters_are_named(masters: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether each cylinder has a master that has none itself, or 0, if masters are given."""
+    """Return whether masters, if given, are named for each cylinder; a master has no master itself."""
     if not np.ndim(masters):
         return True
     count = count_of(order, pins, firing)
@@ -282,7 +282,7 @@ def arms_are_given(masters: Array, radius: Array) -> Truth:
 
 @units(None, None, "m", returns="1")
 def rods_share_a_pin(crank: OffsetCrank, layout: Layout, places: Array) -> Truth:
-    """Return whether articulated rods stand on the throw, at the pin, place and radius of their master."""
+    """Return whether articulated rods have the throw, pin, position and crank radius of their master."""
     if not isinstance(crank, ArticulatedCrank):
         return True
     carrier, places = crank.carrier, each(places)

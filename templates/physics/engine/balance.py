@@ -35,7 +35,7 @@ class Pair:
 
     @property
     def amplitude(self) -> Array:
-        """Return the largest size on their way: the half axis of an ellipse."""
+        """Return the largest size over the cycle: the major half axis of an ellipse."""
         return np.asarray(np.abs(self.forward) + np.abs(self.backward), dtype=float)
 
     def at(self, angle: Array) -> Phasor:

@@ -129,7 +129,7 @@ def greatest_force(force: NDArray[np.complex128] | Array) -> Array:
 
 @units("kg*m**2", "rad/s", None, returns="N*m")
 def correction_torque(excess: Array, omega: Array, motion: Motion) -> Array:
-    """Return T_c = (m_3 a_g b_g − I_3) φ̈ cos θ/(n cos φ) [N m]: what a rigid rod adds to the torque."""
+    """Return T_c = (m_3 a_g b_g − I_3) φ̈ cos θ/(n cos φ) [N m]: the torque that a rigid rod adds."""
     return _column(excess * omega**2) * (motion.rod_acceleration * motion.rod_velocity)
 
 

@@ -144,7 +144,7 @@ def areas_of(theta: Array, swing: Array, cycle: float) -> list[Area]:
 
 
 def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
-    """Return the areas of each torque curve, (…, K), one after the other; none where it does not vary."""
+    """Return the areas of each torque curve, (…, K), in order; empty if the torque does not vary."""
     swing = grid.swing(T).reshape(-1, T.shape[-1])
     theta = np.broadcast_to(grid.ascending, T.shape).reshape(swing.shape)
     varies = np.abs(swing).max(axis=-1) > 1e-12 * np.abs(T).reshape(swing.shape).max(axis=-1)

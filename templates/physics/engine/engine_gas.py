@@ -26,20 +26,20 @@ class OffsetPolytropic(Polytropic):
     crank: OffsetCrank
 
     def in_every_cylinder(self, holds: Truth) -> Truth:
-        """Return whether something holds in every cylinder, of which the last axis is."""
+        """Return whether a condition holds in every cylinder; the last axis counts the cylinders."""
         return np.all(holds, axis=-1)
 
     def greatest(self, value: Array) -> Array:
-        """Return the greatest value of all cylinders, of which the last axis is."""
+        """Return the greatest value over all cylinders; the last axis counts the cylinders."""
         return np.max(value, axis=-1)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the way of each piston from its highest place at an angle, over its stroke."""
+        """Return the travel of each piston from its highest position, over its stroke."""
         turned = np.asarray(angle + self.crank.top)[..., None]
         return self.crank.travel(turned)[..., 0]
 
     def way_between(self, begin: Array, end: Array) -> Array:
-        """Return the integral of that way from angle to angle [rad], by Gauss's rule."""
+        """Return the integral of the travel between two angles [rad], by Gauss's rule."""
         node, weight = np.polynomial.legendre.leggauss(_NODES)
         middle, half = np.asarray(end + begin) / 2, np.asarray(end - begin) / 2
         angle = middle[..., None] + half[..., None] * node + self.crank.top[..., None]

@@ -147,7 +147,7 @@ def _with_turns(gaps: Array, turns: int) -> Iterator[Array]:
 
 @units("1", "rad", "rad", returns="1")
 def says_layout(order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether any of the lists is given that say how the engine is laid out."""
+    """Return whether any list that describes the layout of the engine is given."""
     return listed(order) or listed(pins) or listed(firing)
 
 
@@ -169,7 +169,7 @@ def is_order(order: Array, pins: Array, firing: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", None, returns="1")
 def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array, gas_cycle: str) -> Truth:
-    """Return whether the firing is given, or does not count because there are no gas pressures.
+    """Return whether the firing is given, or not needed because there are no gas pressures.
 
     In a four-stroke engine the pins alone leave two turns to choose from.
     """
@@ -183,7 +183,7 @@ def _is_near(one: Array, other: Array, period: float) -> bool:
 
 @units(None, returns="1")
 def has_times(layout: Layout) -> Truth:
-    """Return whether some firing angles within one cycle keep the order with these pins."""
+    """Return whether some firing angles within one cycle fit both the order and these pins."""
     return bool(np.isfinite(layout.firing).all())
 
 
@@ -198,7 +198,7 @@ def pins_agree(layout: Layout, top: Array) -> Truth:
 
 @units(None, "1", returns="1")
 def order_agrees(layout: Layout, order: Array) -> Truth:
-    """Return whether the firing angles keep the firing order, if one is given."""
+    """Return whether the firing angles follow the firing order, if an order is given."""
     if not listed(order) or not is_order(order, order, order) or not np.isfinite(layout.firing).all():
         return True
     places = np.rint(order).astype(int) - 1
@@ -222,7 +222,7 @@ def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) ->
 
 @units(None, None, returns="1")
 def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
-    """Return whether the pins of each throw stand at one angle, unless they are named split."""
+    """Return whether the pins of each throw are at one angle, or declared as split."""
     if pins_of_a_throw == "split" or layout.throw.size != layout.pin.shape[-1]:
         return True
     if not np.isfinite(layout.pin).all():

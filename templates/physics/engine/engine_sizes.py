@@ -81,5 +81,5 @@ def or_none(value: Array) -> Array:
 
 @units("1", returns="1")
 def orders_are_whole(orders: Array) -> Truth:
-    """Return whether orders are one list without points of their own."""
+    """Return whether the orders are one list, the same for all points."""
     return np.ndim(orders) <= 1

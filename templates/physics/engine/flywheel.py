@@ -66,5 +66,5 @@ def inertia_of_fluctuation(E: Array, delta: Array, omega: Array) -> Array:
 
 @units("kg*m**2", "kg*m**2", returns="kg*m**2", latex=r"\max\left({0},{1}\right)")
 def larger(one: Array, other: Array) -> Array:
-    """Return the larger of two inertias [kg m²], of which one may be unknown."""
+    """Return the larger of two inertias [kg m²], one of which may be unknown."""
     return np.fmax(one, other)

@@ -72,11 +72,11 @@ class Polytropic(GasCycle):
     emptied: float
 
     def in_every_cylinder(self, holds: Truth) -> Truth:
-        """Return whether something holds in every cylinder; here there is one."""
+        """Return whether a condition holds in every cylinder; here there is only one."""
         return holds
 
     def greatest(self, value: Array) -> Array:
-        """Return the greatest value of all cylinders; here there is one."""
+        """Return the greatest value over all cylinders; here there is only one."""
         return value
 
     def pressure(self, theta: Array, travel: Array) -> Array:
@@ -148,11 +148,11 @@ class Polytropic(GasCycle):
         return self.v_dead + self.way(angle)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the way of the piston from top dead centre at an angle for each point, over the stroke."""
+        """Return the travel of the piston from top dead centre over the stroke, at one angle per point."""
         return _travel(angle, self.n)
 
     def way_between(self, begin: Array, end: Array) -> Array:
-        """Return the integral of that way from angle to angle [rad]."""
+        """Return the integral of the travel between two angles [rad]."""
         return travel_integral(end, self.n) - travel_integral(begin, self.n)
 
     def mean_effective(self) -> Array:

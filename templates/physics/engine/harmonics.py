@@ -93,13 +93,13 @@ def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float 
 
 @units(None, returns="N")
 def forward_force(parts: Harmonics) -> Array:
-    """Return the size of what turns with the crank [N]."""
+    """Return the size of the component that turns with the crank [N]."""
     return np.abs(parts.forward)
 
 
 @units(None, returns="N")
 def backward_force(parts: Harmonics) -> Array:
-    """Return the size of what turns against the crank [N]."""
+    """Return the size of the component that turns against the crank [N]."""
     return np.abs(parts.backward)
 
 

@@ -58,7 +58,7 @@ class OffsetCrank:
         return RodMotion(self, alpha)
 
     def travel(self, alpha: Array) -> Array:
-        """Return the way of the piston from its highest place, over the stroke, at crank angles (…, N, K)."""
+        """Return the travel of the piston over the stroke from its highest position, at angles (…, N, K)."""
         return (self.highest[..., None] - self.at(alpha).x) / self.stroke[..., None]
 
 

@@ -108,7 +108,7 @@ def travel_integral(theta: Array, n: Array) -> Array:
 
 
 def angle_of_travel(travel: Array, n: Array) -> Array:
-    """Return the crank angle in [0, π] [rad] at which the piston has travelled so much of its stroke."""
+    """Return the crank angle in [0, π] [rad] at which the piston has travelled a share of its stroke."""
     share = travel * (n - travel) / (1 + n - 2 * travel)
     return 2 * np.arcsin(np.sqrt(np.clip(share, 0, 1)))
 

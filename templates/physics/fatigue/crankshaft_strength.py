@@ -31,7 +31,7 @@ def manufacture_factor(manufacture: str) -> Array:
 
 @units("1", returns="1", latex=r"\min\left({0},1\right)")
 def factor_at_bore(K: Array) -> Array:
-    """Return K at the outlet of an oil bore [1]: what is above 1 applies to fillets alone."""
+    """Return K at the outlet of an oil bore [1]: values above 1 apply only to fillets."""
     return np.minimum(K, 1.0)
 
 
@@ -41,7 +41,7 @@ def factor_at_bore(K: Array) -> Array:
     r"+\frac{{196}}{{{1}}}\sqrt{{\frac{{1}}{{{3}}}}}\right)",
 )  # fmt: skip
 def fatigue_strength_IACS_M53(K: Array, ultimate: Array, diameter: Array, radius: Array) -> Array:
-    """Return the alternating von Mises stress [Pa] that a crankshaft bears permanently.
+    """Return the alternating von Mises stress [Pa] that a crankshaft withstands permanently.
 
     The ultimate strength [Pa] counts in MPa, the diameter of pin or journal [m] and the radius of the fillet,
     or half the diameter of the oil bore, [m] in mm.

@@ -182,7 +182,7 @@ def numbers_of_points(history: Array) -> Array:
 def governing_point(damage: Array, uses: Array) -> Array:
     """Return the number of the point of the largest damage.
 
-    Where there is none, of the smallest safety factor.
+    Without damage, it is the point of the smallest safety factor.
     """
     first = np.where(damage.max(axis=-1, keepdims=True) > 0, damage, uses)
     known = ~np.isnan(first).any(axis=-1)

@@ -135,5 +135,5 @@ def slope_of_line(at_1000: Array, endurance: Array, knee: Array) -> Array:
 
 @units("1", "1", returns="1")
 def both_or_none(K_t: Array, other: Array) -> Truth:
-    """Return whether a stress concentration comes with what its sensitivity needs."""
+    """Return whether a stress concentration factor comes with its notch sensitivity, or neither is given."""
     return np.isnan(K_t) | ~np.isnan(other)

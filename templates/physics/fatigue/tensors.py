@@ -65,7 +65,7 @@ def changes(loads: Sequence[Array]) -> Truth:
 
 @units(None, None, returns="1")
 def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Return whether points, angles and curves together make no more tensors than are calculated at once."""
+    """Return whether points, angles and curves together stay within the permitted number of tensors."""
     curves = np.broadcast_shapes(*(np.shape(load)[:-1] for load in loads if np.ndim(load)))
     angles = max((np.shape(load)[-1] for load in loads if np.ndim(load)), default=1)
     rows = max((len(rows) for rows in stresses), default=0)

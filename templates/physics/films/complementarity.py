@@ -73,7 +73,7 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
 
 
 def finer(film: Mask) -> Mask:
-    """Carry a film to the mesh of twice as many intervals each way."""
+    """Return a film interpolated on a mesh with twice as many intervals in each direction."""
     n, m = film.shape
     fine = np.zeros((2 * n - 1, 2 * m - 1), bool)
     fine[::2, ::2] = film

@@ -55,7 +55,7 @@ class Equations:
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:
-        """Return a P − b: what a node loses by pressure less what it gains by motion, (n + 1, m + 1)."""
+        """Return a P − b: the outflow of a node by pressure less its inflow by motion, (n + 1, m + 1)."""
         flow = P[1:] - P[:-1]
         flow *= self.conductance_around
         axial = P[:, 1:] - P[:, :-1]

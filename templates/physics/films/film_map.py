@@ -158,7 +158,7 @@ def encode(eps: float, ratio: float, film: Film) -> Array:
 
 
 def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
-    """Return the film's measures by name, from what `encode` gives, (8, ...); half is tan(attitude/2)."""
+    """Return the film's measures by name, from the values of `encode`, (8, ...); half is tan(attitude/2)."""
     s2 = (1 - eps) * (1 + eps)
     s, thin = np.sqrt(s2), np.sqrt((1 - eps) / (1 + eps))
     load, half, P_max, peak, side, supply, streamers = np.exp(values[:7])

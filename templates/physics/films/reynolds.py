@@ -83,7 +83,7 @@ def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int =
 
 
 def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) -> Field:
-    """Solve for the pressure; arguments as those of `static_film`, eps above 0."""
+    """Return the pressure field; the arguments are those of `static_film`, with eps above 0."""
     require_film(np.asarray(eps), np.asarray(ratio))
     return _nested(eps, ratio, journal_mesh(eps, ratio, around, across))
 

@@ -174,7 +174,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
 
     def lack(x: Array) -> Array:
-        """Return the logarithm of the viscosity that belongs to the heat, less that taken."""
+        """Return the logarithm of the viscosity that follows from the heat, less that of the assumed one."""
         eta = np.exp(x)
         film = heated_film(bearing, eta)[1]
         T = temperature(oil, film)
@@ -208,7 +208,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
-    """Return the step downwards from the supply's viscosity, in ln, that holds the root; NaN where none does.
+    """Return the step below the supply's viscosity, in ln, that encloses the root; NaN if none does.
 
     A load so light at the supply's viscosity that no orbit is found may have one further down.
     """
@@ -241,7 +241,7 @@ def temperature(oil: CycleOil, film: FilmState) -> Array:
 
 
 def _where_known(eta: Array, value: Array) -> Array:
-    """Return the value where a viscosity was found, else NaN."""
+    """Return the value if a viscosity was found, else NaN."""
     return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
 
 
@@ -283,7 +283,7 @@ def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
 
 @units("m**3/s", "m**3/s", returns="m**3/s", latex="{0}+{1}")
 def all_flow(side: Array, feed: Array) -> Array:
-    """Return what leaves by the ends [m³/s]; where the side flow has all of it there is no feed flow."""
+    """Return the flow out of the ends [m³/s]: side flow plus feed flow; NaN counts as no feed flow."""
     return side + np.nan_to_num(feed)
 
 

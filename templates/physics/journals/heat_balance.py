@@ -108,7 +108,7 @@ class OperatingPoint:
         return power, np.nan_to_num(by_oil, nan=0.0), np.nan_to_num(by_air, nan=0.0)
 
     def excess(self, rise: Array) -> Array:
-        """Return the power less what is carried off, over the power [-]."""
+        """Return the share of the power that is not carried off [-]."""
         power, by_oil, by_air = self.heat(rise)
         return 1 - (by_oil + by_air) / power
 

@@ -216,7 +216,10 @@ def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
 
 
 def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """Return what bears the load at one speed of every point, arrays (...); see `mixed_films`."""
+    """Return the balances that carry the load at one speed for each point, arrays (...).
+
+    See `mixed_films`.
+    """
     films = mixed_films(journal, np.asarray(omega)[..., None])
     return MixedFilm(*(getattr(films, field.name)[..., 0] for field in fields(MixedFilm)))
 

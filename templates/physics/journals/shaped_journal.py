@@ -142,7 +142,7 @@ def departure(preload: Array, mouth: Array, tilt_x: Array, tilt_y: Array) -> Arr
 def journal_film_at(
     level: str, So: Array, ratio: Array, pressure: Array, grooves: Grooves, shape: Shape, away: Array
 ) -> StaticFilm:
-    """Return the film that bears So, at a level of fidelity.
+    """Return the film that carries So, at a level of fidelity.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def _solved(
 ) -> dict[str, Array | float]:
     """Return the fields of `StaticFilm` of one point by `shaped_balance`.
 
-    Eps infinite where nothing bears it.
+    Eps is infinite where no film carries the load.
     """
     bore, tilt, conserving = shape.at(*numbers[:5]), np.array(numbers[5:]), level == FED
     if level not in ("reynolds", FED):

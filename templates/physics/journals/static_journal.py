@@ -120,7 +120,7 @@ def static_film_at(
     pressure: Array | float = 0.0,
     grooves: tuple[tuple[float, float], ...] = (),
 ) -> JournalFilm:
-    """Return the film that bears So, at a level of fidelity.
+    """Return the film that carries So, at a level of fidelity.
 
     Parameters
     ----------

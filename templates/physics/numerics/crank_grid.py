@@ -35,7 +35,7 @@ class CrankGrid:
     cycle: float
 
     def returned(self, values: NDArray[T]) -> NDArray[T]:
-        """Return the values at the angles that a user asks for, of values at all angles, (…, K)."""
+        """Return the values at the requested angles, (…, K), from the values at all angles."""
         return values[..., : self.uniform : self.every] if np.ndim(values) else values
 
     @cached_property

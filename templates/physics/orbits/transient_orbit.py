@@ -121,13 +121,13 @@ def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:
 
 
 def _report(cycle: int, part: float, difference: float) -> None:
-    """Say in which cycle the orbit is, and how far the last two were apart, over the gap."""
+    """Report the number of the cycle, and the change over the last cycle relative to the gap."""
     apart = "" if difference == np.inf else f", difference {difference:.1g} of at most {REPEATS:g}"
     report((cycle - 1 + part) / MOST_CYCLES, f"cycle {cycle} of at most {MOST_CYCLES}{apart}")
 
 
 def _full(journal: Journal, eps: Array) -> State:
-    """Return a film that is full, and bears nothing yet."""
+    """Return a full film that carries no load yet."""
     nothing = np.zeros((journal.phi.size, journal.zeta.size - 1))
     return State(
         eps, nothing, nothing, np.broadcast_to(journal.gap(eps, journal.phi)[:, None], nothing.shape)
@@ -152,7 +152,7 @@ def _next(journal: Journal, states: list[State], S: Array, w: float, step: float
 
 
 def _measured(journal: Journal, place: Array, states: list[State], cycles: int) -> TransientOrbit:
-    """Return what the states of a cycle do."""
+    """Return the measures of the films of a cycle."""
     step = 2 * np.pi / journal.phi.size
     width, last = dual_widths(journal.zeta)[:-1], np.diff(journal.zeta)[-1]
     gaps = [journal.gap(state.eps, journal.phi) for state in states]

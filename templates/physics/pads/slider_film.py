@@ -163,7 +163,7 @@ def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array)
 
 
 def _bearing(a: Array) -> Array:
-    """Return the film ratio of a film that bears: 1 for one that is ruptured, or not a number."""
+    """Return the film ratio; 1 for a film that is ruptured or whose ratio is NaN."""
     return np.where(a > 1, a, 1.0)
 
 

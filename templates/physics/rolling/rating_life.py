@@ -43,7 +43,7 @@ def factor_is_known(F_a: Array, f_0: Array) -> Truth:
 
 @units("N", None, returns="1")
 def is_bearable(F_a: Array, elements: str) -> Truth:
-    """Return whether the axial load is one that these elements bear by this calculation."""
+    """Return whether this calculation covers the axial load on these rolling elements."""
     return elements == "ball" or bool(np.all(np.asarray(F_a) == 0))
 
 

@@ -76,7 +76,7 @@ def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
 
 
 def contact_integrals(eps: Array, roughness: Array) -> tuple[Array, Array]:
-    """Return what the contact of a journal sums up to: along the line of centres, and around [-].
+    """Return the integrals of the contact pressure: along the line of centres, and around [-].
 
     They are the integrals over the angle of F_{5/2} cos(phi) and of F_{5/2}, phi from the narrowest gap.
 

@@ -163,7 +163,7 @@ def _scaled(shapes: Array) -> Array:
 
 
 def _with_rigid(elastic: Array, value: float, axis: int) -> Array:
-    """Return the elastic modes after the one in which the chain turns as a whole."""
+    """Return the elastic modes, preceded by the mode in which the chain turns as a whole."""
     shape = list(elastic.shape)
     shape[axis] = 1
     return np.concatenate([np.full(shape, value), elastic], axis=axis)

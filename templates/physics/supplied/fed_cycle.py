@@ -317,7 +317,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
 
 
 def fed_duty(level: str, duty: Duty, feeding: SupplyGeometry, pressure: Array) -> FedDuty:
-    """Return a duty with what feeds it at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
+    """Return a duty with its oil supply at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supplies = supplies_of(feeding, pressure) if level == "supplied" else None
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, pressure, supplies)

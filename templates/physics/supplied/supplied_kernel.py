@@ -188,7 +188,7 @@ def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple
 
 @compiled
 def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
-    """Return the force of a pressure alpha k along both axes of the mesh."""
+    """Return the components of the force of a pressure alpha k in the axes of the mesh."""
     n, m = k.shape
     x, y = 0.0, 0.0
     for i in range(n):

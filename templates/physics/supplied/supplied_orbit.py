@@ -347,14 +347,14 @@ def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
 
 
 def _change(duty: Duty, runs: list[Run]) -> Totals:
-    """Return the change of what the last two meshes come to; NaN without a whole cycle on both."""
+    """Return the change between the results of the last two meshes; NaN without a whole cycle on both."""
     if len(runs) < 2 or not (runs[-2].gaps and runs[-1].gaps):
         return UNKNOWN
     return _totals(duty, runs[-1]).change(_totals(duty, runs[-2]))
 
 
 def _totals(duty: Duty, run: Run) -> Totals:
-    """Return what the last cycle of a run comes to."""
+    """Return the summary values of the last cycle of a run."""
     states, mesh = run.states[1:], run.mesh
     theta, z = in_frame(duty, run.states)
     fill = np.array([(1 - state.void) @ mesh.width for state in states])

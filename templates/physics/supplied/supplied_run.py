@@ -126,7 +126,7 @@ def change(gaps: list[float], cycles: int) -> float:
 
 
 def returns(turned: float, within: float = 0.02) -> bool:
-    """Return whether an angle is one of whole turns [rad]."""
+    """Return whether an angle [rad] is a whole number of turns."""
     return bool(abs((turned + np.pi) % (2 * np.pi) - np.pi) <= within)
 
 

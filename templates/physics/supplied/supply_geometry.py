@@ -92,22 +92,29 @@ class SupplyGeometry:
                 exists, centre, extent, across = (np.broadcast_to(v, shape).flat[number] for v in of_point)
                 if exists and min(float(extent), float(across)) > 0:
                     pockets.append(
-                        Pocket(float(centre), min(float(extent), np.pi), float(across), on_journal)
+                        Pocket(float(centre), min(float(extent), np.pi), _fitted(float(across)), on_journal)
                     )
             yield tuple(pockets)
+
+
+def _fitted(across: float) -> float:
+    """Return a length over the width, but for the rounding by which the longest exceeds its limit."""
+    return LONGEST if LONGEST < across <= LONGEST * (1 + 1e-9) else across
 
 
 def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]:
     """Return the `Supply` of each point, (...).
 
-    None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
+    None where there is nothing, no pressure P = p psi²/(eta Omega) [-], or an inlet that is too long: a rule
+    refuses that.
     """
     sizes = (np.shape(getattr(feeding, field.name)) for field in fields(feeding))
     shape = np.broadcast_shapes(np.shape(pressure), *sizes)
     pressures = np.broadcast_to(pressure, shape).ravel().tolist()
     supplies = np.empty(len(pressures), dtype=object)
     for number, (pockets, P) in enumerate(zip(feeding.pockets(shape), pressures, strict=True)):
-        supplies[number] = Supply(pockets, P) if pockets and P > 0 else None
+        fits = all(pocket.half_length <= LONGEST for pocket in pockets)
+        supplies[number] = Supply(pockets, P) if pockets and fits and 0 < P < np.inf else None
     return supplies.reshape(shape)
 
 

@@ -51,7 +51,7 @@ class PositionSearch:
         self.slopes: Array | None = None
 
     def placed(self, fluidity: Array, accuracy: float) -> PressureSolution:
-        """Return the film that bears the load with a fluidity (n + 1, J).
+        """Return the film that carries the load with a fluidity (n + 1, J).
 
         Raises
         ------
@@ -98,7 +98,7 @@ class PositionSearch:
         return None
 
     def _newton(self, lack: Array) -> Array:
-        """Return the step of y that would make up for what is lacking."""
+        """Return Newton's step of y towards the balance."""
         step = -np.linalg.lstsq(np.asarray(self.slopes), lack, rcond=1e-12)[0]
         size = float(np.hypot(*step))
         if not size > 0:
@@ -127,7 +127,7 @@ class PositionSearch:
         return np.array([np.log(size / self.load), np.arctan2(ahead, along)])
 
     def _differences(self, fluidity: Array, lack: Array) -> Array:
-        """Return (2, 2) slopes of what is lacking."""
+        """Return the (2, 2) slopes of the imbalance."""
         kept = self.near
         columns = []
         for step in _DIFFERENCE * np.eye(2):

@@ -72,7 +72,7 @@ class FilmHeat:
 
     @property
     def residual(self) -> float:
-        """Return what is not accounted for, over the dissipation [-]."""
+        """Return the error of the heat balance over the dissipation [-]."""
         away = self.by_side + self.by_drain + self.by_bush + self.by_journal
         return (self.dissipated - away) / self.dissipated
 

@@ -69,7 +69,7 @@ class ThermalCase:
         )
 
     def is_whole(self) -> bool:
-        """Return whether everything is known that a film needs."""
+        """Return whether all data of a film are known."""
         needed = (self.F, self.D, self.W, self.psi, self.omega, self.pressure, self.viscosity(self.supply))
         return bool(np.isfinite(needed).all())
 

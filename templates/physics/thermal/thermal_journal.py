@@ -110,7 +110,7 @@ def warm_film(level: str, case: ThermalCase) -> WarmFilm:
 
 
 def _of_one(case: ThermalCase) -> WarmFilm:
-    """Return the film at level one_temperature; what that has not is NaN."""
+    """Return the film at level one_temperature; values that this level lacks are NaN."""
     values = mapped_values(case)
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     none = np.full(shape, np.nan)

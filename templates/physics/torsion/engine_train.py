@@ -61,7 +61,7 @@ def are_excited(gas: Array, inertia: Array) -> bool:
 
 @units("N*m", "rad/s", returns="1")
 def has_its_speed(inertia: Array, speed: Array) -> bool:
-    """Return whether a torque of inertia [N m] and the speed [rad/s] at which it is that stand together."""
+    """Return whether a torque of inertia [N m] and its speed [rad/s] are given together or not at all."""
     return bool(np.ndim(inertia)) != bool(np.all(np.isnan(speed)))
 
 

@@ -66,7 +66,7 @@ class TrainLayout:
 
     @cached_property
     def speeds(self) -> Array:
-        """Return the mean speed of each inertia over that of the first, (n,); NaN where nothing joins it."""
+        """Return the mean speed of each inertia over that of the first, (n,); NaN if it is not connected."""
         joined: defaultdict[int, list[tuple[int, float]]] = defaultdict(list)
         for (first, second), ratio in self._turning():
             joined[first].append((second, ratio))
@@ -112,7 +112,7 @@ class TrainLayout:
         return list(zip(pairs, self.ratios.tolist(), strict=True))
 
     def _turning(self) -> list[tuple[tuple[int, int], float]]:
-        """Return what makes inertias turn together: shafts between two of them, and gears."""
+        """Return the connections between inertias: shafts and gears."""
         shafts = [((int(i), int(j)), 1.0) for i, j in self.shafts if j != GROUND]
         return [*shafts, *self._driven()]
 
@@ -141,7 +141,7 @@ def train_layout(
 
 @units("kg*m**2", "1", "1", returns="1")
 def are_few(J: Array, first: Array, drivers: Array) -> bool:
-    """Return whether there are no more inertias, shafts and gears than are calculated."""
+    """Return whether the numbers of inertias, shafts and gears are within the limits."""
     return (
         np.shape(J)[-1] <= MOST_INERTIAS
         and np.size(first) <= MOST_SHAFTS

@@ -183,6 +183,48 @@ def test_a_design_is_decided_over_http_and_nothing_is_saved(http, client):
     assert http.post(f"{DESIGNS}/{design['id']}/decide").status_code == 200
 
 
+VARIANTS = {
+    "main_1": {"film.radial_load": "10 kN"},
+    "main_2": {"film.radial_load": "25 kN"},
+    "main_10": {"film.radial_load": "24 kN"},
+}
+
+
+def test_every_variant_is_decided_and_named(http, client):
+    """At level short_bearing 10 kN keeps 2.6 µm for certain; the others, and the design itself, climb."""
+    raw = {**document("film.minimum_film_thickness >= 2.6 um"), "variants": VARIANTS}
+    design = created(http, raw)
+    path = f"{DESIGNS}/{design['id']}/decide"
+    estimate = http.post(path, json={"criteria": ["own"], "estimate_only": True}).json()
+    assert (estimate["stopped"], estimate["tried"]) == ("estimated", [])
+    assert [trial.get("variant") for trial in estimate["planned"]] == [None, "main_2", "main_10"]
+    assert estimate["expected"] == pytest.approx(sum(trial["expected"] for trial in estimate["planned"]))
+    assert estimate["expected"] > 0
+    answer = http.post(path, json={"criteria": ["own"]}, headers={"Prefer": "wait=30"})
+    assert answer.status_code == 200, answer.text
+    body = answer.json()
+    own_of = {one["name"]: next(c for c in one["criteria"] if c["name"] == "own") for one in body["variants"]}
+    assert {name: one["verdict"] for name, one in own_of.items()} == dict.fromkeys(VARIANTS, "met")
+    assert [one["asked"] for one in body["variants"]] == [[], ["own"], ["own"]]
+    assert body["stopped"] == "decided"
+    assert {trial.get("variant") for trial in body["tried"]} == {None, "main_2", "main_10"}
+    merged = next(one for one in body["criteria"] if one["name"] == "own")
+    assert (merged["verdict"], merged["points"]) == ("met", 4)
+    alone = created(http, document("film.minimum_film_thickness >= 2.6 um", radial_load="24 kN"))
+    expected = http.post(f"{DESIGNS}/{alone['id']}/decide", json={"criteria": ["own"]}).json()
+    value = next(one["value"] for one in expected["criteria"] if one["name"] == "own")
+    assert own_of["main_10"]["value"]["value"] == pytest.approx(value["value"], rel=1e-9)
+    assert [one.name for one in client.decide(design["id"], ["own"]).variants] == list(VARIANTS)
+
+
+def test_what_no_level_can_state_stays_open():
+    """No level states an error of what oil flows out in all: met, error unknown, and nothing to calculate."""
+    decision = decided(document("film.total_oil_flow >= 1e-6 l/min"))
+    assert (decision.asked, decision.trials, decision.stopped) == ((), (), "no_finer_level")
+    assert decision.error_unknown == ["own"]
+    assert own(decision).verdict == "met"
+
+
 def test_an_expensive_level_goes_on_as_a_job(http):
     value = film_at("map")
     design = created(http, document(f"film.minimum_film_thickness >= {value!r} um", level="map"))

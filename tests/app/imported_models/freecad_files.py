@@ -6,6 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from serving import ended
 
 from app.imported_models.freecad import find
 from cad.errors import ProgramMissing
@@ -39,15 +40,6 @@ def bush(what="plain"):
 
 def post(http, id, content, **query):
     return http.post("/api/v1/models/import", params={"id": id, **query}, content=content, headers=BINARY)
-
-
-def ended(http, response):
-    assert response.status_code == 202, response.text
-    job = response.headers["Location"]
-    with http.stream("GET", f"{job}/events") as events:
-        for _ in events.iter_lines():
-            pass
-    return http.get(job).json()
 
 
 def imported(http, id, content, **query):

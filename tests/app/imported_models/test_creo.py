@@ -155,7 +155,7 @@ def test_who_waits_for_a_session_may_give_up(replay):
         ({"url": "http://elsewhere"}, "url"),
         ({"file": f"{32 * 'a'}.prt"}, "file"),
         ({"parameters": [{**MANIFEST["parameters"][1], "parameter": "two words"}]}, "parameters.0.parameter"),
-        ({"parameters": [{**MANIFEST["parameters"][0], "value": 5.0}]}, "not from 10 to 200"),
+        ({"parameters": [{**MANIFEST["parameters"][0], "value": 5.0}]}, "not between 10 and 200"),
         ({"parameters": [{**MANIFEST["parameters"][0], "parameter": "X"}]}, "either the dimension"),
         ({"parameters": 2 * MANIFEST["parameters"][:1]}, "two parameters are called bearing_diameter"),
         ({"parameters": [{**MANIFEST["parameters"][1], "check": "radius"}]}, "only a length"),

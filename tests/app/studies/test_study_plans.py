@@ -43,23 +43,23 @@ LONG = [40 + n / 100 for n in range(501)]
 
 
 @pytest.mark.parametrize(
-    ("body", "count", "solids", "hours"),
+    ("body", "count", "solids"),
     [
-        ({"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": 720}, 720**2, 720, "2"),
-        ({"method": "grid", "vary": {"diameter": {"values": [f"{d} mm" for d in LONG]}}}, 501, 501, "1.4"),
-        ({"method": "sample", "vary": BORE, "points": 720}, 720, 720, "2"),
-        ({"method": "sample", "vary": BORE, "points": 10**6}, 10**6, 10**6, "2.8e+03"),
-        ({"method": "table", "rows": {"diameter": {"value": LONG, "unit": "mm"}}}, 501, 501, "1.4"),
-        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 4800}, 4800, 4800, "13"),
+        ({"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": 720}, 720**2, 720),
+        ({"method": "grid", "vary": {"diameter": {"values": [f"{d} mm" for d in LONG]}}}, 501, 501),
+        ({"method": "sample", "vary": BORE, "points": 720}, 720, 720),
+        ({"method": "sample", "vary": BORE, "points": 10**6}, 10**6, 10**6),
+        ({"method": "table", "rows": {"diameter": {"value": LONG, "unit": "mm"}}}, 501, 501),
+        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 4800}, 4800, 4800),
     ],
     ids=["grid", "values", "sample", "million", "table", "optimise"],
 )
-def test_a_study_that_needs_too_many_solids_says_how_many_and_how_long(body, count, solids, hours):
+def test_a_study_that_needs_too_many_solids_says_how_many(body, count, solids):
     with pytest.raises(InvalidInputs) as refused:
         planned(*task(SHELL, **body), 10.0)
     (fault,) = refused.value.faults
     assert (fault.name, fault.code) == ("diameter", "needs_solids")
-    assert f"{count} rows are up to {solids} solids, about {hours} h at 10 s each" in fault.detail
+    assert f"{count} rows are up to {solids} solids; " in fault.detail
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 from mathcad_files import apply, call, define, math, name, packed, parts_of, prime, real, scale, shown, united
-from serving import faults
+from serving import ended, faults
 
 from app.client import Problem
 from app.retention.rows import referenced_files
@@ -23,15 +23,6 @@ FAULTY = prime(
     math(define("z", call("rnorm", real(1), real(0), real(1)))),
     math(define("w", apply("mult", real(2), name("z")))),
 )
-
-
-def ended(http, response):
-    assert response.status_code == 202, response.text
-    job = response.headers["Location"]
-    with http.stream("GET", f"{job}/events") as events:
-        for _ in events.iter_lines():
-            pass
-    return http.get(job).json()
 
 
 def post(http, id, content, **query):

@@ -317,3 +317,20 @@ def test_the_fit_of_the_standard_is_never_chosen_by_a_tolerance():
         assert "fit" not in set(np.atleast_1d(answer.level))
     named = evaluate(film, film.example, level="fit", outputs=["minimum_film_thickness"])
     assert named.level == "fit"
+
+
+def test_the_time_to_expect_follows_case_and_cell():
+    """Of a half groove by its band of load and width, summed over points; of no cell, and no level, none."""
+    Cycle = get("oil_film_cycle", 1).template
+    measured = levels.accuracy(Cycle)
+    stated = measured.content["expected_seconds"]["supplied"]
+    grids, table = stated["grids"], stated["cases"]["half_groove, fixed"]
+    one = Cycle.from_quantities(Cycle.example)
+    band = int(np.searchsorted(grids[0], one.S_max) - 1)
+    row = int(np.searchsorted(grids[1], float(one.W / one.D)) - 1)
+    assert measured.seconds(one, "supplied") == table[band][row]
+    assert measured.seconds(one, "mobility") is None
+    three = Cycle.from_quantities({**Cycle.example, "bearing_width": {"value": [18, 18, 18], "unit": "mm"}})
+    assert measured.seconds(three, "supplied") == pytest.approx(3 * table[band][row])
+    narrow = Cycle.from_quantities({**Cycle.example, "bearing_width": "6 mm"})
+    assert measured.seconds(narrow, "supplied") is None

@@ -2,7 +2,17 @@
 
 import numpy as np
 import pytest
-from bearings import VOGEL, D, balanced, bearing, case, outputs, si, without
+from bearings import (
+    VOGEL,
+    assert_finite_or_reasoned,
+    balanced,
+    bearing,
+    case,
+    drawn_bearings,
+    outputs,
+    si,
+    without,
+)
 from seeds import seeded
 
 from templates.core.errors import InvalidInputs
@@ -74,19 +84,7 @@ class TestExtremes:
 
     def test_property_ten_thousand_draws(self):
         rng, n = np.random.default_rng(seeded(5)), 10_000
-        raw = {
-            "radial_load": si(10 ** rng.uniform(-6, 9, n) * (rng.random(n) > 0.05), "N"),
-            "bearing_diameter": si(D * np.ones(n), "m"),
-            "bearing_width": si(D * 10 ** rng.uniform(-2.02, 2.02, n), "m"),
-            "diametral_clearance": si(D * 10 ** rng.uniform(-5, -1, n), "m"),
-            "speed": si(rng.choice([-1, 0, 1], n, p=[0.3, 0.1, 0.6]) * 10 ** rng.uniform(-3, 4, n), "rad/s"),
-            "oil_inlet_temperature": si(rng.uniform(213, 573, n), "K"),
-            "oil_outlet_temperature": si(rng.uniform(213, 573, n), "K"),
-            "kinematic_viscosity_1": si(10 ** rng.uniform(-7, -3, n), "m**2/s"),
-            "kinematic_viscosity_2": si(10 ** rng.uniform(-7, -4, n), "m**2/s"),
-            "journal_roughness": si(2e-7, "m"),
-            "bearing_roughness": si(2e-7, "m"),
-        }
+        raw = drawn_bearings(rng, n)
         for level in ("short_bearing", "fit", "map"):
             answers = evaluate(OilFilm, raw, level=level).outputs
             assert_finite_or_reasoned(answers, n)
@@ -176,13 +174,3 @@ class TestExtremes:
         for _ in range(3):
             raw = bearing(10 ** rng.uniform(-8, 6, n), 10 ** rng.uniform(-2, 2, n))
             assert_finite_or_reasoned(evaluate(OilFilm, raw, level=level).outputs, n)
-
-
-def assert_finite_or_reasoned(answers, n):
-    for name, answer in answers.items():
-        if answer.unit is None:
-            continue
-        value = np.broadcast_to(np.asarray(answer.value, float), n)
-        reasons = np.full(n, answer.reason) if answer.reasons is None else answer.reasons
-        assert not np.isinf(value).any(), name
-        np.testing.assert_array_equal(np.isnan(value), reasons != None, err_msg=name)  # noqa: E711

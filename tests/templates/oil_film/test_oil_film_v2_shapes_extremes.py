@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bearings import D, bearing, si
+from bearings import assert_finite_or_reasoned, bearing, drawn_bearings, si
 from seeds import seeded
 
 from templates.core.errors import InvalidInputs
@@ -13,34 +13,11 @@ REFUSED = {"relative_eccentricity", "hydrodynamic_speed", "load_speed"}
 """What refuses: nothing bears the load, nothing turns, or a lobed sleeve turns."""
 
 
-def assert_finite_or_reasoned(answers, n):
-    for name, answer in answers.items():
-        if answer.unit is None:
-            continue
-        value = np.broadcast_to(np.asarray(np.nan if answer.value is None else answer.value, float), n)
-        reasons = np.full(n, answer.reason) if answer.reasons is None else answer.reasons
-        assert not np.isinf(value).any(), name
-        np.testing.assert_array_equal(np.isnan(value), reasons != None, err_msg=name)  # noqa: E711
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("level", ["short_bearing", "fit", "map"])
 def test_property_a_hundred_thousand_plain_bearings(level):
     rng, n = np.random.default_rng(seeded(41)), 100_000
-    raw = {
-        "radial_load": si(10 ** rng.uniform(-6, 9, n) * (rng.random(n) > 0.05), "N"),
-        "bearing_diameter": si(D * np.ones(n), "m"),
-        "bearing_width": si(D * 10 ** rng.uniform(-2.02, 2.02, n), "m"),
-        "diametral_clearance": si(D * 10 ** rng.uniform(-5, -1, n), "m"),
-        "speed": si(rng.choice([-1, 0, 1], n, p=[0.3, 0.1, 0.6]) * 10 ** rng.uniform(-3, 4, n), "rad/s"),
-        "oil_inlet_temperature": si(rng.uniform(213, 573, n), "K"),
-        "oil_outlet_temperature": si(rng.uniform(213, 573, n), "K"),
-        "kinematic_viscosity_1": si(10 ** rng.uniform(-7, -3, n), "m**2/s"),
-        "kinematic_viscosity_2": si(10 ** rng.uniform(-7, -4, n), "m**2/s"),
-        "journal_roughness": si(2e-7, "m"),
-        "bearing_roughness": si(2e-7, "m"),
-        "start_line": str(rng.choice(["fixed", "moving"])),
-    }
+    raw = {**drawn_bearings(rng, n), "start_line": str(rng.choice(["fixed", "moving"]))}
     answers = evaluate(OilFilm, raw, level=level).outputs
     assert_finite_or_reasoned(answers, n)
     assert np.isfinite(answers["minimum_film_thickness"].value).sum() > n / 20

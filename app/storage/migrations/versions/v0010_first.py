@@ -419,7 +419,7 @@ SIGNED = "SELECT 1 FROM approval WHERE design_id = {row}.design_id AND revision 
 
 
 def guard_rows(dialect: str) -> None:
-    """Let the database itself refuse what the program never does to records and to signed revisions."""
+    """Make the database refuse changes to records and to signed revisions."""
     guard = guard_on_postgresql if dialect == "postgresql" else guard_on_sqlite
     sealed = " OR ".join(
         ["OLD.hash IS NOT NULL", *(f"OLD.{name} {{differs}} NEW.{name}" for name in RECORDED)]
