@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import cast
 
 from fastapi import FastAPI, Request, Response
 from fastapi.middleware.asyncexitstack import AsyncExitStackMiddleware
@@ -122,8 +122,8 @@ def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refu
     """
 
     def built() -> ASGIApp:
-        handlers: dict[Any, Any] = {**app.exception_handlers}
-        unexpected = handlers.pop(Exception, None)
+        handlers = {kind: one for kind, one in app.exception_handlers.items() if kind is not Exception}
+        unexpected = cast("Unexpected | None", app.exception_handlers.get(Exception))
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)
