@@ -94,7 +94,7 @@ class Size(float):
 
     @staticmethod
     def repeated(sizes: Iterable[float], what: str) -> float:
-        """Return the one value of sizes that are alike, with the places of all.
+        """Return the common value of equal sizes, at the places of all of them.
 
         Raises
         ------

@@ -45,7 +45,7 @@ def estimated(
     confirm: Levels | None,
     chunk: int,
 ) -> float:
-    """Return the processor time of a study of this number of rows, in chunks of so many [s]."""
+    """Return the processor time of a study of this number of rows, in chunks of a given size [s]."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace

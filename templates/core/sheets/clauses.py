@@ -84,7 +84,7 @@ def said_in(
     unit_text: str | None = None,
     accepted: str | None = None,
 ) -> Said:
-    """Read clauses; bounds need the unit of the declaration."""
+    """Return the contents of the clauses; bounds need the unit of the declaration."""
     said, keys = Said(), set[str]()
     for clause in clauses.children if clauses else ():
         if clause is not None:

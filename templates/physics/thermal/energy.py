@@ -225,7 +225,7 @@ class _System:
         self.right[self.groove] = self.fresh * heat.supply
 
     def _journal(self) -> None:
-        """Its temperature as given, or that without net heat."""
+        """Enter the equation of the journal: its temperature is given, or its net heat is zero."""
         if np.isfinite(self.heating.journal):
             self.add(self.journal, self.journal, 1.0)
             self.right[self.journal] = self.heating.journal
