@@ -140,7 +140,7 @@ class AssemblyModel(ImportedModel):
         return self._allows(one, other) or self._allows(other, one)
 
     def shaft(self) -> Shaft | None:
-        """Return None: finite elements take one solid, not an assembly."""
+        """Return None: the finite elements need one solid, not an assembly."""
         return None
 
     @classmethod

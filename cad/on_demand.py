@@ -38,7 +38,7 @@ def postpone() -> None:
 
 
 def is_loaded() -> bool:
-    """Return whether the kernel itself is imported, by whatever."""
+    """Return whether any module has imported the kernel itself."""
     return isinstance(sys.modules.get("OCP"), ModuleType) and not isinstance(sys.modules["OCP"], _Module)
 
 

@@ -190,8 +190,12 @@ def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
     """Return the inputs that the calculation used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
-        unit = {} if used.unit is None else {"unit": used.unit}
-        shown[name] = {"value": used.value, **unit, "from": used.source, **used.extra}
+        part: dict[str, object] = {"value": used.value, "unit": used.unit, "from": used.source}
+        if used.unit is None:
+            del part["unit"]
+        if used.extra:
+            part |= used.extra
+        shown[name] = part
     return shown
 
 

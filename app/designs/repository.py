@@ -333,7 +333,7 @@ class RegenerationState:
 
 
 def note_revision(session: Session, events: Events, design: str, revision: int, state: str) -> None:
-    """Record a new revision and its state as an event, in the unit that writes it."""
+    """Record a new revision and its state as an event, in the same unit of work."""
     topic, data = f"design:{design}", {"revision": revision}
     events.note(session, Event(topic, "revision", data), Event(topic, state, data))
 

@@ -40,7 +40,7 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
     """Return the stamp with the title-block entries of the approval, which change with every step.
 
-    After the submission the author keeps the name of that time, as in a report.
+    After the submission the author's name no longer changes, as in a report.
     """
     revision = repository.lean(session, model.design_id, model.number)
     of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number

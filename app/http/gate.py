@@ -1,16 +1,16 @@
-"""The gate: one layer that every request passes before its route is looked for.
+"""The gate: one layer that every request passes before the search for its route.
 
-It refuses what another site may have had a browser send (`guard`), what is too large or comes too slowly
-(`limits`), and a key that is not valid where keys are asked for (`access`). It answers in the application's
-stead where nothing else has answered: an unexpected error, and a request that the end of the service cancels.
-uvicorn cancels what is in flight at the end of the drain time; nothing else in the service cancels a request.
+It refuses requests that another site may have made a browser send (`guard`), requests that are too large or
+too slow (`limits`), and invalid keys where keys are required (`access`). It also answers unexpected errors,
+and requests that are cancelled when the service ends. Only uvicorn cancels requests: those that still run at
+the end of the drain time.
 """
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import cast
 
 from fastapi import FastAPI, Request, Response
 from fastapi.middleware.asyncexitstack import AsyncExitStackMiddleware
@@ -122,8 +122,8 @@ def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refu
     """
 
     def built() -> ASGIApp:
-        handlers: dict[Any, Any] = {**app.exception_handlers}
-        unexpected = handlers.pop(Exception, None)
+        handlers = {kind: one for kind, one in app.exception_handlers.items() if kind is not Exception}
+        unexpected = cast("Unexpected | None", app.exception_handlers.get(Exception))
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)

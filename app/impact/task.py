@@ -27,7 +27,7 @@ class DesignAt:
     settled: tuple[tuple[str, float], ...] = ()
 
     def read(self) -> Document:
-        """Return the document."""
+        """Return the document of the revision."""
         return Document.model_validate(from_json(self.document))
 
     def assumed(self) -> dict[Reference, float]:

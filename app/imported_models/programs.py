@@ -132,7 +132,7 @@ def values_of(shape: ImportedModel) -> Values:
 
 
 def assembled(settings: Settings, store: Artifacts) -> Programs:
-    """Return the programs that the settings name."""
+    """Return the CAD programs named in the settings."""
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
     by_name: dict[Program, Drawing] = {"freecad": freecad, "step": StepFiles(store)}

@@ -50,7 +50,7 @@ class Faults:
     def add_unnamed(
         self, files: Files, ages: Mapping[str, float], rows: Iterable[NamedFile], *, in_use: bool
     ) -> None:
-        """Add the unreferenced files, without those that a running service may just have stored."""
+        """Add the unreferenced files, except files that a running service may have stored a moment ago."""
         named, latest = {row.sha for row in rows}, time.time() - YOUNG if in_use else math.inf
         lying = sorted(sha for sha, age in ages.items() if sha not in named and age <= latest)
         self.unnamed |= {sha: files.place(sha) for sha in lying}

@@ -211,9 +211,9 @@ def announce(text: str) -> None:
 
 @contextmanager
 def stage(first: float, last: float, name: str) -> Iterator[None]:
-    """Let what is calculated here report its progress as a part of the whole, from `first` to `last`.
+    """Report the progress of the calculations in this block as a part of the whole, from `first` to `last`.
 
-    The name of the part stands before each text; none if it is empty.
+    Each text starts with the name of the part, if it has one.
     """
     caller = _caller.get()
     if caller is None or caller.report is None:

@@ -161,7 +161,7 @@ async def show_report(
 async def show_variants_report(
     id: Id, asked: TheReportRequest, number: Number | None = None, kind: Id | None = None
 ) -> Response:
-    """One report for all variants of a revision: the one that governs first, then the table of all.
+    """Return one report of all variants of a revision: the governing one first, then the table of all.
 
     The worksheet of the design itself follows once, with a picture of every distinct solid.
     """

@@ -113,7 +113,7 @@ def _quantity(
 
 
 def write_csv(table: Table) -> bytes:
-    """Return a row for each single value; arrays have a row for each of their values, with its index."""
+    """Return a row for each single value; an array has a row for each of its values, with the index."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerow(HEAD)

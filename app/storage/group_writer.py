@@ -249,7 +249,7 @@ class _PendingUnit:
             self.error = error
 
     def _run(self, session: Session) -> None:
-        """Run the unit in its session. To close one that was not used costs as much as two statements."""
+        """Run the unit in its session. Closing an unused session costs as much as two statements."""
         try:
             self._result = self._context.run(self._unit, session)
             if session.in_transaction():  # the ORM was used

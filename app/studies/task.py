@@ -74,7 +74,7 @@ class TaskState:
 
 
 def prepared(task: Task) -> TaskState:
-    """Return the design of a task as a function of rows, and what is asked of it.
+    """Return the design of a task as a function of rows, and the requested outputs.
 
     Raises
     ------

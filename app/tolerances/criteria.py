@@ -28,7 +28,7 @@ class CriterionVariable:
 
     @cached_property
     def judged(self) -> frozenset[Reference]:
-        """Return the values on the side that is held against the limit."""
+        """Return the values that are compared with the limit."""
         named = self.criterion.value.names
         return frozenset(of for name, of in self.subject.references.items() if name in named)
 

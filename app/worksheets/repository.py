@@ -93,7 +93,7 @@ def add(session: Session, row: Row) -> None:
 
 
 def save(session: Session, row: Row, **changes: object) -> Row:
-    """Change a version that is still as it was read: two servers on one database never both succeed.
+    """Change a version if it has not changed since it was read: of two servers, only one succeeds.
 
     Raises
     ------

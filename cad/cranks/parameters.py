@@ -145,7 +145,7 @@ class CrankParameters(CadModel):
 
     @formula("mm", "drilling mouth in the pin", name="pin_mouth", symbol="m_c")
     def m_c(self) -> Array:
-        """Half the length of the mouth along the pin, at most."""
+        """Largest half length of the mouth along the pin."""
         return self.d_o / 2 * np.sqrt(1 + self.k_o**2) + self.k_o * self.d_o**2 / (2 * self.D_c)
 
     @formula("mm", "drilling mouth in the journal", name="journal_mouth", symbol="m_j")

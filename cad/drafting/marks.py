@@ -106,7 +106,7 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 
 
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
-    """Yield the pitch circles through several circles about the shaft, with centre lines there."""
+    """Yield the pitch circles of holes around the shaft, with centre lines at the holes."""
     middles = _middles(view, plan)
     away = Counter(round(hypot(*middle), 3) for middle in middles)
     pitch = [size for size, count in away.items() if count > 2 and size > 0]

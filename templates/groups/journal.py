@@ -26,7 +26,7 @@ class Journal(Template):
 
     @formula("mm", "journal diameter")
     def d(self) -> Array:
-        """The bore less the clearance."""
+        """The bore minus the clearance."""
         return self.D - self.c
 
     @formula("1", "relative clearance", symbol=r"\psi", source=ISO)

@@ -162,7 +162,7 @@ class ThrustBearing(Oil):
 
     @shared
     def collar(self) -> Collar:
-        """The collar at work."""
+        """The collar at its operating point."""
         return Collar(
             load=self.p, taper=self.t, omega=self.omega, radius=self.D_m / 2, angle=self.phi,
             reach=self.reach + 0 * self.ratio, heat_capacity=self.rho_c, T_supply=self.T_s, carried=self.k,

@@ -28,7 +28,8 @@ def bearing(http):
 
 def read(http, design, kind="html", number=None, **query):
     part = f"/revisions/{number}" if number else ""
-    answer = http.get(f"{DESIGNS}/{design['id']}{part}/report.{kind}", params=query)
+    place = f"{DESIGNS}/{design['id']}{part}/report.{kind}"
+    answer = http.get(place, params=query, headers={"Prefer": "wait=60"})  # for its pictures to be drawn
     assert answer.status_code == 200, answer.text[:500]
     return answer
 

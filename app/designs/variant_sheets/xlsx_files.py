@@ -65,7 +65,7 @@ def read_xlsx(content: bytes) -> Grid:
 
 
 def _check_size(content: bytes) -> None:
-    """Refuse a file that would unpack to more than any table of variants needs.
+    """Refuse a file whose unpacked size exceeds that of any table of variants.
 
     `zipfile` never unpacks more of a part than the archive states, so the stated sizes can be added up.
     """

@@ -32,7 +32,7 @@ export function startDecide(api, patch) {
         if (estimate.expected > SHORT) return (button.textContent = `Decide, about ${seconds(estimate.expected)}`);
       }
       const payload = await asked(api, { budget: `${allowed} s` });
-      showVerdict(payload);
+      await showVerdict(payload);
       place.textContent = summary(payload);
       variants.replaceChildren(...(payload.variants ?? []).map(headline));
       allowed = null;

@@ -55,6 +55,6 @@ async def home(request: Request, services: ThePageServices, template: Search = "
 
 
 async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:
-    """Return a design's id, and the picture of the first of its parts, if it has one by now."""
+    """Return a design's id, and the picture of its first part if it already exists."""
     parts = await services.run(show_measurements, id, services.database)
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)

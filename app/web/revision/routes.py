@@ -43,7 +43,7 @@ async def revision_page(
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
-    """Show a stored revision, and how it differs from another: the one before, if none is named."""
+    """Return the page of a stored revision, with its differences from another, by default the previous."""
     design, revision = await asyncio.gather(
         services.run(services.designs.show, id), revision_of(request, services, id, number)
     )

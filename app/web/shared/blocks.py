@@ -43,10 +43,7 @@ class StepBlock:
 
     @property
     def main(self) -> list[str]:
-        """Return the results shown at once: all of a few.
-
-        Of many, those with a value that no formula uses.
-        """
+        """Return the results shown at once: all if they are few, else those that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}

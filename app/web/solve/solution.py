@@ -143,7 +143,7 @@ async def replied(answer: Awaitable[AnswerOrJob[Kind]]) -> Reply[Kind]:
     Raises
     ------
     Refused
-        For anything but a question that is wrong.
+        For any error except a faulty question.
     """
     try:
         answered = await answer

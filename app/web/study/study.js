@@ -3,13 +3,18 @@ import { call, units } from "../shared/api.js";
 import { plain, unit } from "../shared/numbers.js";
 import { drawParallel } from "./parallel.js";
 import { watched } from "../shared/progress.js";
+import { renewed } from "../shared/renewed.js";
 import { axisTitle, drawContour, drawHistogram, drawScatter, drawTornado } from "./study_charts.js";
 
 const MOST_DRAWN = 20000, PAGE = 500;
 
 followJob(document.querySelector("[data-progress]"));
-for (const place of document.querySelectorAll("[data-tornado]")) drawTornado(place, JSON.parse(place.dataset.tornado), place.dataset.words);
-startCharts(document.querySelector("[data-charts]"));
+showResults();
+
+function showResults() {
+  for (const place of document.querySelectorAll("[data-tornado]")) drawTornado(place, JSON.parse(place.dataset.tornado), place.dataset.words);
+  startCharts(document.querySelector("[data-charts]"));
+}
 
 async function followJob(place) {
   if (place.hidden || !place.dataset.job) return;
@@ -23,7 +28,8 @@ async function followJob(place) {
     }
     if (text) words.textContent = text;
   });
-  location.reload();
+  await renewed(words);
+  showResults();
 }
 
 async function startCharts(section) {

@@ -49,7 +49,7 @@ function show({ payload }) {
 }
 
 async function showCriteria({ verdict, criteria: judged = [] }) {
-  const drawn = judged.length ? await drawnVerdict({ verdict, criteria: judged }) : undefined;
+  const drawn = judged.length ? await drawnVerdict({ verdict, criteria: judged }).catch(refuse) : undefined;
   if (drawn === null) return;
   headline.textContent = verdict?.headline ?? "";
   criteria.replaceChildren(...(drawn ? [drawn.querySelector(".scroll")] : []));

@@ -19,7 +19,7 @@ export async function drawnVerdict({ verdict, criteria }) {
 // Show a verdict and its criteria; of a design without criteria nothing changes.
 export async function showVerdict({ verdict, criteria = [] }) {
   if (!verdict || criteria.length === 0) return;
-  const drawn = await drawnVerdict({ verdict, criteria });
+  const drawn = await drawnVerdict({ verdict, criteria }).catch(refuse);
   if (!drawn) return;
   const banner = drawn.querySelector("[data-tone]"), all = banner.querySelector("[data-all-criteria]");
   place.classList.remove("green", "bad", "open", "plain");
@@ -32,6 +32,12 @@ export async function showVerdict({ verdict, criteria = [] }) {
     const worst = drawn.querySelector(`[data-fold-verdict="${CSS.escape(line.dataset.foldVerdict)}"]`);
     line.replaceChildren(...(worst?.childNodes ?? []));
   }
+}
+
+// What stood there before is no longer so.
+function refuse(error) {
+  place.classList.remove("green", "bad", "open", "plain");
+  place.querySelector("[data-verdict-inside]").textContent = `The verdict could not be fetched: ${error.message}`;
 }
 
 // The key results of a step in its fold line.

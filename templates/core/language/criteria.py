@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, reduce
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,8 @@ class EvaluatedValues:
         Relative, as `Evaluation.error`; `measured` is the table behind them.
     is_joined
         Whether the answers come from several instances.
+    computed
+        The names of outputs that have to be computed here: not those that were given.
     """
 
     template: Template
@@ -52,16 +54,15 @@ class EvaluatedValues:
     shown_in: Mapping[str, Unit] = field(default_factory=dict)
     level: Any = None
     is_joined: bool = False
+    computed: frozenset[str] = field(init=False)
     estimates: dict[str, Estimate | Absent] = field(default_factory=dict, init=False)  # those wanted so far
 
-    @cached_property
-    def computed(self) -> frozenset[str]:
-        """Return the names of outputs that have to be computed here: not those that were given."""
-        template = self.template
-        if template.ledger.handed.isdisjoint(template._results):
-            return template._result_names
-        handed = template.ledger.handed
-        return frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
+    def __post_init__(self) -> None:
+        handed, template = self.template.ledger.handed, self.template
+        if handed.isdisjoint(template._results):
+            self.computed = template._result_names
+        else:
+            self.computed = frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
 
     def value(self, name: str) -> Value:
         """Return the SI value of an output that exists; NaN in an array where there is none."""

@@ -417,11 +417,11 @@ def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[s
 
 def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> Iterator[Assumption]:
     """Yield the limits that a template provides where the user has given none."""
-    declared = {one.name: one.require for one in cls.declared_criteria}
     open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
-    judged = {one.sides[0] for one in criteria if one.verdict != "not_checked" and not one.has_fixed_limit}
-    for one in criteria:
+    checked = [one for one in criteria if one.verdict != "not_checked"] if open_values else []
+    open_values.difference_update([one.sides[0] for one in checked if not one.has_fixed_limit])
+    declared = {(one.name, one.require) for one in cls.declared_criteria} if open_values and checked else ()
+    for one in checked:
         value, limit = one.sides
-        is_default = _AMOUNT.fullmatch(limit) is not None and declared.get(one.name) == one.require
-        if is_default and one.verdict != "not_checked" and value in open_values - judged:
+        if value in open_values and _AMOUNT.fullmatch(limit) and (one.name, one.require) in declared:
             yield Assumption(one.name, f"the limit of {value.replace('_', ' ')} is {limit}, a default")

@@ -189,7 +189,8 @@ def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
-        missing.discard(declared.attribute)
+        if missing:
+            missing.discard(declared.attribute)
     return Plain(typed, values, missing)
 
 

@@ -19,6 +19,5 @@ DETAIL = (
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
     """Yield a warning for every quantity, as typed or as read, that has a tolerance."""
     for name, value in given.items():
-        has_one = value.tolerance is not None if isinstance(value, TypedQuantity) else is_toleranced(value)
-        if has_one:
+        if value.tolerance if isinstance(value, TypedQuantity) else is_toleranced(value):
             yield Notice(UNUSED, name, DETAIL)

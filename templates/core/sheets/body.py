@@ -75,7 +75,7 @@ class TreeBody(Body):
         return value
 
     def seconds(self, points: int) -> float:
-        """Return the time that its operations take at a number of points, an order of magnitude [s]."""
+        """Return the approximate time of its operations at a number of points [s]."""
         return operations_seconds(self._operations, points)
 
     @cached_property

@@ -104,7 +104,7 @@ class Relation:
     def misfit(self, kinds: Mapping[str, Kind], declared: str) -> str:
         """Return why the value does not fit the declared unit, and a remedy; empty if it fits.
 
-        The text follows the name of what is declared and its unit: `, but this gives a length`.
+        The text follows the declared name and its unit: `, but this gives a length`.
 
         Raises
         ------

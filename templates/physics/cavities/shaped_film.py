@@ -101,7 +101,7 @@ class ShapedFilm:
 
     @cached_property
     def peak(self) -> tuple[float, float]:
-        """Return the largest pressure, and its angle from the load [rad], by a parabola around."""
+        """Return the largest pressure, and its angle from the load [rad], by a parabola around the circle."""
         i, j = np.unravel_index(self.P.argmax(), self.P.shape)
         n = self.nodes.shape[0]
         phi, column = self.nodes.phi[:-1], self.P[:, j]

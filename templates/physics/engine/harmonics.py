@@ -47,7 +47,7 @@ class Harmonics:
 
     @cached_property
     def there(self) -> Phasor:
-        """Return the vector where it is largest."""
+        """Return the vector at its largest size."""
         turn = np.exp(1j * self.largest_at)
         return self.forward * turn + self.backward / turn
 

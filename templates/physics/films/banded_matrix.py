@@ -115,7 +115,7 @@ class IncrementalSolver:
         self._film = film
 
     def _brought(self, start: int, band: int) -> Array:
-        """Return the reduction of the trailing block by earlier factors, (band, band)."""
+        """Return the reduction of the trailing block by the earlier factors, (band, band)."""
         column, row = _lower(band)
         beside = np.zeros((band, band))
         beside[row, column] = self._factors[row - column + band, start - band + column]

@@ -94,7 +94,7 @@ def rupture_angle(field: Field) -> Array:
 
 
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
-    """Return the place and height of the largest pressure, by a parabola through the three nodes about it."""
+    """Return the place and value of the largest pressure, by a parabola through the three nodes around it."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
     before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
     slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after

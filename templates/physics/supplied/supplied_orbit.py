@@ -281,7 +281,7 @@ def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
 
 
 def return_error(duty: Duty) -> float:
-    """Return by how much a pocket misses its place in the frame after a cycle, at most [rad]."""
+    """Return the largest distance of a pocket from its start position after a cycle [rad]."""
     mean, half = duty.mesh_turning.of_cycle, duty.journal_turning.of_cycle
     turns = [
         mean + half if p.on_journal else mean - half for p in duty.supply.pockets if p.half_angle < np.pi

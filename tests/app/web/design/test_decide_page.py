@@ -2,6 +2,7 @@
 
 import pytest
 from browsing import CHROMIUM
+from patience import patient
 from playwright.sync_api import expect
 from serving import API
 
@@ -73,3 +74,33 @@ def test_a_limit_that_is_missing_is_given_in_its_field(watched, undecided, http)
     expect(page.locator(".page-head")).to_contain_text("revision 2")
     limits = http.get(f"{API}{undecided}").json()["steps"]["film"]["limits"]
     assert limits == {"permissible_film": "1 um", "bearing_material": "tin_bronze"}
+
+
+@pytest.mark.slow
+def test_what_takes_long_states_its_cost_first_and_decides_every_variant(watched, http):
+    """No mobility level states an error of the pressure; level supplied does, in a second or so a bearing."""
+    inputs = http.get(f"{API}/templates/oil_film_cycle/versions/1").json()["example"]
+    step = {"template": "oil_film_cycle", "version": 1, "level": "mobility_grooved", "inputs": inputs}
+    criteria = {"own": {"require": "film.maximum_pressure <= 200 MPa"}}
+    variants = {
+        name: {"film.bearing_width": width} for name, width in (("main_1", "17 mm"), ("main_2", "19 mm"))
+    }
+    document = {"name": "bearings", "steps": {"film": step}, "criteria": criteria, "variants": variants}
+    design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()["id"]
+    page = watched.page
+    watched.open(f"/designs/{design}")
+    page.locator("[data-all-criteria] summary").click()
+    own = page.locator('[data-criterion="own"] .tag')
+    expect(own).to_have_text("met; error unknown")
+    page.get_by_role("button", name="Decide", exact=True).click()
+    told = page.locator("[data-decided]")
+    expect(told).to_contain_text("First film at level supplied (3 times): about", timeout=patient(60_000))
+    expect(told).to_contain_text("No level begins after")
+    expect(own).to_have_text("met; error unknown")
+    page.get_by_role("button", name="Decide, about").click()
+    expect(told).to_contain_text("Nothing was saved", timeout=patient(120_000))
+    expect(own).to_have_text("met")
+    headlines = page.locator("[data-decided-variants] li")
+    expect(headlines).to_have_count(2)
+    expect(headlines.first).to_contain_text("main_1: ")
+    assert watched.faults() == []

@@ -5,6 +5,7 @@ import re
 import pytest
 from bare_shells import BUSH
 from browsing import from_example
+from openpyxl import Workbook
 from playwright.sync_api import expect
 from serving import API
 
@@ -53,6 +54,36 @@ def test_a_file_is_read_as_a_spreadsheet_saved_it(watched, tmp_path, encoding):
     dialog.get_by_role("button", name="Take over 2 rows").click()
     expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2] kN")
     expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] °")
+
+
+@pytest.mark.slow
+def test_a_workbook_is_chosen_as_a_file(watched, tmp_path):
+    """An XLSX file is read like a pasted table; one without numbers is refused, and nothing is filled in."""
+    page, file, empty = watched.page, tmp_path / "loads.xlsx", tmp_path / "empty.xlsx"
+    rows = [("crank angle", "Fx", "load y"), ("deg", "kN", "kN"), (0, 1.5, 0.5), (90, -2.5, 0.25)]
+    for path, lines in ((file, rows), (empty, rows[:1])):
+        workbook = Workbook()
+        for line in lines:
+            workbook.active.append(line)
+        workbook.save(path)
+    watched.open("/templates/oil_film_cycle/1")
+    before = page.locator("[id='-load_x']").input_value()
+    page.get_by_role("button", name="Paste a table into load x").click()
+    dialog = page.get_by_role("dialog", name="Paste a table")
+    chosen = dialog.get_by_label("or a file")
+    assert ".xlsx" in chosen.get_attribute("accept")
+    chosen.set_input_files(empty)
+    expect(dialog.get_by_role("alert")).to_be_visible()
+    expect(dialog.get_by_role("button", name="Take over")).to_be_disabled()
+    assert page.locator("[id='-load_x']").input_value() == before
+    chosen.set_input_files(file)
+    expect(dialog.locator("tbody tr").first).to_contain_text("1.5")
+    dialog.get_by_role("button", name="Take over 2 rows").click()
+    expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] deg")
+    expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2.5] kN")
+    expect(page.locator("[id='-load_y']")).to_have_value("[0.5, 0.25] kN")
+    refused = [fault for fault in watched.faults() if "/tables" not in str(fault) and "422" not in str(fault)]
+    assert refused == []
 
 
 @pytest.mark.slow

@@ -116,7 +116,7 @@ TYPED = {
 
 def test_the_browser_makes_the_same_patch_as_the_server(watched):
     design = SimpleNamespace(parameters={"scale"}, steps={"film"}, models={"model"})
-    watched.open("/")
+    watched.open("/worksheets/new")  # a page that draws no pictures of designs
     script = (
         "async ([typed, models]) => (await import('/static/shared/typed.js')).patchOf(typed, new Set(models))"
     )

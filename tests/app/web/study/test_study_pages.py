@@ -34,6 +34,30 @@ def grid(http, bearing):
     return f"/studies/{study}", bearing
 
 
+@pytest.mark.slow
+def test_a_study_that_ends_shows_its_results_without_a_reload(watched, http, bearing):
+    """A mark in the page is lost if it is loaded again; badge, rows and charts come as the job ends."""
+    id = bearing.rpartition("/")[2]
+    change = {"steps": {"film": {"level": "reynolds"}}}
+    http.patch(f"{API}/designs/{id}", json=change, headers={"If-Match": "*"}).raise_for_status()
+    vary = {CLEARANCE: {"between": ["30 um", "90 um"]}, WIDTH: {"between": ["18 mm", "26 mm"]}}
+    body = {"design": id, "method": "sample", "points": 600, "vary": vary}
+    body |= {"outputs": [FILM], "hold": ["thick_enough"]}
+    study = http.post(f"{API}/studies", json=body).json()["id"]
+    page = watched.page
+    watched.open(f"/studies/{study}")
+    badge = page.locator("[data-study-state]")
+    assert badge.inner_text() in ("queued", "running")
+    page.evaluate("() => { window.isKept = true; }")
+    expect(badge).to_have_text("done", timeout=patient(120_000))
+    expect(page.locator("[data-progress]")).to_be_hidden()
+    expect(page.locator(".page-head")).to_contain_text("600 of 600 rows")
+    expect(page.locator("table.rows tbody tr")).to_have_count(20)
+    expect(page.locator("[data-charts]")).to_be_visible(timeout=patient(60_000))
+    assert page.evaluate("() => window.isKept")
+    assert watched.faults() == []
+
+
 def test_a_refused_form_keeps_what_was_typed_and_names_the_fault(http, bearing):
     typed = {"method": "grid", "place.0": CLEARANCE, "low.0": "30 kN", "high.0": "60 um", "steps.0": "7"}
     typed[f"outputs.{FILM}"] = "on"
