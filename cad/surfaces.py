@@ -148,6 +148,8 @@ class Surface:
         Of a torus: the radius of the circle on which the middle of its tube runs [mm].
     face
         The part and the number of its face.
+    middle
+        Of a plane: the centre of area of its face.
     """
 
     point: Vector
@@ -156,6 +158,7 @@ class Surface:
     reach: tuple[float, float] = (0.0, 0.0)
     about_radius: float = 0.0
     face: Face = field(default=("", -1), compare=False)
+    middle: Vector | None = field(default=None, compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is that of the axis, either way round."""
@@ -209,12 +212,15 @@ class PartSurfaces:
         levels = self.levels(axis)
         return self.apart(axis, levels[first], levels[last])
 
-    def apart(self, axis: Vector, low: float, high: float) -> float:
+    def apart(self, axis: Vector, low: float, high: float, near: Vector | None = None) -> float:
         """Return the distance between the planes across the axis at two coordinates [mm].
 
-        It is a plain number where one of them has no plane.
+        It is a plain number where one of them has no plane. With `near`, a point, only the nearest plane at
+        each coordinate is meant.
         """
         first, second = self.planes_at(axis, low), self.planes_at(axis, high)
+        if near is not None:
+            first, second = (sorted(some, key=lambda p: _distance(p, near))[:1] for some in (first, second))
         return Size.distance(high - low, first, second) if first and second else high - low
 
     def length(self, axis: Vector) -> float:
@@ -228,7 +234,8 @@ class PartSurfaces:
         beyond = [
             cone
             for cone in cones
-            if any(
+            if abs(cone.diameter - ring[0].diameter) / 2 < value
+            and any(
                 abs(abs(cone.diameter - ring[0].diameter) / 2 - away) < _COINCIDENT
                 for away in (sum(cone.reach) / 2 - high, low - sum(cone.reach) / 2)
             )
@@ -257,7 +264,8 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
         adaptor = BRepAdaptor_Surface(face.wrapped)
         kind = adaptor.GetType()
         if read := _READERS.get(kind):
-            of[kind].append(replace(read(adaptor), face=(part, number)))
+            middle = face.Center() if kind == _Kind.GeomAbs_Plane else None
+            of[kind].append(replace(read(adaptor), face=(part, number), middle=middle))
     return PartSurfaces(
         count,
         planes=tuple(of[_Kind.GeomAbs_Plane]),
@@ -308,6 +316,11 @@ _READERS = constant(
         _Kind.GeomAbs_Cone: _cone,
     }
 )
+
+
+def _distance(plane: Surface, point: Vector) -> float:
+    """Return the distance of the middle of a plane from a point [mm]."""
+    return float((plane.middle - point).Length) if plane.middle is not None else 0.0
 
 
 def _distinct(values: Iterable[float]) -> list[float]:

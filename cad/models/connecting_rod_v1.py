@@ -287,7 +287,7 @@ class ConnectingRod(CadModel):
         thick = along[1 if has_pockets else 0]
         sizes: dict[str, float] = {
             "big_end_bore": Size.diameter(bore),
-            "big_end_width": rod.apart(Z, *bore[0].reach),
+            "big_end_width": rod.apart(Z, *bore[0].reach, bore[0].point),
             "big_end_breadth": rod.length(X),
             "shoulder_height": Size.distance(shoulder, bore, rod.planes_at(Y, shoulder)),
             "cap_height": cap.length(Y),
@@ -295,7 +295,7 @@ class ConnectingRod(CadModel):
             "centre_distance": Size.distance(eyes[0].point.y, bore, small),
             "small_end_bore": Size.diameter(small),
             "small_end_diameter": Size.diameter(ring),
-            "small_end_width": rod.apart(Z, *small[0].reach),
+            "small_end_width": rod.apart(Z, *small[0].reach, small[0].point),
             "shank_width": rod.between(X, 1, -2),
             "shank_thickness": rod.apart(Z, -thick, thick),
             "pocket_width": rod.between(X, 2, -3) if has_pockets else 0.0,

@@ -347,7 +347,9 @@ class ThrustWasher(CadModel):
         }
         if len(levels) == 3:
             floors = [p for p in washer.planes if p.along(Z) and abs(p.point.z - levels[1]) < 1e-6]
-            sides = [p for p in washer.planes if not p.along(Z)]
+            within = (levels[1] + levels[2]) / 2
+            upright = [p for p in washer.planes if not p.along(Z) and p.middle is not None]
+            sides = [p for p in upright if p.middle and abs(p.middle.z - within) < 1e-6]
             width = nearest((2 * abs(p.point.dot(p.direction)) for p in sides), 2 * wanted.half_groove)
             faces = [p for p in sides if abs(2 * abs(p.point.dot(p.direction)) - width) < 1e-6]
             sizes["oil_grooves"] = float(len(floors))
@@ -356,8 +358,7 @@ class ThrustWasher(CadModel):
         if pins:
             sizes["pin_circle_diameter"] = Size.circle(pins)
         if wanted.half_lug > 0:
-            half = nearest((abs(x) for x in washer.levels(X)), wanted.half_lug)
-            sizes["lug_width"] = washer.apart(X, -half, half)
-            top = washer.levels(Y)[-1]
+            half, top = nearest((abs(x) for x in washer.levels(X)), wanted.half_lug), washer.levels(Y)[-1]
+            sizes["lug_width"] = washer.apart(X, -half, half, Vector(0, top, 0))
             sizes["lug_height"] = Size.distance(top - about[-1] / 2, outside, washer.planes_at(Y, top))
         return sizes

@@ -154,7 +154,10 @@ class ShellReadback:
         levels, upright = self.back.levels(Z), [p for p in self.back.planes if not p.along(Z)]
         low, high = (nearest(levels, tang.z + side * tang.width / 2) for side in (-1, 1))
         end, height = tang.length, self.wanted.outside + tang.height
-        length, top = (_nearest_planes(upright, away) for away in (end, height))
+        lip = [p for p in upright if p.middle is not None and hypot(p.middle.x, p.middle.y) > self.outside]
+        crown = sum(p.middle.y for p in upright if p.middle is not None)
+        above = [p for p in lip if p.middle is not None and p.middle.y * crown > 0]
+        length, top = _nearest_planes(above, end), _nearest_planes(lip, height)
         joint = _nearest_planes(upright, 0.0)
         return {
             "tang_width": self.back.apart(Z, low, high),
