@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from math import atan2, degrees, hypot, pi, radians, remainder
 
 from cadquery import Vector
@@ -102,21 +102,25 @@ class ShaftReadback:
 
     def common(self) -> dict[str, float]:
         """Return the dimensions that all throws share."""
-        throws, apart = self.throws, partial(self.seen.apart, Z)
+        throws = self.throws
         pins = [pin for throw in throws for pin in throw.pins]
         reach = alike((hypot(pin.point.x, pin.point.y) for pin in pins), "throws")
         return {
             **self._journals(),
             "pin_diameter": Size.diameter(pins),
-            "pin_length": Size.repeated((apart(*span) for t in throws for span in t.pin_spans), "pins"),
+            "pin_length": Size.repeated((self._apart(*span) for t in throws for span in t.pin_spans), "pins"),
             "throw": Size.distance(reach, self._journal_surfaces(), pins),
             "pin_bore": self._diameter(self._pin_bores, "pin bores"),
-            "web_thickness": Size.repeated((apart(*web) for t in throws for web in t.webs), "webs"),
+            "web_thickness": Size.repeated((self._apart(*web) for t in throws for web in t.webs), "webs"),
             "web_width": self.web_width,
             "fillet": self._fillet(),
             "oil_drilling_diameter": self._drilling(),
             "face_inclination": self._inclination(),
         }
+
+    def _apart(self, low: float, high: float) -> float:
+        """Return the distance between the planes at two positions along the shaft [mm]."""
+        return self.seen.apart(Z, low, high)
 
     def _journal_surfaces(self) -> list[Surface]:
         """Return the cylinders of the main journals, from front to rear.

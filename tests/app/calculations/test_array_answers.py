@@ -79,7 +79,7 @@ def test_outputs_of_two_shapes_are_refused_by_name():
 
 
 def test_a_text_is_refused_by_name():
-    with pytest.raises(NoArray, match="layout is a text"):
+    with pytest.raises(NoArray, match="layout is text"):
         npy(SimpleNamespace(outputs={"layout": Answer("in-line", None)}))
 
 
