@@ -148,7 +148,9 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
 def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
     """Compare every parameter that the solid shows with the requested value; return them by API name.
 
-    For a list each item is compared; a single number applies to all items. Raises
+    For a list each item is compared; a single number applies to all items.
+
+    Raises
     ------
     GeometryError
         `dimension`, naming the parameters that are not as requested.

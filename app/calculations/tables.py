@@ -178,8 +178,11 @@ def table_of(
     is_sheet
         Whether a spreadsheet wrote the numbers, so that their decimal mark was not typed.
 
-    Raises ------ InvalidInputs Naming every cell that is wrong by its row and column, up to `most_faults`;
-    the last fault states how many more there are.
+    Raises
+    ------
+    InvalidInputs
+        Naming every cell that is wrong by its row and column, up to `most_faults`; the last fault states how
+        many more there are.
     """
     lines, is_comma, assumed = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)

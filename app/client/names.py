@@ -31,7 +31,7 @@ def checked_name(name: str | None) -> str:
     name = user_at_host() if name is None else name
     if not _NAME.fullmatch(name):
         raise ValueError(
-            f"{name[:110]!r} is not a client's name: use 1 to 100 printable ASCII characters, such as "
+            f"{name[:110]!r} is not a valid client name: use 1 to 100 printable ASCII characters, such as "
             "design-office-7"
         )
     return name

@@ -346,7 +346,7 @@ def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[F
 
 
 def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[str, Demand], list[Fault]]:
-    """Return the criteria of a network with their units checked, from the kinds of its parameters."""
+    """Check the units of criteria against the kinds of parameters; return the criteria and the faults."""
     demands: dict[str, Demand] = {}
     faults: list[Fault] = []
     for name, demand in network.demands.items():

@@ -139,8 +139,11 @@ class DifferenceRows:
     def items(self) -> Iterator[Sensitivity]:
         """Yield the sensitivity to each place, in the order of the places.
 
-        Raises ------ InvalidInputs If the design cannot be calculated for rows, if that would take too long,
-        or if the value is missing or not a single number.
+        Raises
+        ------
+        InvalidInputs
+            If the design cannot be calculated for rows, if that would take too long, or if the value is
+            missing or not a single number.
         """
         table = self._table()
         value, margin = self.asked.columns(table)

@@ -97,8 +97,13 @@ def head(session: Session) -> Link:
 def verify(session: Session, exported: str | None = None) -> ChainCheck:
     """Verify the chain up to its first broken row, or to its end.
 
-    Parameters ---------- session A snapshot of the database. exported A hash that was recorded earlier, which
-    must be that of a row: a chain that was truncated or completely rewritten is consistent in itself.
+    Parameters
+    ----------
+    session
+        A snapshot of the database.
+    exported
+        A hash that was recorded earlier, which must match a row: a chain that was truncated or completely
+        rewritten is consistent in itself.
     """
     unsealed = session.scalar(select(func.count()).where(AuditRow.seq.is_(None))) or 0
     last, met = START, exported is None

@@ -137,8 +137,11 @@ class Identity:
         A principal creates keys for itself with at most the roles and the life of its present key; an
         administrator creates keys for others.
 
-        Raises ------ NotFound, NotOwn, RoleNeeded, Outlives If there is no such principal, it is another one,
-        a scope is not allowed, or the key would be valid for too long.
+        Raises
+        ------
+        NotFound, NotOwn, RoleNeeded, Outlives
+            If there is no such principal, it is another one, a scope is not allowed, or the key would be
+            valid for too long.
         """
         new = new_key()
 
@@ -188,10 +191,10 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """Revoke a key, optionally of one principal; a revoked key stays unchanged.
+        """Revoke a key, optionally of one principal; an already revoked key stays unchanged.
 
-        The keys that its principal created with it end as well, except the one that revokes it: so a user can
-        change to a successor. The result lists the key first, then those others.
+        It also revokes the keys that were created with this key, except the one that makes the request: so a
+        user can change to a successor. The result lists the key first, then those others.
 
         Raises
         ------

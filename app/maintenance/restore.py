@@ -53,8 +53,11 @@ class RestoreResult:
 def restore(archive: Path, data: Path, say: Say) -> RestoreResult:
     """Restore a backup into an empty or absent folder.
 
-    Raises ------ CannotRun If the folder is in use, or the archive is damaged, incomplete, newer than this
-    program, or not a backup of it.
+    Raises
+    ------
+    CannotRun
+        If the folder is in use, or the archive is damaged, incomplete, newer than this program, or not a
+        backup of it.
     """
     if not archive.is_file():
         raise CannotRun(f"There is no backup {archive}.")

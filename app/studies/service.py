@@ -151,7 +151,7 @@ class Studies:
     def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision of the design with the values of a row.
 
-        Its note names the relations they replace.
+        The revision's note lists the relations that these values replace.
 
         Raises
         ------
@@ -203,7 +203,7 @@ class Studies:
     def end(self, id: str, client: str | None = None) -> StudyRow | None:
         """Cancel a study that waits or runs, and return it; remove one that has ended, and return None.
 
-        A client cancels its own alone, unless an administrator acts; ended ones belong to the team.
+        A client may cancel only its own studies, an administrator any; ended ones belong to the team.
 
         Raises
         ------

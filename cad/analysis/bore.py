@@ -89,7 +89,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
         face.name = _name(face, place)
     for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):
         if not any(face.name == name for face in half.faces):
-            raise AnalysisError("no_bore", f"the solid has no {words} where the model says")
+            raise AnalysisError("no_bore", f"the solid has no {words} where the model specifies one")
     return BoredSolid(half, place)
 
 

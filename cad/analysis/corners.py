@@ -67,7 +67,7 @@ def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, floa
 
 
 def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
-    """Return the radius [mm] of the edge at each piece, from its length and its turn."""
+    """Return the radius [mm] of the edge at each piece, from lengths and the angles between neighbours."""
     met = defaultdict(list)
     for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
         for side in (0, 1):

@@ -190,8 +190,11 @@ class Calculation:
         An example is `throw.torsion.stiffness`. The value is a number, an array [row, column] for a table, or
         an array for a list.
 
-        Raises ------ FaultyText With code `no_value`, if an analysis has a reason instead of a value, or a
-        build lacks the measurement.
+        Raises
+        ------
+        FaultyText
+            With code `no_value`, if an analysis has a reason instead of a value, or a build lacks the
+            measurement.
         """
         scale = unit(measured_unit(reference))
         if reference.analysis is None:

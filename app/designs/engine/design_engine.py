@@ -73,13 +73,25 @@ class DesignEngine:
     ) -> DesignEngine:
         """Return a design whose places `varied` differ from row to row.
 
-        Parameters ---------- document The design. catalogues Its templates and models. varied Parameters,
-        inputs of steps, parameters of models. A measurement of a solid may be among them, if the rows provide
-        it. wanted The values that will be requested; if given, other parts of the design are not checked.
-        criteria The criteria that will be judged, besides the requested values. measured Known measurements
-        of solids, including those of iterations [SI]. pending Whether values that depend on a missing solid
-        are NaN instead of being refused. set_aside Varied places that a relation sets in the document: the
-        rows replace it.
+        Parameters
+        ----------
+        document
+            The design.
+        catalogues
+            Its templates and models.
+        varied
+            Parameters, inputs of steps, parameters of models. A measurement of a solid may be among them, if
+            the rows provide it.
+        wanted
+            The values that will be requested; if given, other parts of the design are not checked.
+        criteria
+            The criteria that will be judged, besides the requested values.
+        measured
+            Known measurements of solids, including those of iterations [SI].
+        pending
+            Whether values that depend on a missing solid are NaN instead of being refused.
+        set_aside
+            Varied places that a relation sets in the document: the rows replace it.
 
         Raises
         ------
@@ -118,12 +130,23 @@ class DesignEngine:
     ) -> Table:
         """Return the requested values of all rows, and the verdicts of criteria.
 
-        Parameters ---------- rows A column for every varied place. wanted Parameters, inputs and outputs of
-        steps, parameters of models, known measurements. levels Levels by step; an unnamed step uses the level
-        or tolerance of the design, else the starting level of its template. judge Whether criteria are judged
-        with all numbers; all criteria, unless some are named. Errors are propagated through relations at both
-        ends, as in a single design. criteria The criteria whose verdicts are requested. chunk The largest
-        number of rows in one array call; fewer if curves or a level require it (`rows_at_once`).
+        Parameters
+        ----------
+        rows
+            A column for every varied place.
+        wanted
+            Parameters, inputs and outputs of steps, parameters of models, known measurements.
+        levels
+            Levels by step; an unnamed step uses the level or tolerance of the design, else the starting level
+            of its template.
+        judge
+            Whether criteria are judged with all numbers; all criteria, unless some are named. Errors are
+            propagated through relations at both ends, as in a single design.
+        criteria
+            The criteria whose verdicts are requested.
+        chunk
+            The largest number of rows in one array call; fewer if curves or a level require it
+            (`rows_at_once`).
 
         Raises
         ------

@@ -104,8 +104,13 @@ class FileRequest:
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
         """Return a file of the model that `find` finds, of the kind in the path or the preferred kind.
 
-        Raises ------ NotFound If there is no such kind, or no such model. InvalidInputs If the deflection is
-        not a length, the kind has no facets or no title block, or a typed text contradicts the approval.
+        Raises
+        ------
+        NotFound
+            If there is no such kind, or no such model.
+        InvalidInputs
+            If the deflection is not a length, the kind has no facets or no title block, or a typed text
+            contradicts the approval.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE

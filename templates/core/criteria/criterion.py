@@ -215,8 +215,11 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription])
 def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     """Return the two sides of a comparison and its sign.
 
-    Raises ------ FaultyText With code `syntax` without exactly one `>=` or `<=`; with `index`, `no_truth` or
-    `shape` if a side contains an item, a condition or a list; or as raised by `parse`.
+    Raises
+    ------
+    FaultyText
+        With code `syntax` without exactly one `>=` or `<=`; with `index`, `no_truth` or `shape` if a side
+        contains an item, a condition or a list; or as raised by `parse`.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
         raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")

@@ -1,9 +1,9 @@
-"""One journal bearing under static load in a bore of known compliance, beside `elastic_journal`.
+"""One journal bearing under static load in a bore of known compliance; it complements `elastic_journal`.
 
     elastic    the liner as columns, and behind it the bore as a matrix of modes with a half plane above them
 
 As at the other soft levels, the change from stiff to soft is solved on 64 × 8 and 128 × 16 intervals,
-extrapolated, and applied to the film of the map. A rigid bore has that film exactly.
+extrapolated, and applied to the film of the map. A rigid bore reproduces the map's film exactly.
 """
 
 from __future__ import annotations

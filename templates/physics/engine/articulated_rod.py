@@ -10,8 +10,10 @@ The rod's force F on its pin exerts a moment on the master rod, which the master
 with N = −Im((Q−P)* F)/(l cos φ), P the crankpin, the load on the crankpin increases by F + iN, and that on
 the wall by −N.
 
-References ---------- The formulas follow from geometry; the energy checks them: torque + dE/d(alpha) = 0 with
-E of the rigid bodies.
+References
+----------
+The formulas follow from geometry; an energy balance checks them: torque + dE/d(alpha) = 0 with E, the kinetic
+energy of the rigid bodies.
 """
 
 from __future__ import annotations

@@ -11,8 +11,10 @@ Otto has cutoff 1, and Diesel burns at the final compression pressure; both have
 dead centres. In two-stroke engines the charge changes at bottom dead centre. Polytropes need absolute
 pressures.
 
-References ---------- S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, names the parameters
-of the practical cycle, but not the pressure while valves open and overlap, which is defined above.
+References
+----------
+S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, names the parameters of the practical
+    cycle, but not the pressure while valves open and overlap, which is defined above.
 """
 
 from __future__ import annotations

@@ -5,8 +5,10 @@ crankpin moves first. The axis is offset by `e` towards y; an offset piston pin 
 alpha is measured from x, and the rod's angle phi has sin(phi) = (r sin(alpha) − e)/l. Primes are derivatives
 by alpha.
 
-References ---------- The formulas follow from geometry; the energy checks them: torque + dE/d(alpha) = 0 with
-E of the rigid bodies.
+References
+----------
+The formulas follow from geometry; an energy balance checks them: torque + dE/d(alpha) = 0 with E, the kinetic
+energy of the rigid bodies.
 """
 
 from __future__ import annotations

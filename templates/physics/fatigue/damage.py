@@ -1,10 +1,13 @@
 r"""Damage of counted cycles: equivalent reversed amplitudes, Miner's sum, the governing point.
 
-References ---------- A. Palmgren 1924, M. A. Miner: Cumulative damage in fatigue. J. Appl. Mech. 12, 1945. E.
-Haibach: Betriebsfestigkeit, 3rd ed. 2006: below the endurance limit the line continues with the slope 2 k -
-1. J. Goodman 1899, W. Gerber 1874, J. Morrow (SAE Fatigue Design Handbook) 1968 for the mean stress. R. G.
-Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 10th ed. 2015: a compressive mean stress is
-ignored.
+References
+----------
+A. Palmgren 1924, M. A. Miner: Cumulative damage in fatigue. J. Appl. Mech. 12, 1945.
+E. Haibach: Betriebsfestigkeit, 3rd ed. 2006: below the endurance limit the line continues with the slope
+    2 k - 1.
+J. Goodman 1899, W. Gerber 1874, J. Morrow (SAE Fatigue Design Handbook) 1968 for the mean stress.
+R. G. Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 10th ed. 2015: a compressive mean
+    stress is ignored.
 """
 
 from __future__ import annotations

@@ -3,9 +3,11 @@
 For a step between two coaxial round sections. The fillet between a crank's pin and web has a different shape:
 use finite elements or a measured factor where it matters.
 
-References ---------- W. D. Pilkey, D. F. Pilkey: Peterson's Stress Concentration Factors, 3rd ed. 2008,
-charts 3.10 (bending) and 3.12 (torsion): polynomials in 2 t/D with coefficients in t/r, where t = (D - d)/2
-is the height of the shoulder.
+References
+----------
+W. D. Pilkey, D. F. Pilkey: Peterson's Stress Concentration Factors, 3rd ed. 2008, charts 3.10 (bending) and
+    3.12 (torsion): polynomials in 2 t/D with coefficients in t/r, where t = (D - d)/2 is the height of the
+    shoulder.
 """
 
 from __future__ import annotations
