@@ -46,6 +46,7 @@ GROWING = {
     "Expressions",
     "Lists",
     "CreoSession",
+    "EvaluatedValues",
 }
 """Records that one function fills step by step before it returns them."""
 

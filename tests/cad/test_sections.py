@@ -55,4 +55,4 @@ def test_only_a_finer_texture_stands_beside_its_face(drawing):
 
 
 def test_equal_deviations_are_written_once_in_the_table(drawing):
-    assert ">30 mm ±0.1 mm<" in drawing
+    assert ">30 ±0.1<" in drawing

@@ -67,7 +67,7 @@ def test_a_file_that_states_them_is_returned_as_it_is() -> None:
 
 def test_parts_of_one_name_are_refused() -> None:
     step = write_step([box("a"), box("b")], Header("box", 1, {}, "")).replace(b"'b'", b"'a'")
-    with pytest.raises(UnreadableStep, match="one name"):
+    with pytest.raises(UnreadableStep, match="the same name"):
         derive(step, VALIDATED)
 
 

@@ -28,7 +28,7 @@ NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
 
 
-@dataclass  # frozen, each would cost four times as much
+@dataclass
 class EvaluatedValues:
     """The evaluated values, as criteria see them.
 

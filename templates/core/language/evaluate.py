@@ -127,7 +127,7 @@ def _judged(
     )
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(frozen=True, slots=True)
 class _Part:
     """The answers at one level, or of all levels joined."""
 

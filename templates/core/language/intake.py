@@ -357,21 +357,20 @@ def check_shapes(self: Calculation) -> None:
         own = {n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along}
         whole = {n: length for n, length in own.items() if length != (1,) or not curves[n].constant}
         if len(set(whole.values())) > 1:
-            raise InvalidInputs(_of_different_shapes(self, own))
+            raise InvalidInputs(_of_different_shapes(self, own, "give lists of equal length"))
     shapes = {n: shape for n, shape in points.items() if shape}
     try:
         np.broadcast_shapes(*shapes.values())
     except ValueError:
-        raise InvalidInputs(_of_different_shapes(self, shapes)) from None
+        remedy = "give equal lengths or a single value"
+        raise InvalidInputs(_of_different_shapes(self, shapes, remedy)) from None
 
 
-def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:
+def _of_different_shapes(self: Calculation, shapes: Iterable[str], remedy: str) -> list[Fault]:
     """Return a fault for each of the arrays that must have one shape, with the shapes of all."""
     names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
-    detail = (
-        f"arrays of different shapes do not fit together ({listed}); give equal lengths or a single value"
-    )
+    detail = f"arrays of different shapes do not fit together ({listed}); {remedy}"
     return [Fault(name, "shape", detail) for name in names]
 
 

@@ -14,7 +14,7 @@ from templates.core.language.template import Template
 from templates.core.units.quantity import Unit, beside, require_same_kind
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(frozen=True, slots=True)
 class Request:
     """A request in which nothing is wrong: inputs, names of outputs, units in which some are shown."""
 

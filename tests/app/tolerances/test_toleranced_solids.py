@@ -141,4 +141,4 @@ def test_a_dimension_that_the_solid_lacks_is_refused_by_name(http):
     }
     answer = http.post(f"{SHELL}/build", json=body, headers=WAIT)
     assert answer.status_code == 422, answer.text
-    assert "no face of full_back shows its 0 mm" in answer.text
+    assert "oil_hole_diameter has a tolerance, but no face shows its 0 mm" in answer.text

@@ -171,7 +171,7 @@ def test_a_whole_table_is_read(tmp_path):
     ("tin,a metal,soft,150,book,,,yes", "'soft' is not a number"),
     ("tin,a metal,inf,150,book,,,yes", "'inf' is not a number"),
     ("tin,a metal,,,book,,,yes", "no value"),
-    ("tin,,5.5,150,book,,,yes", "no words"),
+    ("tin,,5.5,150,book,,,yes", "no description"),
     ("Tin 1,a metal,5.5,150,book,,,yes", "not a name"),
     ("tin,a metal,5.5,150,book,,,yes,more", "more cells"),
 ])  # fmt: skip
@@ -182,7 +182,7 @@ def test_a_row_that_is_not_whole_is_refused(tmp_path, line, message):
 
 def test_a_row_that_is_there_twice_is_refused(tmp_path):
     line = "tin,a metal,5.5,150,book,,,yes"
-    with pytest.raises(UnusableTable, match="'tin' is there 2 times"):
+    with pytest.raises(UnusableTable, match="'tin' occurs 2 times"):
         read_rows(written(tmp_path, HEAD, line, line), SOURCES)
 
 
