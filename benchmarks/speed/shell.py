@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -31,12 +30,21 @@ def figures() -> list[Figure]:
     return rows
 
 
+_SMALL = """
+import os, subprocess, sys
+process = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, usage = os.wait4(process.pid, 0)
+print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e6, status)
+"""
+"""Starts a command: its greatest memory includes that of its parent at the start, so the parent is small."""
+
+
 def measured(command: list[str]) -> tuple[float, float]:
     """Return the processor time [s] and most memory [MB] of a process with its children."""
-    process = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, cwd=Path(__file__).parents[2], env=environment()
-    )
-    _, status, usage = os.wait4(process.pid, 0)
-    if status:
+    small = [sys.executable, "-S", "-c", _SMALL, *command]
+    folder = Path(__file__).parents[2]
+    answer = subprocess.run(small, capture_output=True, text=True, check=True, cwd=folder, env=environment())
+    spent, memory, status = answer.stdout.split()
+    if int(status):
         raise RuntimeError(f"{' '.join(command)} ended with {status}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e6
+    return float(spent), float(memory)
