@@ -77,21 +77,22 @@ def test_a_criterion_that_is_met_by_a_value_of_unknown_error_is_counted_apart(ht
 
 @pytest.mark.slow
 def test_both_levels_are_drawn_and_named(http):
-    """The tolerance of the design takes level fit, that of the question level map."""
+    """The tolerance of the design takes level short_bearing, that of the question level map."""
     inputs = http.get(f"{API}/templates/oil_film/versions/2").json()["example"]
     step = {"template": "oil_film", "version": 2, "tolerance": 0.05, "inputs": inputs}
     design = created(http, {"name": "film", "steps": {"film": step}})["id"]
     own = {"unknown": "film.diametral_clearance", "low": "40 um", "high": "60 um"}
-    film = {"output": "film.minimum_film_thickness", "value": "2.7 um"}
+    film = {"output": "film.side_flow", "value": "0.29 l/min"}
     figures = []
     for tolerance in ("", "0.001"):
         page = solved(http, design, **own, **film, tolerance=tolerance)
         figures.append(re.search(r'<figure class="chart">(.*?)</figure>', page, re.DOTALL)[1])
     one, both = figures
-    assert "at level fit; the dashed line" in one
-    assert ">level fit<" not in one
-    assert "the curve at level fit was searched, and the curve at level map confirmed the solutions" in both
-    assert ">level fit<" in both
+    assert "at level short_bearing; the dashed line" in one
+    assert ">level short_bearing<" not in one
+    said = "the curve at level short_bearing was searched, and the curve at level map confirmed the solutions"
+    assert said in both
+    assert ">level short_bearing<" in both
     assert ">level map<" in both
     assert both.count("<path") > one.count("<path")
 
