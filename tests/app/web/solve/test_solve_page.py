@@ -77,7 +77,7 @@ def test_a_criterion_that_is_met_by_a_value_of_unknown_error_is_counted_apart(ht
 
 @pytest.mark.slow
 def test_both_levels_are_drawn_and_named(http):
-    """The tolerance of the design takes level short_bearing, that of the question level map."""
+    """The tolerance of the design takes level short bearing, that of the question level map."""
     inputs = http.get(f"{API}/templates/oil_film/versions/2").json()["example"]
     step = {"template": "oil_film", "version": 2, "tolerance": 0.05, "inputs": inputs}
     design = created(http, {"name": "film", "steps": {"film": step}})["id"]
@@ -88,11 +88,11 @@ def test_both_levels_are_drawn_and_named(http):
         page = solved(http, design, **own, **film, tolerance=tolerance)
         figures.append(re.search(r'<figure class="chart">(.*?)</figure>', page, re.DOTALL)[1])
     one, both = figures
-    assert "at level short_bearing; the dashed line" in one
-    assert ">level short_bearing<" not in one
-    said = "the curve at level short_bearing was searched, and the curve at level map confirmed the solutions"
+    assert "at level short bearing; the dashed line" in one
+    assert ">level short bearing<" not in one
+    said = "the curve at level short bearing was searched, and the curve at level map confirmed the solutions"
     assert said in both
-    assert ">level short_bearing<" in both
+    assert ">level short bearing<" in both
     assert ">level map<" in both
     assert both.count("<path") > one.count("<path")
 
