@@ -357,7 +357,9 @@ def check_shapes(self: Calculation) -> None:
         own = {n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along}
         whole = {n: length for n, length in own.items() if length != (1,) or not curves[n].constant}
         if len(set(whole.values())) > 1:
-            raise InvalidInputs(_of_different_shapes(self, own, "give lists of equal length"))
+            alone = ", ".join(self.declarations[n].name for n in own if curves[n].constant)
+            remedy = f"give equal lengths{f', or a single value for {alone}' if alone else ''}"
+            raise InvalidInputs(_of_different_shapes(self, own, remedy))
     shapes = {n: shape for n, shape in points.items() if shape}
     try:
         np.broadcast_shapes(*shapes.values())

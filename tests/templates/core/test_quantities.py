@@ -277,7 +277,7 @@ class TestFuzz:
         except FaultyText as refusal:
             is_usable, code = False, refusal.code
         else:
-            is_usable, code = 0 < scale.factor < math.inf and require_same_kind(text, text) is scale, None
+            is_usable, code = 0 < scale.factor < math.inf and require_same_kind(text, text) == scale, None
         assert is_usable or code == "unknown_unit"
 
     @given(json_values | surrogates)

@@ -29,7 +29,7 @@ def refused(change):
         ({"shaft_to": [1, 4]}, "shaft_to", "two inertias"),
         ({"shaft_from": [0, 3]}, "shaft_from", "number the inertias from 1"),
         ({"shaft_from": [1.5, 3]}, "shaft_from", "whole number"),
-        ({"shaft_to": [2]}, "shaft_to", "lists of equal length"),
+        ({"shaft_to": [2]}, "shaft_to", "give equal lengths"),
         ({"shaft_stiffness": [3e4, 1e4, 1e4]}, "shaft_stiffness", ""),
         ({"shaft_stiffness": [-3e4, 1e4]}, "shaft_stiffness", "≥ 0"),
         ({"inertias": [0.4, 0, 2.0, 0.5]}, "inertias", "> 0"),
