@@ -148,8 +148,8 @@ def test_property_paper_shows_the_limits_that_the_file_states_and_no_others(mode
                 assert "±" not in text
                 continue
             assert f"{stated[name][0].upper:g}" in text, (name, text)
-            if kind == 0 and len(points) == 2:
-                sides = [one.places for one in stated[name] if one.kind in ("diameter", "linear distance")]
+            sides = [one.places for one in stated[name] if one.kind in ("diameter", "linear distance")]
+            if sides and kind == 0 and len(points) == 2:
                 assert any(fits(angle, points, each, up) for up in UPS for each in sides), (name, points)
 
 
