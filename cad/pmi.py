@@ -72,10 +72,11 @@ class Annotations:
         sizes = {
             name: size for name, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES
         }
-        for name in limits.keys() - sizes.keys():
-            detail = f"{name} has a tolerance, but no face shows its {limits[name].nominal:g} mm"
-            remedy = "omit the tolerance, or give the dimension a size above 0"
-            raise GeometryError("tolerance", f"{detail}; {remedy}", (name,))
+        for name, within in limits.items():
+            if name not in sizes:
+                detail = f"{name} has a tolerance, but no face shows its {within.nominal:g} mm"
+                other = "draw a solid with this feature" if within.nominal else "give it a size above 0"
+                raise GeometryError("tolerance", f"{detail}; omit the tolerance, or {other}", (name,))
         return Annotations(declared, limits, sizes)
 
     @property

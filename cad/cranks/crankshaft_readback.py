@@ -149,7 +149,7 @@ class ShaftReadback:
         spans = [(-front.reach[1], first), *self._gaps(), (last, rear.reach[1])]
         return {
             "journal_diameter": Size.diameter(self._journal_surfaces()),
-            "journal_length": Size.repeated((self.seen.apart(Z, *span) for span in spans), "journals"),
+            "journal_length": Size.repeated((self._apart(*span) for span in spans), "journals"),
             "journal_bore": self._diameter(self._journal_bores, "journal bores"),
         }
 
@@ -218,7 +218,7 @@ class ShaftReadback:
         """Return the thickness of the middle webs, and their width, which equals that of their round ends."""
         spans = [throw.faces[2:4] for throw in self.throws]
         ends = [c for low, high in spans for c in self._beside_within(low, high)]
-        thick = (self.seen.apart(Z, low, high) for low, high in spans)
+        thick = (self._apart(*span) for span in spans)
         return {
             "middle_web_thickness": Size.repeated(thick, "middle webs"),
             "middle_web_width": Size.diameter(ends),
