@@ -327,7 +327,9 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
-    fed_points = np.zeros(np.shape(fed.supplies))  # a hole's size may differ where nothing else does
+    fed_points = np.zeros(
+        () if fed.supplies is None else fed.supplies.shape
+    )  # a hole's size may differ where nothing else does
     single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure, fed_points)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
