@@ -56,6 +56,7 @@ from benchmarks.film_cycle_duties import (
     MORE,
     OTHER_SEED,
     OUTPUTS,
+    PRESSURES,
     SEED,
     WIDTHS,
     Line,
@@ -96,10 +97,8 @@ several times that: a bound of 1 or more says nothing of them."""
 HOLDS = 0.93
 """Share of the duties on which a bound is tried that it has to hold for, or it is withdrawn."""
 PARTS = 5
-ENGINES, OTHER_ENGINES = (101, 202), engines.TRIED
+ENGINES, OTHER_ENGINES = engines.FITTED, engines.TRIED
 """Seeds of engines: those on which the bounds stand, and the one on which they are tried."""
-PRESSURES = 0.02, 1.0
-"""Relative supply pressures of the duties that count [-]."""
 MOTIONS = ("fixed", "swinging")
 STARTS = "mobility_grooved", "mobility"
 """Levels at which designs start, with a groove and without."""
