@@ -24,8 +24,8 @@ from templates.core.units.units import unit
 FOLDER = Path("docs/drawings")
 PAGE = Path("docs/drawings.md")
 _GALLERY = (
-    "`python -m benchmarks.drawings` draws each model's example with all lengths multiplied by 0.25, 1 and 4; "
-    "for\n"
+    "`python -m benchmarks.drawings` draws each model's example with all lengths multiplied by 0.25, "
+    "1 and 4; for\n"
     "`deep_groove_bearing` it draws 6000, 6210 and 6330.\n"
 )
 SIZES = (0.25, 1.0, 4.0)
