@@ -221,7 +221,7 @@ class Studies:
     def end(self, id: str, client: str | None = None) -> StudyRow | None:
         """Cancel a study that waits or runs, and return it; delete an ended one, and return None.
 
-        A client may cancel only its own studies, an administrator any. Any client may delete ended studies.
+        A client may cancel only its own studies, an administrator any. Every client may delete ended studies.
 
         Raises
         ------
