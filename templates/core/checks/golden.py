@@ -28,8 +28,9 @@ def records(path: Path) -> tuple[Path, ...]:
 
 
 def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
-    """Yield the differences from the release; different results quarantine the version, a different digest
-    does not.
+    """Yield the differences from the release.
+
+    Different results quarantine the version; a different digest is only reported.
     """
     for file in records(path):
         if file.is_file():
