@@ -22,7 +22,7 @@ JUMP = (
 
 @dataclass(frozen=True)
 class Place:
-    """A value of the unknown [SI] at which the output meets the target; slope 1 rises, −1 falls, 0 neither."""
+    """A value of the unknown [SI] where the output meets the target; slope 1 rises, −1 falls, 0 neither."""
 
     x: float
     slope: int
