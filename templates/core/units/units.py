@@ -257,7 +257,7 @@ def _mixes_difference(got: Unit, want: Unit) -> bool:
 
 
 def _miscounts(got: Unit, want: Unit) -> bool:
-    """Return whether a typed number may be wrong by 2π: an angle for a quantity without one, or the reverse."""
+    """Return whether a typed number may be wrong by 2π: an angle where there is none, or vice versa."""
     counted, wanted = _counted(got), _counted(want)
     if want.text == "1":  # Pint reads 1e6 cycles as an angle
         return counted[0] != 0
