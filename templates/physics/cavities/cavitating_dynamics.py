@@ -59,7 +59,7 @@ def linear_film(film: RingSolution) -> LinearFilm:
 
 
 def _response(film: RingSolution) -> Callable[[Array], tuple[Array, Array]]:
-    """Return a function that computes the changes of pressure and void that compensate a loss of oil at the nodes."""
+    """Return a function: the changes of pressure and void that compensate a loss of oil at the nodes."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0
     slopes, is_full = ColumnScaledSum.of(network.A, network.T).among(free), full[free]

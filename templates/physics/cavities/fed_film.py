@@ -86,7 +86,7 @@ class Place:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def moved(self, step: Array) -> "Place":
-        """Return the position after a step of y, limited to the eccentricities for which films can be solved."""
+        """Return the position after a step of y, within the eccentricities that films can be solved for."""
         y = self.y + step
         size = max(float(np.hypot(*y)), 1e-300)
         return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))

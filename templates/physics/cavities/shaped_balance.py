@@ -157,7 +157,7 @@ class Balance:
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
-        """Return the relative change by the last refinement, or the previous one reduced by its order if larger."""
+        """Return the relative change by the last refinement, or by the one before over its order if larger."""
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
@@ -227,7 +227,7 @@ def _inside(loaded: BearingCase, e: Array) -> Array:
 
 
 def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
-    """Return the balance on a sequence of meshes, each started from the coarser one, and on `FINER` if needed."""
+    """Return the balance on successive meshes, each started from the last, and on `FINER` if needed."""
     films: list[MeshEquilibrium] = []
     for mesh in meshes:
         films.append(
@@ -256,7 +256,7 @@ def stable_film(
 def _agreed(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
-    """Return the equilibrium on a mesh that is graded to it, with the supply line opposite the displacement."""
+    """Return the equilibrium on a mesh that is graded to it, with the supply line opposite to it."""
     line = loaded.lie(e).attitude
     for turn in range(_TURNS):
         before = narrowest(loaded.bore, loaded.lie(e))[0]

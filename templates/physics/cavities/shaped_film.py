@@ -68,7 +68,7 @@ class ShapedFilm:
 
     @cached_property
     def couple(self) -> Array:
-        """Return the (2,) moment about the middle in the planes of x and y with the axis, over force of So times B/2.
+        """Return the moment about the middle in the x–axis and y–axis planes, (2,), over So's force times B/2.
 
         It is positive where the film pushes the end zeta = 1 against x or y, that is, against a positive
         tilt.
@@ -115,7 +115,7 @@ class ShapedFilm:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Return stiffness and damping in units of So, per displacement over c and per velocity over c omega_h."""
+        """Return stiffness and damping in units of So per displacement/c and per velocity/(c omega_h)."""
         P, fill = self.solution.P, 1 - self.solution.void
         cells = 12 * np.outer(self.nodes.around, self.nodes.across)
         respond = self._response()

@@ -71,7 +71,7 @@ class Nodes:
 
     @cached_property
     def steps(self) -> tuple[csr_array, csr_array]:
-        """Return matrices of the differences between circumferential and axial neighbours, (edges, nodes) each."""
+        """Return the circumferential and axial difference matrices between neighbours, (edges, nodes)."""
         n, m = self.shape
         turn = csr_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
         axial = eye_array(m - 1, m, k=1) - eye_array(m - 1, m)

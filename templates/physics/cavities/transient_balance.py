@@ -1,4 +1,4 @@
-"""Flow balances of a time-dependent film on a ring of nodes, and their linear solution: see `transient_film`."""
+"""Flow balances of a moving film on a ring of nodes, and their linear solution: see `transient_film`."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Journal:
-    """Mesh and bearing; the axial nodes begin at the middle and exclude the end, which is at ambient pressure."""
+    """Mesh and bearing; axial nodes run from the middle and exclude the end, which is at ambient pressure."""
 
     ratio: float
     """Width over diameter B/D [-]."""
@@ -89,7 +89,7 @@ class Balance:
         return np.moveaxis(solution[rows], -1, 0)
 
     def _couplings(self, alpha: Array, beta: Array, rows: Index) -> list[tuple[Index, Index, Array]]:
-        """Return row, column and value of the entries of A alpha + T beta: diagonal, circumferential, axial."""
+        """Return row, column and value of the entries of A alpha + T beta: diagonal, then neighbours."""
         A, T = self.diagonals()
         after, ahead = np.maximum(self.carried, 0)[:, None], np.minimum(self.carried, 0)[:, None]
         conductance, following = self.round[:, None] * self.width, np.roll(rows, -1, axis=0)

@@ -80,7 +80,7 @@ class ClosedCylinder:
 
     @cached_property
     def gained(self) -> Array:
-        """Return ∫ (V/V_c)^(γ−1) dx at the ends of the combustion's panels in √y, (…, panels + 1), by Gauss."""
+        """Return ∫ (V/V_c)^(γ−1) dx at the ends of combustion panels in √y, (…, panels + 1), by Gauss."""
         ends = np.linspace(0, 1, _PANELS + 1)
         u = (ends[:-1, None] + ends[1:, None]) / 2 + _NODES / (2 * _PANELS)
         density = self._density(u.ravel())

@@ -1,14 +1,4 @@
-"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs and pins, six degrees of freedom per node.
-
-The frame was compared with finite elements of a whole four-throw shaft (journal 55, pin 48, throw 42, web 18
-× 80 mm) on rigid mains. The reactions to a unit load on a pin differ by up to 0.014 of the load in the radial
-direction. In the tangential direction they differ by 0.37 with St Venant torsion of the webs, and by 0.045
-with eight times that torsional stiffness, for that throw.
-
-References
-----------
-Timoshenko, Young, Weaver: Vibration Problems in Engineering, for the beam with shear.
-"""
+"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs, pins; six freedoms per node."""
 
 from __future__ import annotations
 
@@ -28,7 +18,7 @@ _REGULAR = (
 
 @dataclass(frozen=True)
 class CrankSections:
-    """Sections of a shaft [m], elastic constants [Pa], [1], and the factor on the webs' St Venant stiffness."""
+    """Sections of a shaft [m], elastic constants [Pa], [1], and a factor on the webs' St Venant torsion."""
 
     journal: float
     pin: float
@@ -46,7 +36,7 @@ class CrankSections:
 
 
 class Frame:
-    """Nodes and members of a frame. A member has two nodes, area, two inertias, torsion constant, shear area."""
+    """Nodes and members of a frame; a member: two nodes, area, two inertias, torsion constant, shear area."""
 
     def __init__(self, sections: CrankSections) -> None:
         self.sections = sections
@@ -116,7 +106,7 @@ def _beams(way: Array, E: float, G: float, section: Array) -> Array:
 
 @dataclass(frozen=True)
 class Throw:
-    """A throw: its middle [m], and the place [m], pin vector [m] and number of each of its loads, by place."""
+    """A throw: its middle [m], and place [m], pin vector [m] and number of each of its loads, by place."""
 
     middle: float
     loads: tuple[tuple[float, complex, int], ...]

@@ -22,7 +22,7 @@ _VANISHES = 1e-12
 
 @dataclass(frozen=True)
 class ShaftLoads:
-    """Loads on the shaft: positions [m], (L,), and forces [N] in the frame's axes over the cycle, (…, L, K)."""
+    """Loads on the shaft: positions [m], (L,), and forces [N] in the frame's axes, (…, L, K)."""
 
     places: Array
     forces: Vectors
@@ -138,7 +138,7 @@ def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
 
 @units(None, None, "m", returns="1")
 def left_over(reactions: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """Return the largest unbalanced force or moment at any angle, over the sum of magnitudes; 0 below 1e-12."""
+    """Return the largest unbalanced force or moment at any angle, over the sum of sizes; 0 below 1e-12."""
     size = np.abs(loads.forces).sum(axis=-2)
     size = np.where(size > 0, size, 1.0)
     force = np.abs(reactions.sum(axis=-2) + loads.forces.sum(axis=-2)) / size

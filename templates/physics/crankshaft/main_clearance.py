@@ -1,15 +1,4 @@
-"""Main bearings with clearance: an elastic crankshaft touches elastic supports once it has moved by a clearance.
-
-A support reacts with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore if |u|
-exceeds the clearance c, otherwise with no force. The centre of the bore may be offset from the line of the
-others.
-
-By the force method of `crank_supports`, the reactions are R = R₀ + B x, with self-balanced sets B. The
-displacements of the shaft d(R), of the supports R/k + c R/|R|, and the offsets o of the bores are compatible:
-Bᵀ(d + R/k + c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all
-crank angles at once. |R| is replaced by √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without
-contact then carries only that much.
-"""
+"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance."""
 
 from __future__ import annotations
 
@@ -150,7 +139,7 @@ class _Play:
         return SupportReactions(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
-        """Return the solution of Newton's method from x, damped by the energy at each crank angle separately."""
+        """Return the solution of Newton's method from x, damped by the energy separately at each angle."""
         if not x.size:
             return x
         for _ in range(_STEPS):

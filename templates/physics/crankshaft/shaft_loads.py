@@ -1,4 +1,4 @@
-"""Loads on a whole crankshaft from rods and from unbalances of throws and webs, and rules about its inputs."""
+"""Loads on a whole crankshaft from rods and unbalances of throws and webs, and rules about its inputs."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ def web_unbalance(
 
 
 def determinate(mains: Array, loads: ShaftLoads) -> Vectors:
-    """Return the loads of the mains by the lever rule; empty without mains."""
+    """Return the loads of the mains by the lever rule; a single NaN without mains."""
     return determinate_loads(mains, loads) if np.ndim(mains) else _NONE + 0j
 
 
 def elastic(mains: Array, loads: ShaftLoads, reactions: Array, theta: Array) -> Vectors:
-    """Return the loads of the mains on elastic supports; empty if the crank's sections are not given."""
+    """Return the loads of the mains on elastic supports; a single NaN without the crank's sections."""
     return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else _NONE + 0j
 
 
