@@ -157,7 +157,7 @@ class Balance:
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
-        """Return the relative change by the last refinement, or by the one before over its order if larger."""
+        """Return the relative change by the last refinement, or by the previous over its order if larger."""
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)

@@ -68,10 +68,10 @@ class ShapedFilm:
 
     @cached_property
     def couple(self) -> Array:
-        """Return the moment about the middle in the x–axis and y–axis planes, (2,), over So's force times B/2.
+        """Return the moment in the planes of x and y with the axis, (2,), over So's force times B/2.
 
-        It is positive where the film pushes the end zeta = 1 against x or y, that is, against a positive
-        tilt.
+        It is taken about the middle, and positive where the film pushes the end zeta = 1 against x or y, that
+        is, against a positive tilt.
         """
         if self.nodes.is_half:
             return np.zeros(2)

@@ -94,7 +94,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def amplitudes_of(self) -> Array:
-        """Return (M, nodes) deformations per nodal pressure: those of the half-plane that are not 0, then modes."""
+        """Return (M, nodes) deformations per nodal pressure: non-zero ones of the half-plane, then modes."""
         plain = SoftFilm(self.mesh, self.ratio, self.softness, self.modes, self.eps, self.P).amplitudes_of
         return np.concatenate([plain[self.modes.compliance != 0], self.bent])
 
@@ -116,7 +116,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """Return the derivatives of circumferential (n, m + 1) and axial (n + 1, m) flows by the local gap."""
+        """Return the derivatives of circumferential (n, m + 1) and axial (n + 1, m) flows by the gap."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2

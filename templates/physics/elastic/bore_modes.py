@@ -48,7 +48,7 @@ def modes_around(theta: Array) -> Array:
 
 
 def modes_along(zeta: Array) -> Array:
-    """Return the axial factors (..., 2) of the modes [-] at places (...) from the middle, 0, to the end, 1."""
+    """Return the axial factors (..., 2) of the modes [-] at places (...) from the middle 0 to the end 1."""
     zeta = np.asarray(zeta, float)
     return np.stack([np.ones_like(zeta), np.sqrt(5) * (3 * zeta**2 - 1) / 2], axis=-1)
 

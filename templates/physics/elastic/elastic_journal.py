@@ -302,7 +302,7 @@ def neglected_deformation(
 def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
     """Estimate the displacement of a bore in an infinite steel body under the largest pressure [m].
 
-    The shape of the pressure is that of `neglected_deformation`; a real housing deflects more than this.
+    The shape of the pressure is that of `neglected_deformation`; this is its lower limit.
 
     Parameters
     ----------

@@ -107,14 +107,17 @@ class SoftFilm:
 
     @cached_property
     def around(self) -> tuple[Array, Array, Array, Array]:
-        """Return gap, viscosity, its slope and the pressure slope between circumferential neighbours, (n, m + 1)."""
+        """Return gap, viscosity, its slope and pressure slope between circumferential neighbours.
+
+        All are (n, m + 1).
+        """
         rise = np.diff(self.P, axis=0) / np.diff(self.mesh.phi)[:, None]
         rigid = (1 - self.eps) + swell(midpoints(self.mesh.phi), self.eps)
         return rigid[:, None] + midpoints(self.deformation), *self._oil(midpoints(self.P)), rise
 
     @cached_property
     def across(self) -> tuple[Array, Array, Array, Array]:
-        """Return gap, viscosity, its slope and the pressure slope between axial neighbours, (n + 1, m)."""
+        """Return gap, viscosity, its slope and pressure slope between axial neighbours, (n + 1, m)."""
         rise = np.diff(self.P, axis=1) / np.diff(self.mesh.zeta)
         H, P = ((values[:, :-1] + values[:, 1:]) / 2 for values in (self.deformation, self.P))
         rigid = (1 - self.eps) + swell(self.mesh.phi, self.eps)
@@ -170,7 +173,7 @@ class SoftFilm:
         turn = -np.cos(midpoints(self.mesh.phi)), -np.cos(self.mesh.phi)
         swollen = _gathered(
             by_gap * turn[0][:, None] + 6 * width, by_gap_side * turn[1][:, None]
-        )  # the constant 1 − eps cancels in the loss
+        )  # the loss omits the constant 1 − eps
         return matrix, modal.reshape(film.size, modal.shape[-1]), (film * swollen).ravel()
 
     @cached_property
