@@ -79,7 +79,7 @@ def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, toleran
 
 
 def _interpolation(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) -> Array:
-    """Return the fraction from a to b at which the inverse parabola vanishes, or 1/2 if it is not reliable."""
+    """Return the fraction from a to b at which the inverse parabola vanishes, or 1/2 if unreliable."""
     with np.errstate(all="ignore"):
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
         trusted = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)

@@ -82,9 +82,10 @@ class GroovePassage:
         return GroovePassage(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
     def with_distinct_rings(self) -> tuple["GroovePassage", NDArray[np.intp]]:
-        """Return the same at angles whose rings have different numbers of nodes, and the indices of the old angles.
+        """Return the same at angles whose rings differ in their number of nodes.
 
-        Equal steps satisfy this. Otherwise the angles are divided until the finest ring is the only one.
+        The second result are the indices of the old angles. Equal steps need no change. Otherwise the angles
+        are divided until the finest ring is the only one.
         """
         steps = np.diff(self.load.angle, append=self.load.angle[0] + self.load.period)
         if np.ptp(steps) < 1e-9:

@@ -135,7 +135,10 @@ def _full(journal: Journal, eps: Array) -> State:
 
 
 def _next(journal: Journal, states: list[State], S: Array, w: float, step: float) -> State | None:
-    """Return the state after one step; the first step, and a failed step, is first-order in several parts."""
+    """Return the state after one step; None if the step fails.
+
+    The first step, and a step that fails with second order, is repeated with first order in several parts.
+    """
     here = states[-1]
     if len(states) > 1:
         before = (states[-2].content / 2 - 2 * here.content) / step
