@@ -98,7 +98,7 @@ def _towards_end(t: Array, fine: float) -> Array:
 
 
 def _inner_cells(edge: float, across: int) -> int:
-    """Return the number of cells from the middle to the first edge; at least three rows are left to the land."""
+    """Return the number of cells from the middle to the first edge; three or more rows are left for land."""
     return min(max(1, round(_DENSITY * edge * across)), max(1, across - 3))
 
 
