@@ -40,9 +40,10 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
-from cad.deflection import with_deflection
 from cad.drafting.paper import TYPESETTER
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.file_kinds import with_deflection, with_part
+from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -67,9 +68,18 @@ Deflection = Annotated[
     str | None,
     Query(
         max_length=60,
-        description="for GLB and STL, the largest distance of a facet from the true surface: 1/10 000 "
+        description="for GLB, STL and 3MF, the largest distance of a facet from the true surface: 1/10 000 "
         "to 1/10 of the diagonal of the largest body's box",
         examples=["0.05 mm"],
+    ),
+]
+PartName = Annotated[
+    str | None,
+    Query(
+        max_length=120,
+        description="of GLB, STL, 3MF and BREP, the one part of an assembly that the file holds, in its own "
+        "coordinates; without it the file holds all parts at their positions",
+        examples=["upper_shell"],
     ),
 ]
 BuildSeen = Annotated[
@@ -99,6 +109,7 @@ class FileRequest:
     prefer: str | None
     if_none_match: str | None
     deflection: str | None
+    part: str | None
     title_block: TitleBlock
 
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
@@ -109,8 +120,8 @@ class FileRequest:
         NotFound
             If there is no such kind, or no such model.
         InvalidInputs
-            If the deflection is not a length, the kind has no facets or no title block, or a typed text
-            contradicts the approval.
+            If the deflection is not a length, the kind has no facets, no single part or no title block, or a
+            typed text contradicts the approval.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE
@@ -142,9 +153,10 @@ class FileRequest:
 
     def _stored_kind(self, wanted: str) -> str:
         """Return the stored kind of file from which the requested kind is made."""
-        if self.deflection is not None:
-            return with_deflection(wanted, self.deflection)
-        return PRINTED.get(wanted, wanted)
+        kind = wanted if self.deflection is None else with_deflection(wanted, self.deflection)
+        if self.part is not None:
+            kind = with_part(kind, self.part)
+        return PRINTED.get(kind, kind)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
         """Return None once the file exists, 202 if the client stops waiting, or why it cannot be created."""
@@ -156,7 +168,8 @@ class FileRequest:
 
     def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
         """Return a file under its name, or 304; if its kind has a stamp, the file is stamped."""
-        plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
+        part = "" if self.part is None else f"_{plain_name(self.part)}"
+        plain, wide = f"{stamp.stem}{part}.{kind}", f"{stamp.wide_stem}{part}.{kind}"
         headers = {
             "Design-Revision": str(stamp.revision),
             "Vary": "Accept",
@@ -204,6 +217,7 @@ async def plain_file_request(
         prefer,
         if_none_match,
         deflection=None,
+        part=None,
         title_block=TitleBlock({}),
     )
 
@@ -215,10 +229,11 @@ async def file_request(
     plain: ThePlainFileRequest,
     title_block: TheTitleBlock,
     deflection: Deflection = None,
+    part: PartName = None,
     build: BuildSeen = None,
 ) -> FileRequest:
     """Return the request with the options of a mesh and of a drawing."""
-    return replace(plain, deflection=deflection, title_block=title_block)
+    return replace(plain, deflection=deflection, part=part, title_block=title_block)
 
 
 TheFileRequest = Annotated[FileRequest, Depends(file_request)]
