@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from cadquery import Location, Shape
+from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_Orientation
@@ -83,23 +84,23 @@ def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
 
 def is_closed(one: Mesh) -> bool:
     """Return whether each edge of a triangle is that of exactly one other, the other way round."""
-    corners = _welded(one)
+    corners = welded(one)[1]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     count = int(corners.max()) + 1
     there, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
     return bool(np.array_equal(np.unique(there), np.sort(back)))
 
 
-def _welded(one: Mesh) -> Integers:
-    """Return the corners of the triangles (m, 3), where points that are equal in single precision are one."""
+def welded(one: Mesh) -> tuple[NDArray[np.float32], Integers]:
+    """Return points (p, 3) [mm] and corners of triangles (m, 3); points equal in single precision are one."""
     single = np.ascontiguousarray(one.points.astype(np.float32) + np.float32(0.0))  # without negative zeros
-    _, numbers = np.unique(single.view("V12").ravel(), return_inverse=True)
-    return numbers[one.triangles].astype(np.int64)
+    _, first, numbers = np.unique(single.view("V12").ravel(), return_index=True, return_inverse=True)
+    return single[first], numbers[one.triangles].astype(np.int64)
 
 
 def _without_collapsed(one: Mesh) -> Mesh:
     """Return a mesh without the triangles of which corners coincide, as at the poles of a sphere."""
-    a, b, c = _welded(one).T
+    a, b, c = welded(one)[1].T
     kept = (a != b) & (b != c) & (c != a)
     return one if kept.all() else replace(one, triangles=one.triangles[kept], faces=one.faces[kept])
 

@@ -15,6 +15,7 @@ from app.settings import Settings
 @click.argument("design")
 @click.argument("kind", default="step")
 @click.option("--model", default=None, help="its name in the design, if there are several")
+@click.option("--part", default=None, help="the one part that a glb, stl, 3mf or brep file holds")
 @click.option("--variant", default=None, help="of the design; the design itself if not given")
 @click.option(
     "--revision", type=click.IntRange(1), default=None, help="that of the newest good model if not given"
@@ -27,6 +28,7 @@ def download_command(
     design: str,
     kind: str,
     model: str | None,
+    part: str | None,
     variant: str | None,
     revision: int | None,
     folder: Path,
@@ -34,13 +36,13 @@ def download_command(
 ) -> None:
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
-    KIND is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP
-    files of all variants. The command waits for a file that the service must create first.
+    KIND is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for
+    the STEP files of all variants. The command waits for a file that the service must create first.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         with Client(place) as client:
-            file = _file(client, design, kind, model, variant, revision)
+            file = _file(client, design, kind, model, part, variant, revision)
         click.echo(file.save(folder))
     except Problem as problem:
         raise click.ClickException(str(problem)) from None
@@ -51,15 +53,23 @@ def download_command(
 
 
 def _file(
-    client: Client, design: str, kind: str, model: str | None, variant: str | None, revision: int | None
+    client: Client,
+    design: str,
+    kind: str,
+    model: str | None,
+    part: str | None,
+    variant: str | None,
+    revision: int | None,
 ) -> File:
+    if part is not None and (kind == "zip" or variant is not None):
+        raise click.UsageError("--part names a part of the design itself; leave out --variant and zip")
     if kind == "zip":
         return client.download_variants(design, revision, on_progress=_progress)
     if variant is not None:
         return client.download_variant(
             design, variant, kind, model=model, revision=revision, on_progress=_progress
         )
-    return client.download(design, kind, model=model, revision=revision, on_progress=_progress)
+    return client.download(design, kind, model=model, revision=revision, part=part, on_progress=_progress)
 
 
 def _progress(done: float, text: str) -> None:

@@ -44,7 +44,9 @@ PAPER: JsonDict = {
 """The paper's demonstration as a design."""
 
 LONGEST_NOTE = 1000  # letters
-Note = Field(None, max_length=LONGEST_NOTE, description="why, for the list of revisions")
+Note = Field(
+    None, max_length=LONGEST_NOTE, description="reason for the change, shown in the list of revisions"
+)
 
 
 class DesignIn(Document):
@@ -86,11 +88,11 @@ class DecideIn(Bounded):
         json_schema_extra={"examples": [{"criteria": ["film.film"], "budget": "30 s"}]},
     )
     criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
-        None, description="by name; all that are undecided, if not given"
+        None, description="names of the criteria to decide; by default all that are undecided"
     )
-    budget: Given = Field("30 s", description="after which no further level begins")
+    budget: Given = Field("30 s", description="time after which no further level is started")
     estimate_only: bool = Field(
-        False, description="only the levels that would be calculated first are named, with their times"
+        False, description="only return the first level to calculate for each design, with its estimated time"
     )
 
 
@@ -128,4 +130,4 @@ PATCH: JsonDict = {
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
     },
 }
-"""What a merge patch of a design may name; null removes. What it leads to is checked as a whole design."""
+"""Members of a merge patch of a design; null removes a member. The resulting design is checked as a whole."""

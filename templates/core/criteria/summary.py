@@ -1,4 +1,4 @@
-"""The verdict over several criteria: their order, worst first, and the one that governs."""
+"""The verdict over several criteria: their order, worst first, and the governing criterion."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ SHOWN: tuple[Verdict, ...] = ("met", "not_met", "undecided", "not_checked")
 
 @dataclass(slots=True)  # frozen, each would cost four times as much
 class Summary:
-    """The verdict over all criteria; green only if all are met and nothing about them is uncertain.
+    """The verdict over all criteria; green only if all are met and none of them is uncertain.
 
     Attributes
     ----------
     error_unknown
-        How many of those that are met follow from an error that is not known.
+        How many of the met criteria depend on an unknown error.
     governing
-        The worst criterion that was checked. One that is met by a limit fixed in its template governs only if
-        no criterion of the same value waits for its limit.
+        The worst criterion that was checked. A criterion that meets a limit fixed in its template governs
+        only if no criterion of the same value waits for its limit.
     """
 
     verdict: Verdict
@@ -34,15 +34,15 @@ class Summary:
 
 
 def worst_first(judgements: Iterable[Judgement]) -> list[Judgement]:
-    """Return criteria in order: not met, undecided, not checked, met with an unknown error, met.
+    """Return criteria in the order: not met, undecided, not checked, met with an unknown error, met.
 
-    Inside each by utilisation, largest first.
+    Within each group they are sorted by utilisation, largest first.
     """
     return sorted(judgements, key=rank)
 
 
 def rank(judgement: Judgement) -> tuple[int, bool, float, float, str]:
-    """Return the place of a judgement in that order."""
+    """Return the position of a judgement in the order of `worst_first`."""
     used = judgement.utilisation
     margin = judgement.margin if judgement.margin is not None else 0.0
     return (
@@ -55,7 +55,7 @@ def rank(judgement: Judgement) -> tuple[int, bool, float, float, str]:
 
 
 def summarised(ordered: Sequence[Judgement]) -> Summary:
-    """Return the verdict over criteria in order.
+    """Return the verdict over criteria that are in the order of `worst_first`.
 
     Waived criteria are counted and listed, but do not worsen the verdict.
     """
@@ -85,9 +85,9 @@ def _may_govern(judgement: Judgement, waiting: Collection[tuple[str, str]]) -> b
 
 @lru_cache(maxsize=1024)
 def _headline(counts: tuple[int, ...], unknown: int, waived: int) -> str:
-    """Return the number of criteria of each verdict in `SHOWN`, in words.
+    """Return a text with the number of criteria of each verdict in `SHOWN`.
 
-    Met with an unknown error separately.
+    Criteria met with an unknown error are counted separately.
     """
     met, *others = counts
     words = ["met", "met (error unknown)", *(verdict.replace("_", " ") for verdict in SHOWN[1:])]
