@@ -1,4 +1,4 @@
-"""The client's calls: each function is an exchange that returns a model."""
+"""The client's calls for templates, builds, files and jobs: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ Values = Mapping[str, object]
 
 
 class SolveOptions(TypedDict, total=False):
-    """Options of `solve`: how a template is evaluated at a solution."""
+    """Options of `solve`: outputs, level, tolerance and units."""
 
     outputs: list[str]
     level: str
@@ -78,7 +78,7 @@ class SolveOptions(TypedDict, total=False):
 
 
 class Options(SolveOptions, total=False):
-    """Options of `evaluate`: level, tolerance and the like."""
+    """Options of `evaluate`, such as the level and the tolerance."""
 
     per_point: bool
 
@@ -188,7 +188,7 @@ def analyse(
 
 
 def surface(analysis: str) -> Exchange[Surface]:
-    """Return the surface that an analysis computed; its `outputs` must have named it."""
+    """Return the surface that an analysis computed; the `outputs` of that analysis must have named it."""
     return read(Surface, (yield from awaited(get(f"/analyses/{analysis}/surface"))))
 
 
@@ -215,7 +215,7 @@ def download(
 ) -> Exchange[File]:
     """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
-    It comes from the newest valid model if no revision is named; `model` selects one, if the design has
+    Without a revision it is the file of the newest valid model; `model` selects one if the design has
     several.
     """
     one = f"/revisions/{revision}" if revision else ""
@@ -232,7 +232,7 @@ def report(
     variants: bool = False,
     on_progress: Progress | None = None,
 ) -> Exchange[bytes]:
-    """Return the calculation report of a revision, the newest if none is named, with all its pictures.
+    """Return the calculation report of a revision, by default the newest, with all its pictures.
 
     The format is pdf or html. `variants` selects the report of all its variants. The quantities are in
     `units`, "si" or "us".
@@ -247,7 +247,7 @@ def picture(id: str, version: int, *, on_progress: Progress | None = None) -> Ex
 
 
 def verify(step: bytes) -> Exchange[Verification]:
-    """Return the build that a STEP file comes from, and the revisions that use it."""
+    """Return the build that produced a STEP file, and the revisions that use that build."""
     request = Request("POST", f"{BASE}/verify", step, headers={"Content-Type": "model/step"})
     return answered(Verification, request)
 
@@ -268,7 +268,7 @@ def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
 
 
 def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response]:
-    """Return the answer with a file once it has been created.
+    """Return the response with a file once the service has created the file.
 
     With `on_progress`, the job is followed from the start.
     """

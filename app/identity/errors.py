@@ -1,4 +1,4 @@
-"""Errors of identity: a request is refused because of its sender."""
+"""Errors of identity: the service refuses a request because of its sender."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from app.identity.principal import Principal
 
 
 class IdentityError(Exception):
-    """A request that is refused because of who sends it."""
+    """Base class of errors that refuse a request because of its sender."""
 
     headers: dict[str, str] = {}
 
 
 class NotSignedIn(IdentityError):
-    """No key or session came, or one that is not valid; the answer does not say which."""
+    """The request has no valid key or session; the answer does not say whether it had an invalid one."""
 
     headers = {"WWW-Authenticate": "Bearer"}
 
@@ -26,7 +26,7 @@ class NotSignedIn(IdentityError):
 
 
 class RoleNeeded(IdentityError):
-    """The roles of whoever asks do not include the one that is needed."""
+    """The principal lacks the role that the request needs."""
 
     def __init__(self, who: Principal, roles: Iterable[str]) -> None:
         own = ", ".join(sorted(who.roles)) or "none"
@@ -34,11 +34,11 @@ class RoleNeeded(IdentityError):
 
 
 class NotOwn(IdentityError):
-    """Only the principal to whom it belongs, or an administrator, may do this."""
+    """Only the owner or an administrator may do this."""
 
 
 class KeyInAddress(IdentityError):
-    """The address contains a key, and logs and histories on the way keep addresses."""
+    """The address contains a key, which proxies' logs and browsers' histories would keep."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -48,7 +48,7 @@ class KeyInAddress(IdentityError):
 
 
 class Outlives(IdentityError):
-    """A key would be valid for longer than the one that makes it."""
+    """The new key would be valid for longer than the key that creates it."""
 
     def __init__(self, latest: str) -> None:
         super().__init__(
@@ -58,11 +58,11 @@ class Outlives(IdentityError):
 
 
 class TooManyKeys(IdentityError):
-    """A principal has as many keys as it may have."""
+    """The principal has the maximum number of keys."""
 
 
 class FirstByCommand(IdentityError):
-    """The first principal would lock everybody out who has no key."""
+    """The first principal would lock out everyone without a key, so only the command line may add it."""
 
     def __init__(self) -> None:
         super().__init__(

@@ -1,6 +1,6 @@
-"""The content of a report as plain data: built once, then shown by the page and by the typesetter.
+"""The content of a report as plain data, built once for the page and for the PDF.
 
-Formulas are MathML, numbers are texts; nothing here knows HTML or Typst.
+Formulas are MathML and numbers are texts; this module does not depend on HTML or Typst.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from app.reports.cells import NOTHING, Cell
 
 @dataclass(frozen=True)
 class Line:
-    """A value with its words: an input, a result, a measure."""
+    """A value with its meaning: an input, a result, or a measure."""
 
     words: str
     symbol: str  # MathML
@@ -25,7 +25,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Formula:
-    """One line of the calculation, in MathML; parts that do not exist are empty."""
+    """One formula of the calculation, in MathML; missing parts are empty."""
 
     words: str
     source: str
@@ -36,7 +36,7 @@ class Formula:
 
 @dataclass(frozen=True)
 class Criterion:
-    """A criterion as judged, in words about the case."""
+    """A criterion as judged, in words about this case."""
 
     words: str
     verdict: str  # met, not_met, undecided, not_checked
@@ -51,7 +51,7 @@ class Criterion:
 
 @dataclass(frozen=True)
 class ReportVerdict:
-    """The verdict with which a report begins; without criteria, the headline says why there is none."""
+    """The verdict at the head of a report; without criteria, the headline states why there is no verdict."""
 
     headline: str
     tone: str  # green, bad, open, plain
@@ -61,7 +61,7 @@ class ReportVerdict:
 
 @dataclass(frozen=True)
 class Rule:
-    """A range or a rule of a template, held against the values; no verdict on the design."""
+    """A range or a rule of a template, and whether the values satisfy it; it does not judge the design."""
 
     words: str
     kind: str
@@ -91,7 +91,7 @@ class StepWarning:
 
 @dataclass(frozen=True)
 class Identity:
-    """Version and digest of the code of a template or model."""
+    """The version of a template or model, with the digest of its code."""
 
     id: str
     version: int
@@ -103,7 +103,7 @@ class Identity:
 
 @dataclass(frozen=True)
 class Step:
-    """A calculation."""
+    """A calculation step of the design."""
 
     name: str
     template: Identity
@@ -122,7 +122,7 @@ class Step:
 
 @dataclass(frozen=True)
 class MappedParameter:
-    """A parameter of a model: the relation that drives it, what it was and is, and what the solid has."""
+    """A parameter of a model: the relation that drives it, its old and new value, and the measured size."""
 
     words: str
     symbol: str
@@ -136,7 +136,7 @@ class MappedParameter:
 
 @dataclass(frozen=True)
 class File:
-    """A file of a build."""
+    """A file of a build, with its hash."""
 
     kind: str
     sha256: str
@@ -144,7 +144,7 @@ class File:
 
 @dataclass(frozen=True)
 class PaintedField:
-    """A picture of a part in the colours of a field."""
+    """A picture of a part, coloured by a field."""
 
     id: str
     title: str
@@ -154,7 +154,7 @@ class PaintedField:
 
 @dataclass(frozen=True)
 class Model:
-    """A part."""
+    """A CAD model of the design."""
 
     name: str
     model: Identity
@@ -183,7 +183,7 @@ class Round:
 
 @dataclass(frozen=True)
 class Columns:
-    """A part of the table of variants, as wide as paper: headings, and a row of texts for each variant."""
+    """A part of the table of variants that fits the paper: headings, and a row of texts for each variant."""
 
     heads: list[str]
     rows: list[list[str]]
@@ -204,7 +204,7 @@ class VariantLine:
 
 @dataclass(frozen=True)
 class Solid:
-    """A solid that one or more variants share."""
+    """A solid that one variant uses, or several share."""
 
     name: str  # of its picture
     words: str
@@ -214,7 +214,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class Variants:
-    """All variants of the design, the one that governs first."""
+    """All variants of the design, with the governing one first."""
 
     governing: str  # in one sentence; empty without criteria
     judged: ReportVerdict | None  # every criterion of the variant that governs
@@ -226,7 +226,7 @@ class Variants:
 
 @dataclass(frozen=True)
 class Signature:
-    """A step of the approval; without a name nobody has taken it."""
+    """A step of the approval; without a name the step has not been taken."""
 
     role: str
     name: str = ""
@@ -248,7 +248,7 @@ class Signatures:
 
 @dataclass(frozen=True)
 class Report:
-    """A revision, whole."""
+    """The complete report of a revision."""
 
     title: str
     design: str

@@ -24,12 +24,12 @@ def judged(revision: RevisionWorksheet) -> ReportVerdict:
 
 
 def _governing(first: Line | None) -> str:
-    """Return the criterion that governs, in one sentence; empty without one."""
+    """Return one sentence on the criterion that governs; empty if there is none."""
     return governing_sentence(first) if first else ""
 
 
 def governing_sentence(first: Line) -> str:
-    """Return a criterion that governs, in one sentence."""
+    """Return one sentence on a criterion that governs."""
     used = f"{first.used} of the limit used" if first.used else ""
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""

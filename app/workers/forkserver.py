@@ -1,7 +1,7 @@
 """The process from which job processes are forked: it has imported the geometry kernel and does nothing else.
 
-A fork of it is ready in milliseconds, whereas an import takes seconds. It is a plain process, because
-children of `multiprocessing`'s fork server would import the server's main module again.
+A fork is ready in milliseconds, whereas an import takes seconds. It is a plain process, because children of
+`multiprocessing`'s fork server would import the server's main module again.
 
 The server's lifeline kills it and its children when the server dies, even in the middle of an import. On
 systems without that signal, it ends when it notices that its channel has closed.
@@ -31,7 +31,7 @@ Nursery = dict[int, Connection]  # process id of a living job -> where its exit 
 def main(
     channel: int, lifeline: int, modules: Iterable[str], prepare: Callable[[], object] | None = None
 ) -> NoReturn:
-    """Import the modules, then fork a job process for each pair of connections that the channel brings.
+    """Import the modules, then fork a job process for each pair of connections that arrives on the channel.
 
     `prepare`, if given, is called before the imports.
     """
@@ -60,8 +60,8 @@ def main(
 def load(name: str) -> ModuleType | None:
     """Import a module, or all modules of a package; the kernel is loaded but not used.
 
-    Once used, the kernel has threads, which a fork lacks and would wait for forever. So a module may have a
-    function `rehearse`, which each fork calls while it waits for its job.
+    Once used, the kernel has threads, which a fork lacks and would wait for forever. Therefore a module may
+    have a function `rehearse`, which each fork calls while it waits for its job.
     """
     try:
         module = importlib.import_module(name)
@@ -74,7 +74,7 @@ def load(name: str) -> ModuleType | None:
 
 
 def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]) -> None:
-    """Alternate between forking and collecting dead children, so that no death interrupts other work."""
+    """Alternate between forking and collecting dead children, so that a death interrupts no other work."""
     nursery: Nursery = {}
     deaths, knell = socket.socketpair()
     with deaths, knell, selectors.DefaultSelector() as selector:
@@ -108,7 +108,7 @@ def _fork(
     nursery: Nursery,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
-    """Fork a job process in a separate process group and send its id."""
+    """Fork a job process in a separate process group, and send its id."""
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:
@@ -127,7 +127,7 @@ def _become_job(
     lifeline: int,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
-    """Turn a fork of this process into a job process; does not return."""
+    """Turn a fork of this process into a job process; never return."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
     for other in foreign:  # a copy left open here would hide the end of its owner
@@ -137,7 +137,7 @@ def _become_job(
 
 
 def _collect(nursery: Nursery) -> None:
-    """Collect the exit codes of the jobs that have died and send them to the server."""
+    """Collect the exit codes of dead jobs, and send them to the server."""
     for pid in list(nursery):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:

@@ -43,8 +43,8 @@ def serve_jobs(
 ) -> NoReturn:
     """Wait for a request, answer it, and end the process, unless another request may follow.
 
-    While it waits it rehearses, so that modules loaded at first use are ready. It exits without cleaning up,
-    because destructors of geometry kernels may crash after the work is done.
+    While it waits, the process rehearses, so that modules loaded at first use are ready. It exits without
+    cleaning up, because destructors of geometry kernels may crash after the work is done.
     """
     exit_code = 1
     try:
@@ -73,7 +73,7 @@ def serve_jobs(
 
 
 def _die_with(parent: int) -> None:
-    """Have the kernel kill this process when its parent dies; Linux only, elsewhere the parent must do it."""
+    """Make the kernel kill this process when its parent dies; elsewhere than on Linux the parent does it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it died before the kernel knew
@@ -119,7 +119,7 @@ def _packed_result(result: object) -> PackedMessage:
 
 
 def _portable(error: BaseException) -> BaseException:
-    """Return the exception, or a RemoteError if it cannot be sent; a note names its origin."""
+    """Return the exception, or a RemoteError if it cannot be sent; a note names where it was raised."""
     where = "".join(traceback.format_exception(error))
     try:
         pickle.loads(pickle.dumps(error))
@@ -130,10 +130,10 @@ def _portable(error: BaseException) -> BaseException:
 
 
 def _limit(limits: Limits) -> None:
-    """Set the limits of this process in the kernel, which enforces them even without the server.
+    """Set this process's limits in the kernel, which enforces them even without the server.
 
-    These are soft limits, which a process raises for its next request. The kernel counts the processor time
-    of all requests together, and ends the process at the soft limit.
+    These are soft limits, which a process raises for its next request. The kernel adds up the processor time
+    of all requests, and ends the process at the soft limit.
     """
     used = resource.getrusage(resource.RUSAGE_SELF)
     seconds = math.ceil(used.ru_utime + used.ru_stime + limits.deadline * (os.cpu_count() or 1)) + 1
@@ -150,7 +150,7 @@ def _set_soft(kind: int, wanted: int) -> None:
 
 
 def _has_grown(limits: Limits) -> bool:
-    """Return whether the process has kept so much memory that the next request could run out."""
+    """Return whether the process holds so much memory that the next request could exceed the limit."""
     if sys.platform != "linux":
         return False
     return _mapped_bytes() - _mapped_at_start() > limits.memory_mb * 2**20 / _GROWTH
@@ -158,11 +158,11 @@ def _has_grown(limits: Limits) -> bool:
 
 @cache
 def _mapped_at_start() -> int:
-    """Return the address space before the first request [bytes]."""
+    """Return the size of the address space before the first request [bytes]."""
     return _mapped_bytes()
 
 
 def _mapped_bytes() -> int:
-    """Return the address space of the process [bytes]."""
+    """Return the present size of the process's address space [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

@@ -18,15 +18,15 @@ REUSE = 100  # requests that one process takes at most: what leaks in it ends wi
 
 
 class WarmProcesses:
-    """Runs functions in processes that are forked from one with light modules loaded, and kept.
+    """Runs functions in processes that are forked from one with light modules loaded, and reused.
 
-    A process takes another request only if the last one ended by itself: whatever crashed, took too long,
-    wanted too much memory or was cancelled ends its own process and no other.
+    A process takes another request only if the last one returned normally. After a crash, a time-out, too
+    much memory or a cancellation only the process concerned ends.
 
     Args:
-        preload: leaf modules; a package such as `numpy` would be imported with everything beneath it.
-        spares: processes that are kept waiting.
-        reuse: requests that one process takes.
+        preload: leaf modules; a package such as `numpy` would be imported with everything in it.
+        spares: number of idle processes.
+        reuse: largest number of requests for one process.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class WarmProcesses:
         return cast(T, outcome.result())
 
     def answers(self) -> bool:
-        """Return whether the forkserver is alive; if it has died, it is started again."""
+        """Return whether the fork server is alive; if it has died, it is restarted."""
         if self._forkserver.is_alive():
             return True
         if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
@@ -86,7 +86,7 @@ class WarmProcesses:
         return process
 
     def _started(self, request: Request) -> JobProcess:
-        """Give the request to a waiting process; replace one that has died."""
+        """Pass the request to an idle process; replace one that has died."""
         with self._lock:
             process = self._idle.pop() if self._idle else self._forked()
         try:
@@ -99,7 +99,7 @@ class WarmProcesses:
         return process
 
     def _put_back(self, process: JobProcess) -> None:
-        """Keep a process that may be used again, and one at least that waits for the next request."""
+        """Keep a process that may be used again; at least one process waits for the next request."""
         with self._lock:
             self._served[process] += 1
             is_kept = (

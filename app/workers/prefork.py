@@ -26,7 +26,7 @@ _started: dict[tuple[str, ...], ForkServer] = {}
 def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) -> None:
     """Fork a fork server for these modules in advance; it ends with this process, used or not.
 
-    If this process already has threads, or is not on Linux, nothing is forked: callers get a new process
+    If this process already has threads, or is not on Linux, nothing is forked: callers then get a new process
     later.
 
     Parameters
@@ -68,14 +68,14 @@ def close() -> None:
 
 
 class ForkedProcess:
-    """A child of this process; behaves as a `subprocess.Popen`."""
+    """A child of this process with the interface of `subprocess.Popen`."""
 
     def __init__(self, pid: int) -> None:
         self.pid = pid
         self._code: int | None = None
 
     def poll(self) -> int | None:
-        """Return the exit code; None while the process lives."""
+        """Return the exit code; None while the process is running."""
         if self._code is None:
             try:
                 ended, status = os.waitpid(self.pid, os.WNOHANG)
@@ -86,12 +86,12 @@ class ForkedProcess:
         return self._code
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return the exit code once the process has ended.
+        """Wait for the end of the process, and return its exit code.
 
         Raises
         ------
         subprocess.TimeoutExpired
-            If it lives longer [s].
+            If it takes longer than the timeout [s].
         """
         end = time.monotonic() + (float("inf") if timeout is None else timeout)
         while (code := self.poll()) is None:
@@ -107,7 +107,10 @@ class ForkedProcess:
 
 
 def _may_fork() -> bool:
-    """Return whether this process has one thread: a fork lacks the others, and would wait for their locks."""
+    """Return whether this process has only one thread.
+
+    A fork lacks all other threads, and would wait for their locks.
+    """
     return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
 
 
@@ -118,7 +121,7 @@ def _become_fork_server(
     environment: Mapping[str, str],
     prepare: Callable[[], object] | None,
 ) -> NoReturn:
-    """Turn a fork of the server into a fork server, in the state of a new process."""
+    """Turn a fork of the server into a fork server with the state of a new process."""
     try:
         from app.workers.forkserver import main
 

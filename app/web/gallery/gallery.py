@@ -19,7 +19,7 @@ Version = int | str | None
 
 
 class Example(NamedTuple):
-    """A design to start from."""
+    """An example design to start from."""
 
     title: str
     text: str

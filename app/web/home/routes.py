@@ -1,4 +1,4 @@
-"""The route of the first page."""
+"""The route of the home page."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TAGS_ON_HOME = 30
 
 @router.get("/")
 async def home(request: Request, services: ThePageServices, template: Search = "") -> Response:
-    """Show designs, templates, models, and where to start; `template` searches the templates."""
+    """Return the home page: designs, templates, models, and where to start; `template` searches templates."""
     designs, tags, templates, models, faulty = await asyncio.gather(
         services.run(list_designs, services.database, limit=ON_HOME),
         services.run(list_tags, services.database),

@@ -40,8 +40,8 @@ Messages = queue.SimpleQueue[tuple[float, str] | None]
 class Cluster:
     """The machines behind a scheduler that run the same program.
 
-    A thread of its own connects and looks around, so nobody waits for a scheduler that does not answer. What
-    this server has submitted it counts itself, at once; what others have, it saw at its latest look.
+    A separate thread connects and polls, so no caller waits for a scheduler that does not answer. The tasks
+    of this server are counted at once, and those of other servers as of the latest poll.
     """
 
     def __init__(self, address: str, security: Security, program: str) -> None:
@@ -62,16 +62,16 @@ class Cluster:
         self._thread.start()
 
     def size(self, lane: Lane) -> int:
-        """Return the number of functions of a lane that the machines run at the same time."""
+        """Return how many functions of a lane the machines can run at the same time."""
         return sum(there.size for there in self._places.get(lane, {}).values())
 
     def free(self, lane: Lane) -> int:
-        """Return how many more functions they could start now."""
+        """Return how many more functions of a lane the machines could start now."""
         with self._changed:
             return sum(max(0, count) for count in self._free(lane).values())
 
     def why_silent(self) -> str:
-        """Return why no machine runs anything, if none does."""
+        """Return why no machine runs functions, if none does."""
         if not self._thread.is_alive():
             return f"the thread that connects to {self.address} has ended: start this server again"
         if (client := self._client) is None or client.status != "running":
@@ -86,14 +86,15 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
     ) -> tuple[Outcome, str]:
-        """Wait for a place, preferably on a given machine, run an order there, and return the machine.
+        """Wait for a slot, preferably on a given machine, run an order there, and return the machine.
 
         Raises
         ------
         JobCancelled
-            If somebody has cancelled it.
+            If the job was cancelled.
         WorkerLost
-            If the machine or the scheduler disconnected while it ran, or several machines before it arrived.
+            If the machine or the scheduler was lost during the run, or several machines before the order
+            arrived.
         """
         cancelled = cancelled or threading.Event()
         for _ in range(_TURNS):
@@ -176,7 +177,7 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event,
     ) -> None:
-        """Pass progress on until the task has ended."""
+        """Pass on the progress until the task has ended."""
         while True:
             if cancelled.is_set() or self._closed.is_set():
                 raise JobCancelled
@@ -198,7 +199,7 @@ class Cluster:
     def _place(
         self, lane: Lane, preferred: str | None, cancelled: threading.Event
     ) -> Iterator[tuple[BoundedClient, str]]:
-        """Hold a free place of a lane, and give the client and the address of the machine."""
+        """Reserve a free slot of a lane, and return the client and the address of the machine."""
         with self._changed:
             while (machine := self._best(lane, preferred)) is None or (client := self._client) is None:
                 if cancelled.is_set() or self._closed.is_set():
@@ -224,7 +225,7 @@ class Cluster:
         return {machine: its.size - its.of_others - self._own[lane, machine] for machine, its in there}
 
     def _work(self) -> None:
-        """Connect, look around until the connection breaks, and connect again."""
+        """Connect, poll until the connection breaks, and connect again."""
         is_logged = False
         while not self._closed.is_set():
             try:
@@ -243,7 +244,7 @@ class Cluster:
 
     @contextmanager
     def _connected(self) -> Iterator[BoundedClient]:
-        """Open a client, and close it when its scheduler is lost: it and its futures are useless then."""
+        """Open a client, and close it when its scheduler is lost, because its futures are useless then."""
         client = BoundedClient(self.address, self._security)
         try:
             client.subscribe_topic(self._topic, self._hear)
