@@ -50,7 +50,7 @@ ROUTERS = (
     model_import.forms,
     second_part.router,
     second_part.forms,
-    faults.router,  # before the templates, likewise
+    faults.router,  # before the templates: `faults` is not the id of one
     template.router,
     solve.router,
     model.router,
@@ -83,7 +83,7 @@ ROUTERS = (
     plots.router,  # before the files: Plotly's is in its package
 )
 FOLDER = Path(__file__).parent
-SENT = {".css", ".js", ".svg"}  # endings of the files that a browser may fetch
+SENT = {".css", ".js", ".svg"}  # suffixes of files that a browser may load
 
 
 class Files(StaticFiles):

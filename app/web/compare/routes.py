@@ -15,7 +15,7 @@ from app.web.shared.paths import Id, Text
 from app.web.shared.responses import show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices
 
-MOST_NUMBERS = 100  # of revisions in a picker
+MOST_NUMBERS = 100  # largest number of revisions in a picker
 GROUPS = ("inputs", "outputs", "model_parameters", "measurements")
 TEXTS = ("parameters", "versions", "relations")
 MISSING = 404

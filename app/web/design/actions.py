@@ -200,7 +200,7 @@ async def _again(
         raise refused
     notice = (
         f"Somebody else saved this design meanwhile: {refused.problem.detail}. Your changes are kept in "
-        "the fields below; look at them once more, then save."
+        "the fields below; check them again, then save."
         if refused.status == STALE
         else None
     )

@@ -131,7 +131,7 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
     """Return the merge patch for a form in this module; None for another form."""
     match typed.get("declare", ""):
         case "analysis":
-            name = typed.get("kind", "").strip()  # an analysis is called by its kind
+            name = typed.get("kind", "").strip()  # an analysis is named after its kind
             options = None if typed.get("drop") else _analysis(typed)
             return {"models": {typed.get("model", ""): {"analyses": {name: options}}}}
         case "iteration":

@@ -19,7 +19,7 @@ LETTER = 6.7  # width, of 11 px in a fixed pitch
 HEAD, ROW, LANE = 24.0, 17.0, 8.0  # heights
 GAP, SPACE, MARGIN, BACK = 72.0, 16.0, 14.0, 12.0
 NARROWEST = 110.0
-MOST_LETTERS = 40  # of a row; its title says all
+MOST_LETTERS = 40  # letters of a row; its title has the full text
 LINKS = {"parameter": "#-{}", "step": "#step-{}", "model": "#part-{}"}
 
 
@@ -43,8 +43,8 @@ class Box:
     y: float
     width: float
     height: float
-    inputs: Mapping[str, Row]  # by the name of what is set
-    outputs: Mapping[str, Row]  # by the name of what is used
+    inputs: Mapping[str, Row]  # by the name of the value that is set
+    outputs: Mapping[str, Row]  # by the name of the value that is used
 
     @property
     def link(self) -> str:
@@ -62,7 +62,7 @@ class Wire:
     """A line for one name that a relation uses."""
 
     relation: NetworkRelation
-    points: list[tuple[float, float]]  # where it starts, passes columns, and ends
+    points: list[tuple[float, float]]  # start, crossings of columns, and end
     path: str
 
 
@@ -96,7 +96,7 @@ def drawing(network: DesignNetwork) -> Drawing | None:
     columns = [[item for item in items if item.column == at] for at in range(_count(items))]
     tall = max(sum(item.height + SPACE for item in column) for column in columns)
     left, boxes, lanes = MARGIN + GAP / 2, [], {}
-    places: dict[str, float] = {}  # the middle of whatever a name was given last
+    places: dict[str, float] = {}  # latest middle of the item with each name
     for column in columns:
         width = max(_width(item) for item in column)
         top = MARGIN + (tall - sum(item.height + SPACE for item in column)) / 2

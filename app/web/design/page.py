@@ -78,9 +78,7 @@ from app.web.verdict.banner import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
-QUICK = (
-    1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
-)
+QUICK = 1  # longest wait for steps; the page's script requests slower ones and shows their progress [s]
 NO_REFUSAL = Refusal()
 NO_PART = dict.fromkeys(("declare", "add", "name", "value"), "")
 
@@ -186,7 +184,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         await templates_of(services, steps_of_design(design)),
         await described_models(services, design),
     )
-    has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
+    has_parameters = bool(design.parameters)  # only a preview with the worksheet has their values
     change = PreviewRequest(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
     preview = await services.calculate(within, services.previews.at_once, change) if has_values else None

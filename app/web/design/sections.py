@@ -21,7 +21,7 @@ from app.web.shared.responses import jinja
 from app.web.variants.table import VariantsTable
 from app.web.verdict.banner import Banner, opened
 
-KEPT = 16 * 2**20  # characters of sections
+KEPT = 16 * 2**20  # largest size of the cached sections [characters]
 _kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
 """Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.designs.schemas.designs import Sensitivity
 from app.presentation import numbers
 
-WIDTH = 100  # of the picture of a bar, whose middle is no change
+WIDTH = 100  # width of a bar's picture; its middle means no change
 HELPS = {"increase": "raise it", "decrease": "lower it"}
 
 

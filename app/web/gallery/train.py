@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pydantic import JsonValue
 
 THROWS = 4
-STIFFNESS = "crankshaft.chain.throw_stiffnesses"  # of each throw, from mid-main to mid-main
+STIFFNESS = "crankshaft.chain.throw_stiffnesses"  # stiffness of each throw between the centres of its mains
 TENSORS = "crankshaft.unit_loads.stress_of_"
-FIRST = 3  # number of the inertia of throw 1, behind the damper's ring and its hub
+FIRST = 3  # number of the inertia of throw 1, after the damper's ring and hub
 _SHAFTS = THROWS + 3
 _MASS_ON_PIN = (
     "engine.rod_mass * (1 - engine.rod_centre / engine.rod_length)"

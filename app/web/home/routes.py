@@ -19,7 +19,7 @@ from app.web.shared.responses import show
 from app.web.shared.services import PageServices, ThePageServices
 
 router = APIRouter(include_in_schema=False)
-ON_HOME = 4  # designs, with pictures: the first page is light
+ON_HOME = 4  # designs with pictures; few, so that the page loads fast
 TAGS_ON_HOME = 30
 
 

@@ -35,7 +35,7 @@ SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
 """Largest error of the last angle against a whole cycle [deg], of the last value against the first [-]."""
-DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
+DIGITS = 12  # digits of a shifted angle, so that 0.1 + 0.2 is 0.3
 
 
 def paste(pasted: PastedTable) -> ReadTable:
@@ -171,7 +171,7 @@ def _faults(
     if not taken:
         yield "choose a field for at least one column"
     for name in sorted({name for name in taken if taken.count(name) > 1}):
-        yield f"two columns go to {_said(name)}; choose one of them"
+        yield f"two columns are assigned to {_said(name)}; choose one of them"
     for column, choice in zip(columns, chosen, strict=True):
         if choice.field and choice.field not in by_name:
             yield f"column {column.name}: this form has no field {_said(choice.field)}"

@@ -25,7 +25,7 @@ from cad.export import MEDIA_TYPES
 from cad.model import CadModel
 from cad.regenerate import build_key
 
-SHOWN = ("step", "glb")  # made at once; other kinds when they are asked for
+SHOWN = ("step", "glb")  # created at once; other kinds only on request
 ABOUT = {"units"}
 
 

@@ -28,7 +28,7 @@ PATIENCE = 15.0
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
-_FIXED = "Fixed part "  # the title of an imported STEP file begins so
+_FIXED = "Fixed part "  # the title of an imported STEP file begins with this
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
 

@@ -24,7 +24,7 @@ from app.web.shared import sheet
 from app.web.shared.limits import limit_fields, with_rows
 from app.web.shared.sheet import Field
 
-MOST_AT_ONCE = 16  # results
+MOST_AT_ONCE = 16  # largest number of results shown at first
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class StepBlock:
     fields: list[Field] = field(default_factory=list)
     options: list[Field] = field(default_factory=list)
     limits: list[Field] = field(default_factory=list)
-    keys: list[str] = field(default_factory=list)  # outputs in its fold line
+    keys: list[str] = field(default_factory=list)  # outputs in the summary line
 
     @property
     def main(self) -> list[str]:

@@ -88,7 +88,7 @@ async def _newest(services: PageServices, id: str) -> int:
     return next(item.version for item in versions if item.latest)
 
 
-ON_DESIGN = 10  # comments on the page of a design; that of a revision has all, page by page
+ON_DESIGN = 10  # comments on the page of a design; the page of a revision lists all
 
 
 async def approval_of(services: PageServices, id: str, number: int) -> Approvals:

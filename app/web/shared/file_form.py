@@ -71,7 +71,7 @@ class FileForm:
             address = self.address(work.result or "")
             return go(address) if address else await self._form(request, services, id)
         answer = show(request, self.page, notice="", waiting=work)
-        answer.headers["Refresh"] = "1"  # the page needs no script to wait
+        answer.headers["Refresh"] = "1"  # so that the page can wait without a script
         return answer
 
     async def send(self, request: Request, services: PageServices) -> Response:

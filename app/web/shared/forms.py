@@ -25,8 +25,8 @@ from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.input_text import text_of, value_of
 from app.web.shared.session import check_form_token
 
-OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
-LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins
+OPTIONS = ("level", "tolerance")  # options of a step, besides its inputs
+LIMITS = "limits."  # prefix of the controls for limits of its criteria
 MOST_FIELDS = 20_000
 
 Patch = dict[str, dict[str, JsonValue]]

@@ -22,8 +22,8 @@ class PlaceOption:
     words: str
     unit: str
     value: str = ""
-    relation: str = ""  # that sets it
-    instead: tuple[str, ...] = ()  # on which that depends, and which hold values of their own
+    relation: str = ""  # the relation that sets it
+    instead: tuple[str, ...] = ()  # typed values on which the relation depends
 
 
 def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:

@@ -21,7 +21,7 @@ HEADERS = {
     "Content-Security-Policy": PAGE_POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "same-origin",
-    "Cache-Control": "no-store",  # going back shows what is, not what was
+    "Cache-Control": "no-store",  # going back must show the present state
     "Vary": "Cookie",
 }
 YEAR = 365 * 24 * 3600  # s

@@ -27,12 +27,12 @@ class Field:
     unit: str | None = None
     hint: str = ""
     options: tuple[str, ...] = ()
-    value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
+    value: object = None  # result of a relation, or a default; None if the text states the value
     needed: bool = True
-    is_list: bool = False  # several values, to be edited item by item or pasted
-    own: bool = False  # a design's own parameter: its name is all its words
+    is_list: bool = False  # whether it has several values, to be edited item by item or pasted
+    own: bool = False  # whether it is a design's own parameter, which has only its name
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
-    suggestions: Mapping[str, str] = field(default_factory=dict)  # texts to take, and what each stands for
+    suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
 
     @property
     def id(self) -> str:

@@ -23,7 +23,7 @@ from app.web.shared.services import PageServices, ThePageServices
 from app.web.shared.session import keep_signed_in
 
 _BACK = re.compile(r"/(?![/\\])[!-~]*")
-LONGEST = 300  # characters of what may be typed as a key
+LONGEST = 300  # longest text accepted as a key [characters]
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])

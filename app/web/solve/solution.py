@@ -51,7 +51,7 @@ class Drawing:
     wanted: float
     curve: TracedCurve
     finer: Sequence[TracedCurve]
-    roots: Sequence[Root]  # and extrema that touch
+    roots: Sequence[Root]  # including extrema that touch the target
     jumps: Sequence[Jump]
     level: str  # of the curve that was searched, in words; empty without levels
     finer_levels: Sequence[str]
@@ -128,7 +128,7 @@ class Reply(Generic[Kind]):
     """The reply to a request: an answer, a job that computes it, or faults."""
 
     answer: Kind | None = None
-    job: str = ""  # that still makes the answer
+    job: str = ""  # the job that is still computing the answer
     refusal: Refused | None = None
 
     @property

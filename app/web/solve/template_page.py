@@ -28,7 +28,7 @@ from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit
 
 FIELDS = ("unknown", "low", "high", "output", "value")
-MARK = "?"  # before the names of these fields in the address: no input is called so
+MARK = "?"  # prefix of these fields in the address; no input name has it
 JOB = f"{MARK}job"
 
 
@@ -37,7 +37,7 @@ class Question:
     """The texts of the form, and the inputs taken over from the template's page."""
 
     typed: Mapping[str, str]  # by field
-    inputs: Mapping[str, str]  # and options, by control of the template's form; empty: the example
+    inputs: Mapping[str, str]  # inputs and options, by control of the template's form; empty: the example
 
     @classmethod
     def of(cls, request: Request) -> Question:

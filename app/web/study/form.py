@@ -27,7 +27,7 @@ LINES = 4
 METHODS = {
     "grid": "every combination of evenly spaced values (sweeps, contours)",
     "sample": "rows spread over all intervals (histograms, parallel coordinates)",
-    "sensitivity": "how much each input moves each output",
+    "sensitivity": "how much each input affects each output",
     "optimise": "the best row that meets the criteria",
 }
 POINTS = "1024"

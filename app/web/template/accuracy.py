@@ -10,7 +10,7 @@ from pydantic import BaseModel, JsonValue
 
 from app.catalogue.schemas.templates import Accuracy
 
-SHOWN = 6  # outputs; all are in the answer of the interface
+SHOWN = 6  # number of outputs shown; the interface returns all
 
 
 class Level(NamedTuple):

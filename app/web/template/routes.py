@@ -27,8 +27,8 @@ from app.web.shared.services import PageServices, Refused, ThePageServices
 from app.web.template.accuracy import table
 from templates.core.language import template as language
 
-ABOUT = {"units"}  # of the address, beside the inputs
-PATIENCE = 2.0  # time that the page waits for an answer [s]; it shows how the rest goes on
+ABOUT = {"units"}  # query fields besides the inputs
+PATIENCE = 2.0  # longest wait of the page for an answer [s]; then it shows the progress
 
 
 async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:

@@ -27,7 +27,7 @@ router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 ILL_NAMED, STALE, MISSING = 422, 412, 404
-PATIENCE = 10  # for steps that take long [s]; what does not end by then is shown as pending
+PATIENCE = 10  # longest wait for slow steps [s]; those that take longer are shown as pending
 _ID = re.compile(r"[A-Za-z0-9_]{1,64}")
 _VERSION = re.compile(r"[1-9][0-9]{0,5}")
 
@@ -108,7 +108,7 @@ async def _page(
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise
-        if newer is None:  # no version at all, or a draft with faults: its own answer says which
+        if newer is None:  # no version, or a draft with faults; the error states which
             await services.run(show_template, template, number, services.catalogues)
         refused = refused or wrong
     revision = await services.run(show_revision, id, design.revision, services.database)

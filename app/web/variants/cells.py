@@ -27,7 +27,7 @@ class CsvFile:
     """A table as a CSV file, and the positions of its cells on the page."""
 
     content: bytes
-    columns: Mapping[int, int]  # of the page, by those of the file that it does not have
+    columns: Mapping[int, int]  # column of the page, by column of the file
 
     def on_page(self, fault: Fault) -> Fault:
         """Return a fault with the cell's address on the page."""

@@ -34,7 +34,7 @@ class ChosenVariant:
     lines: Sequence[Line] = ()
     plots: Sequence[Plot] = ()
     problem: str = ""
-    job: str = ""  # that calculates it
+    job: str = ""  # the job that calculates the variant
 
 
 ChosenVariant.NONE = ChosenVariant("")

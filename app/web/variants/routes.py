@@ -23,7 +23,7 @@ from app.web.variants.table import EMPTY, RefusedTable, places_of
 from templates.core.errors import InvalidInputs
 
 STALE, WRONG = 412, 422
-CHANGED = "Somebody else saved this design meanwhile: {}. Look at your table once more, then save it."
+CHANGED = "Somebody else saved this design meanwhile: {}. Check your table again, then save it."
 
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])

@@ -86,7 +86,7 @@ class Outcome:
 class Row:
     """A row of fields, and the results of its variant if it is saved."""
 
-    number: int  # in the sheet, from 1
+    number: int  # row number in the sheet, from 1
     name: Cell
     cells: list[Cell]
     outcome: Outcome | None
@@ -103,8 +103,8 @@ class VariantsTable:
 
     heads: list[Head]
     rows: list[Row]
-    criteria: list[str]  # headings of those that were checked in a variant
-    unchecked: list[str]  # the others
+    criteria: list[str]  # headings of criteria that were checked in a variant
+    unchecked: list[str]  # headings of all other criteria
     base: Outcome | None
     own: list[str]  # the design's values as typed, column by column
     count: int

@@ -13,7 +13,7 @@ from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.blocks import StepBlock
 from app.web.shared.forms import texts
 
-MOST_KEYS = 4  # results in the fold line of a step
+MOST_KEYS = 4  # results in the summary line of a step
 _NAMES = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*")
 
 

@@ -19,7 +19,7 @@ from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine,
 from templates.examples.index import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
-PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads
+PAGE, MOST_PAGES = 500, 10  # worksheets in one response, and responses that a list or a search reads
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from app.web.shared.services import PageServices, Refused
 from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
-PATIENCE = 5.0  # for steps of the design that take long [s]
+PATIENCE = 5.0  # longest wait for slow steps of the design [s]
 REFUSED = (404, 409, 413, 422, 429)
 
 

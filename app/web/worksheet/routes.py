@@ -109,7 +109,9 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
 
 def _unsaved(text: str, refused: Refused) -> UnsavedText:
     if refused.status == STALE:
-        notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
+        notice = (
+            "Somebody else saved this worksheet meanwhile. Your text is kept; theirs is shown next to it."
+        )
         return UnsavedText(text, notice, STALE, is_conflict=True)
     return UnsavedText(text, f"Nothing was saved: {refused.sentence}", refused.status)
 

@@ -41,7 +41,7 @@ def stages(sheet: Sheet) -> list[Stage]:
         Stage(
             "review",
             f"Review{by}",
-            "Somebody else reads the text. Nobody proves the name: reports say ‘review not verified’.",
+            "Somebody else reads the text. The name is not verified: reports state ‘review not verified’.",
             reached >= 2,
             "" if reached >= 1 else "Test it first.",
         ),
