@@ -15,12 +15,12 @@ from app.schemas.answers import Quantity, Shown, Values
 from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.units.units import base_text, dimension_of, unit
 
-DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
+DIGITS_TYPED = 12  # digits shown of a typed number, as many as are stored
 _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s", "Hz")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
-WRITTEN = numbers.PARTS  # of a quantity that a line shows
+WRITTEN = numbers.PARTS  # parts of a quantity that a line shows
 TOLERANCE = WRITTEN[3:]
 
 

@@ -13,10 +13,10 @@ from math import ceil, floor, isfinite, log10
 
 from app.presentation import numbers
 
-WIDTH, HEIGHT, SQUARE = 560, 280, 380  # of the whole drawing
+WIDTH, HEIGHT, SQUARE = 560, 280, 380  # size of the drawing
 LEFT, RIGHT, TOP, BOTTOM = 70, 14, 12, 44  # margins
-LEGEND = 18  # height of a line of the legend
-MOST_POINTS = 1500  # of a line; a cycle has 720 or so
+LEGEND = 18  # height of a line in the legend
+MOST_POINTS = 1500  # points of a line; a cycle has about 720
 TICKS = 6
 COLOURS = ("#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "#0f8a8a")
 FONT = "Liberation Sans, Arial, sans-serif"
@@ -43,7 +43,7 @@ class Chart:
     series: Sequence[Series]
     square: bool = False
     logarithmic: bool = False
-    highest: float | None = None  # of y
+    highest: float | None = None  # upper limit of y
 
 
 @dataclass(frozen=True)

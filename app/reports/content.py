@@ -20,7 +20,7 @@ class Line:
     si: Cell = NOTHING
     origin: str = ""  # given, default, or the relation
     error: str = ""
-    relation: str = ""  # MathML, where the origin is a relation that is more than a name
+    relation: str = ""  # MathML; empty if the origin is no relation, or only a name
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Criterion:
     margin: str
     error: str
     source: str
-    remarks: list[str]  # what restricts the verdict, and what to give
+    remarks: list[str]  # restrictions of the verdict, and missing inputs
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,8 @@ class Rule:
     words: str
     kind: str
     demand: str  # MathML
-    numbers: str  # MathML, with the sign that is true
-    used: str  # of the allowance
+    numbers: str  # MathML, with the sign that holds
+    used: str  # used share of the allowance
     holds: bool
     state: str  # inside, outside; kept, violated
     remark: str
@@ -98,7 +98,7 @@ class Identity:
     digest: str
     title: str
     withdrawn: str
-    review: str = ""  # of a worksheet
+    review: str = ""  # review of a worksheet
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,10 @@ class Step:
     formulas: list[Formula]
     results: list[Line]
     plots: list[Plot]
-    ranges: list[Rule]  # the range of validity: domains and published ranges
+    ranges: list[Rule]  # range of validity: domains and published ranges
     rules: list[Rule]
     warnings: list[StepWarning]
-    assumed: list[str]  # defaults that make a part look safer, and stand
+    assumed: list[str]  # default values in use that make a part look safer
     references: list[str]
 
 
@@ -127,7 +127,7 @@ class MappedParameter:
     words: str
     symbol: str
     relation: str
-    formula: str  # the relation in MathML, where it is more than a name
+    formula: str  # the relation in MathML; empty if it is only a name
     old: Cell
     new: Cell
     measured: Cell
@@ -148,7 +148,7 @@ class PaintedField:
 
     id: str
     title: str
-    low: Cell  # of the scale of colours
+    low: Cell  # lower end of the colour scale
     high: Cell
 
 
@@ -160,14 +160,14 @@ class Model:
     model: Identity
     state: str
     build: str
-    compared: str  # with which revision
+    compared: str  # the revision used for comparison
     parameters: list[MappedParameter]
     measures: list[Line]
-    analyses: list[Line]  # what finite elements computed; origin is how
+    analyses: list[Line]  # finite-element results; the origin states how
     warnings: list[StepWarning]
     rules: list[Rule]
     files: list[File]
-    remark: str  # on pictures that could not be had
+    remark: str  # on pictures that are not available
     painted: list[PaintedField] = field(default_factory=list)
 
 
@@ -197,7 +197,7 @@ class VariantLine:
     governs: bool
     verdict: str  # met, not_met, undecided, not_checked; empty without criteria
     headline: str
-    governing: str  # its governing criterion, with value and limit
+    governing: str  # the governing criterion, with value and limit
     used: str
     problem: str
 
@@ -206,7 +206,7 @@ class VariantLine:
 class Solid:
     """A solid that one variant uses, or several share."""
 
-    name: str  # of its picture
+    name: str  # name of the picture
     words: str
     file: File | None
     remark: str
@@ -217,10 +217,10 @@ class Variants:
     """All variants of the design, with the governing one first."""
 
     governing: str  # in one sentence; empty without criteria
-    judged: ReportVerdict | None  # every criterion of the variant that governs
+    judged: ReportVerdict | None  # every criterion of the governing variant
     lines: list[VariantLine]
     inputs: list[Columns]
-    used: list[Columns]  # what each uses of each limit
+    used: list[Columns]  # used share of each limit
     solids: list[Solid]
 
 
@@ -232,18 +232,18 @@ class Signature:
     name: str = ""
     at: str = ""
     digest: str = ""
-    reason: str = ""  # of a withdrawal
-    acknowledged: str = ""  # why criteria that are not confirmed may stand, and how many they are
+    reason: str = ""  # reason for a withdrawal
+    acknowledged: str = ""  # why unconfirmed criteria are acceptable, and their number
 
 
 @dataclass(frozen=True)
 class Signatures:
     """The people who calculated, checked and released the revision."""
 
-    words: str  # how far its approval is
+    words: str  # state of the approval, in words
     is_released: bool
     items: list[Signature]
-    block: str  # the same for programs, as JSON
+    block: str  # the same as JSON, for programs
 
 
 @dataclass(frozen=True)
@@ -268,4 +268,4 @@ class Report:
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
     variants: Variants | None = None
-    author: str = ""  # who saved the revision; empty where nobody is asked for a key
+    author: str = ""  # who saved the revision; empty on a service without keys

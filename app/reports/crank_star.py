@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from math import cos, radians, sin
 
 WIDTH, HEIGHT = 560, 240  # as wide as the charts next to it
-RAY, WORDS = 74, 98  # radius of the pins, and of their words
-_SAME = 0.05  # deg, pins nearer than this are drawn as one
+RAY, WORDS = 74, 98  # radius of the pins, and of their labels
+_SAME = 0.05  # pins closer than this are drawn as one [deg]
 
 
 def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:

@@ -27,7 +27,7 @@ from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.paper.verdicts import checks
 
-KEPT = ("step", DRAWING, PICTURE)  # files that a report lists, whichever others were asked for
+KEPT = ("step", DRAWING, PICTURE)  # kinds of files that a report lists
 NO_VALUES = "its parameters wait for a solid, or are not set"
 MEASURES = ("mass", "volume", "polar_inertia")
 

@@ -15,7 +15,7 @@ from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.drafting.paper import as_pdf
 
-KEPT = 32 * 2**20  # bytes of drawings in memory
+KEPT = 32 * 2**20  # largest size of the cached drawings [bytes]
 
 
 class Press:

@@ -14,11 +14,11 @@ from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.templates import Schema
 from app.designs.schemas.designs import RevisionStep
 
-FEWEST = 3  # points of a curve
-AXES = ("crank_angle",)  # of curves that say no other
-MEASURED_AXIS = "measured_angle"  # of the values of a measurement, which have no angle in common with others
-MOST_LINES = 6  # in one picture
-MOST_PINS = 100  # in one star: pins at one angle are looked for one by one
+FEWEST = 3  # fewest points of a curve
+AXES = ("crank_angle",)  # axis of curves that declare none
+MEASURED_AXIS = "measured_angle"  # axis of measured values, whose angles are their own
+MOST_LINES = 6  # largest number of lines in a picture
+MOST_PINS = 100  # largest number of pins in a star, whose angles are compared one by one
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,9 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
         return MEASURED_AXIS if _length(values[MEASURED_AXIS]) == length else None
     is_output = isinstance(values[name], Output)
     given = [other for other in arrays if is_output and _is_given(values[other])]
-    others = given if along is None else []  # a list by cylinders is not a curve over another list
+    others = (
+        given if along is None else []
+    )  # a list with one value per cylinder is not a curve over another list
     for axis in filter(None, (along, *AXES, *others)):
         if axis in arrays and _length(values[axis]) == length:
             return axis

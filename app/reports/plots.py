@@ -18,8 +18,8 @@ from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
 from templates.core.paper.schema import inputs_schema, outputs_schema
 
-MOST = 10  # plots of a step
-SHOWN = 4  # outputs in the diagram of accuracy
+MOST = 10  # largest number of plots of a step
+SHOWN = 4  # outputs in the chart of accuracy
 
 Valued = UsedInput | Output
 Values = Mapping[str, Valued]
@@ -137,7 +137,7 @@ DRAWN = frozenset({*KINDS, STAR})
 
 
 class _Cost(TypedDict, total=False):
-    single: float | None  # s of one point
+    single: float | None  # time for one point [s]
 
 
 class _Level(TypedDict):

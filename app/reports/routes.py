@@ -41,7 +41,7 @@ TABLES = {
     "csv": "text/csv",
     "xlsx": XLSX,
 }
-PATIENCE = 15.0  # s that a report waits for its pictures, unless the client says otherwise
+PATIENCE = 15.0  # default wait of a report for its pictures [s]
 
 
 def _described(kinds: Mapping[str, str], *, later: bool = False) -> RouteOptions:

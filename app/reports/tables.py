@@ -80,7 +80,7 @@ def _of_step(block: str, step: RevisionStep) -> Iterator[Row]:
         if isinstance(used, UsedInput):
             origin = text_of(step.relations[name]) if name in step.relations else used.source
             yield _quantity(block, "input", name, used, origin)
-        else:  # as typed, of a step that waits for a solid
+        else:  # as typed, for a step that waits for a solid
             yield Row(block, "input", name, *_read(used), "given", "")
     for name, output in step.outputs.items():
         yield _quantity(block, "output", name, output, "")

@@ -20,9 +20,9 @@ import typst
 from app.presentation.bidi import bare_everywhere
 from app.reports.widths import CELL, LINE, fits
 
-PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows of a model
+PICTURE, DRAWING = "png", "drawing.svg"  # kinds of a model's files that a report shows
 PAINTED = "painted "  # prefix for the name of a field; its picture is also a PNG
-SKETCH = "svg"  # and of each solid of variants: its lines, which cost a tenth of a shaded picture
+SKETCH = "svg"  # kind of file for each solid of variants: a line drawing costs a tenth of a shaded picture
 
 Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
 
@@ -88,7 +88,7 @@ def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
             "solids": [{**solid, **_illustrated(solid, pictures)} for solid in variants["solids"]],
         }
     data = json.dumps(bare_everywhere(shown), ensure_ascii=True).encode()
-    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # missing in the types of typst
+    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # type stubs of typst lack this
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
     pdf = typst.compile(files, format="pdf", timestamp=date)
     assert isinstance(pdf, bytes), "one document makes one file"

@@ -14,7 +14,7 @@ from app.reports.typesetting import SKETCH
 from app.reports.verdict import governing_sentence, row_of
 from app.schemas.criteria import Criterion
 
-MOST_COLUMNS = 6  # of one table on paper, beside the names
+MOST_COLUMNS = 6  # columns of one table on paper, besides the names
 SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}
 
 

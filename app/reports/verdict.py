@@ -40,7 +40,7 @@ def governing_sentence(first: Line) -> str:
 
 def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
     """Return a criterion as a row of the report."""
-    truth = None if is_model(criterion.truth) else criterion.truth  # a remark names the model
+    truth = None if is_model(criterion.truth) else criterion.truth  # a remark names the model instead
     basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(

@@ -17,9 +17,9 @@ from app.approvals.schemas import ATTACHMENT, Approval, Approvals, Block, BlockS
 from app.reports.signatures import moment
 from templates.core.errors import plain
 
-LARGEST = 64 * 2**20  # bytes of a report that is read
-LARGEST_BLOCK = 64 * 2**10  # bytes of the attachment
-MOST_SHOWN = 3  # places in which the text differs
+LARGEST = 64 * 2**20  # largest report [bytes]
+LARGEST_BLOCK = 64 * 2**10  # largest attachment [bytes]
+MOST_SHOWN = 3  # largest number of differences listed
 
 
 class NotReport(Exception):
@@ -52,7 +52,7 @@ def read_block(pdf: bytes) -> Block:
         raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
     if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
         raise NotReport(
-            f"the file has no attachment {ATTACHMENT}: it is not a report, or one of an older version"
+            f"the file has no attachment {ATTACHMENT}: it is not a report, or an older version printed it"
         )
     try:
         return Block.model_validate_json(attached[0])

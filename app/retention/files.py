@@ -28,7 +28,7 @@ class Sweep:
 
     def __init__(self, database: Database, store: Artifacts, grace: float = GRACE) -> None:
         self._database, self._store, self._grace = database, store, grace
-        self._seen: set[StoredFile] = set()  # by the last sweep, without a reference
+        self._seen: set[StoredFile] = set()  # files that the last sweep found without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
         """Sweep once, unless another server does; return how many files were deleted.
@@ -46,7 +46,7 @@ class Sweep:
             return self._swept(is_stopping)
 
     def _swept(self, is_stopping: Callable[[], bool]) -> int:
-        files = set(self._store.list())  # before the rows: a file that is put meanwhile is not looked at
+        files = set(self._store.list())  # before the rows, so that files stored meanwhile are not considered
         with self._database.read() as session:
             referenced = referenced_files(session)
         unused = {file for file in files if file.sha not in referenced or self._is_spare(file)}

@@ -44,7 +44,7 @@ def delete_keys(session: Session, kept: float, most: int) -> int:
 
 def delete_jobs(session: Session, kept: float, most: int) -> int:
     """Delete some of the jobs that ended longer ago than an age [s]; return their number."""
-    # Not "state in (…)": SQLite would collect and sort all ended jobs instead of walking the index of ages.
+    # Not "state in (…)": SQLite would collect and sort all ended jobs instead of using the index of ages.
     old = select(JobRow.id).where(JobRow.operated < operated(session) - kept, JobRow.state.not_in(UNFINISHED))
     some = old.order_by(JobRow.operated).limit(most)
     return _count(session.execute(delete(JobRow).where(JobRow.id.in_(some))))

@@ -20,10 +20,10 @@ from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
 
-PAUSE = 900.0  # between two rounds [s]
+PAUSE = 900.0  # time between two rounds [s]
 HOUR = 3600.0  # s
-GRACE = HOUR  # between two sweeps of the files [s of operation]
-SOME_ROWS = 200  # that one unit deletes: others' writes wait a few milliseconds for it
+GRACE = HOUR  # time between two sweeps of the files [s of run time]
+SOME_ROWS = 200  # rows deleted in one unit, which delays other writes by a few milliseconds
 SOME_BUILDS = 10  # builds deleted in one unit; each has artifacts and analyses
 
 
@@ -33,8 +33,8 @@ class Retention:
     def __init__(self, database: Database, store: Artifacts, settings: Settings) -> None:
         self._database = database
         self._sweep = Sweep(database, store, settings.keep_files_hours * HOUR)
-        self._swept: int | None = None  # when [s of operation]
-        # The record of a request names its job, which must not be missed when the request is repeated.
+        self._swept: int | None = None  # time of the last sweep [s of run time]
+        # The record of a request names its job, which must exist when the request is repeated.
         self._keys = settings.keep_keys_days * DAY
         self._events = settings.keep_events_days * DAY
         self._jobs = max(settings.keep_jobs_days, settings.keep_keys_days) * DAY

@@ -148,7 +148,7 @@ def analyse_in_worker(
     This runs in the worker's process. Of a throw's tables all are returned, whichever are requested, because
     computing them together costs the same.
     """
-    # The server imports this module too, and needs no solver.
+    # Imported here because the server also imports this module and needs no solver.
     from cad.analysis.analyse import AnalysisRequest, analyse
     from cad.analysis.throw_tables import unit_load_tables
 

@@ -71,7 +71,7 @@ class Models:
         }
 
         def unit(session: Session) -> str | None:
-            if renew(session, [key]) and is_there:  # it did not go meanwhile
+            if renew(session, [key]) and is_there:  # it was not deleted meanwhile
                 return None
             return self.jobs.request(session, BUILD, payload, client)
 

@@ -38,7 +38,7 @@ class StoredOutput(TypedDict, total=False):
     error_reason: str | None
     seconds: float
     sha256: str
-    size: int  # of the file [bytes]
+    size: int  # size of the file [bytes]
     triangles: int
 
 

@@ -204,7 +204,7 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     """Return why solids of a model do not allow this kind of analysis; None if they do."""
     if kind == BORE_COMPLIANCE:
-        from cad.shells.bore_place import has_split_bore  # it draws too
+        from cad.shells.bore_place import has_split_bore  # this module also draws
 
         if has_split_bore(cls):
             return None
@@ -214,7 +214,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
         return Fault("model", "no_shaft", reason)
     if kind not in (UNIT_LOADS, CHAIN) or (kind == UNIT_LOADS and cls.is_throw()):
         return None
-    from cad.cranks.chain_throw import has_throws  # it draws, so it brings the kernel
+    from cad.cranks.chain_throw import has_throws  # this module draws, so it imports the kernel
 
     if has_throws(cls):
         return None

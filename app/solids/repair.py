@@ -18,7 +18,7 @@ from app.storage.database import Database
 from app.storage.errors import ArtifactMissing, CannotRebuild
 from cad.regenerate import build_key
 
-REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they start no other job
+REMEMBERED = 1000  # artifacts that could not be rebuilt, for which requests start no other job
 
 
 class ArtifactRepair:

@@ -219,7 +219,7 @@ def renew(session: Session, keys: Collection[str]) -> bool:
     if not old:
         return len(seen) == len(wanted)
     renewal = update(BuildRow).where(BuildRow.key.in_(old)).values(operated=present)
-    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # what is not deleted meanwhile
+    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # those not deleted in the meantime
     return len(seen) - len(old) + len(renewed) == len(wanted)
 
 

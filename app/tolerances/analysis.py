@@ -32,7 +32,7 @@ from templates.core.progress import report
 
 LEAST_POINTS, USUAL_POINTS, MOST_POINTS = 1024, 16_384, 131_072
 MOST_OUTPUTS = 30
-ABOUT = "analysis"  # beside the outputs of an answer
+ABOUT = "analysis"  # key of the scope among the outputs of an answer
 PATIENCE = 20.0
 """For further points where none were asked for, by their estimate [s]."""
 LONGEST = 600.0
@@ -72,7 +72,9 @@ class Analysis:
     varied: list[TolerancedVariable]
     warnings: list[Warning]
     first_refusal: Refusal | None = None
-    stated: dict[str, bool] = field(default_factory=dict)  # by criterion: the errors of all models behind it
+    stated: dict[str, bool] = field(
+        default_factory=dict
+    )  # by criterion: whether the errors of all models behind it are known
     _errors: dict[Reference, float] = field(default_factory=dict)
     _levels: dict[str, str | None] = field(default_factory=dict)
 
@@ -122,7 +124,7 @@ class Analysis:
         InvalidInputs
             If an output is not a single value, or the levels of the design take too long.
         """
-        most = self._most_points()  # by the tables of costs: a measured pace is another one every time
+        most = self._most_points()  # from the tables of costs, because a measured speed varies
         nominal = self._nominal()
         self._require_single(nominal)
         self._require_time()

@@ -21,7 +21,7 @@ from app.tolerances.worst import Extreme
 from templates.core.arrays import Array
 from templates.core.units.units import Unit, Value, unit
 
-DIGITS = 10  # of a value in its unit: what comes after is rounding
+DIGITS = 10  # digits of a value in its unit; further digits are rounding errors
 REFUSED = "the design refuses some products, so there are no shares; see analysis.refused"
 STEADY = "no tolerance changes it"
 

@@ -15,8 +15,8 @@ from scipy.special import ndtr, ndtri
 from templates.core.arrays import Array
 from templates.core.units.tolerance import Distribution
 
-CUT = 3.0  # standard deviations at which a normal distribution has its limits, and is cut
-MOST_AT_THREE, MOST_AT_TWO = 6, 12  # factors of a lattice of three, and of two, values each
+CUT = 3.0  # standard deviations at which a normal distribution is cut off at its limits
+MOST_AT_THREE, MOST_AT_TWO = 6, 12  # most factors for a lattice with three values each, and with two
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def scattered(factors: Sequence[Factor], shares: Array) -> Array:
 
 def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
     """Return a scrambled Sobol' sequence in the unit cube; the number of points is a power of two."""
-    from scipy.stats import qmc  # it takes as long as all other imports of a small command
+    from scipy.stats import qmc  # this import takes as long as all others of a small command
 
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))
     points: Array = sequence.random_base2(count.bit_length() - 1)

@@ -25,7 +25,7 @@ from app.tolerances.scatter import SCRAMBLINGS
 from app.tolerances.worst import Outputs
 from templates.core.arrays import Array
 
-NEGLIGIBLE = 1e-10  # of the standard deviation of an output, relative to its size: rounding, no scatter
+NEGLIGIBLE = 1e-10  # a smaller standard deviation, relative to the output, is rounding and no scatter
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def _of_output(values: Array) -> Parts | None:
     whole = _indices(values)
     without = np.stack([_indices(np.delete(values, number, axis=0)) for number in range(SCRAMBLINGS)])
     errors = _jackknife(without)
-    taken = np.argmin(errors, axis=1)[:, np.newaxis]  # of the two estimators
+    taken = np.argmin(errors, axis=1)[:, np.newaxis]  # index of the better estimator
     values_taken, errors_taken, without_taken = (
         np.take_along_axis(each, taken.reshape(shape), -2).squeeze(-2)
         for each, shape in ((whole, taken.shape), (errors, taken.shape), (without, (1, *taken.shape)))

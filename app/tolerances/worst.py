@@ -18,11 +18,11 @@ from templates.core.arrays import Array
 Outputs = Callable[[Array], Array]
 """From rows of factors [SI] to outputs of the shape (rows, outputs) [SI]; NaN where a row is refused."""
 
-SCANNED = 512  # quasi-random rows beside the lattice
+SCANNED = 512  # quasi-random rows in addition to the lattice
 STARTS = 3
-MOST_STEPS = 30  # of one climb
-STEP = 1e-3  # of a difference quotient, of half the width between the limits
-APART = 0.25  # of half the width: starts that are nearer find the same extreme
+MOST_STEPS = 30  # steps of one local search
+STEP = 1e-3  # step of a difference quotient, relative to half the tolerance range
+APART = 0.25  # starts closer than this, relative to half the range, find the same extreme
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ def started_workers(settings: Settings, stack: ExitStack) -> Workers:
         local = LocalProcesses()
         stack.callback(local.close)
         return Workers(local, local, why_silent_here)
-    from app.workers.remote.engine import DaskWorker  # the embedded default does without Dask
+    from app.workers.remote.engine import DaskWorker  # the default needs no Dask
 
     here = LocalProcesses(CHECKS if settings.template_folders else ())
     stack.callback(here.close)

@@ -71,7 +71,7 @@ def _table() -> dict[int, list[str]]:
     table = {}
     for entry in os.listdir(_PROC) if _PROC.is_dir() else ():
         if entry.isdecimal():
-            with suppress(OSError):  # it has ended meanwhile
+            with suppress(OSError):  # it may have ended meanwhile
                 stat = (_PROC / entry / "stat").read_text(errors="replace")
                 table[int(entry)] = [entry, "", *stat.rpartition(")")[2].split()]
     return table

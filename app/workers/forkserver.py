@@ -36,25 +36,27 @@ def main(
     `prepare`, if given, is called before the imports.
     """
     try:
-        hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
+        hang_on(lifeline)  # first of all, because the imports take seconds, many on a busy machine
     except ProcessLookupError:  # the server ended before this process began
         os._exit(1)
-    signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # in the background of a terminal, a message may stop it
+    signal.signal(
+        signal.SIGTTOU, signal.SIG_IGN
+    )  # a message could stop a process in the background of a terminal
     # The kernel sends SIGHUP to a stopped process group that loses its last parent in the session. A server
-    # has threads, so this may come before its end of the lifeline closes: this process would die of it, the
-    # leader of each job's group with it, and what a job has started would hang on nobody.
+    # has threads, so this may happen before its end of the lifeline closes. This process and the leader of
+    # each job's group would die of it, and processes that a job has started would be tied to nothing.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     share_fairly()
-    gc.disable()  # it would look through all that is imported again and again
+    gc.disable()  # it would scan all imported objects repeatedly
     if prepare is not None:
         prepare()
     loaded = [load(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
-    gc.freeze()  # collections in the children shall not copy what is shared
+    gc.freeze()  # collections in the children must not copy shared memory pages
     gc.enable()
     with socket.socket(fileno=channel) as server:
         _serve(server, lifeline, rehearsals)
-    os._exit(0)  # to take down an interpreter with so many modules takes half a second
+    os._exit(0)  # shutting down an interpreter with so many modules takes half a second
 
 
 def load(name: str) -> ModuleType | None:
@@ -81,7 +83,7 @@ def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]
         deaths.setblocking(False)
         knell.setblocking(False)
         signal.set_wakeup_fd(knell.fileno(), warn_on_full_buffer=False)
-        signal.signal(signal.SIGCHLD, lambda *_: None)  # a signal that is ignored would wake nobody
+        signal.signal(signal.SIGCHLD, lambda *_: None)  # an ignored signal would wake no thread
         selector.register(server, selectors.EVENT_READ)
         selector.register(deaths, selectors.EVENT_READ)
         while True:
@@ -113,7 +115,7 @@ def _fork(
     pid = os.fork()
     if pid == 0:
         _become_job(job, (*own, status, *nursery.values()), parent, lifeline, rehearsals)
-    with suppress(OSError):  # the server may have gone
+    with suppress(OSError):  # the server may have ended
         os.setpgid(pid, pid)
         status.send(pid)
     nursery[pid] = status

@@ -35,7 +35,7 @@ Rehearsal = Callable[[Callable[[], bool]], object]
 """Does some work like a job's; its argument says whether the job has come, and then ends soon."""
 
 _PR_SET_PDEATHSIG = 1
-_GROWTH = 4  # a process that keeps more than this part of its allowance takes no other request
+_GROWTH = 4  # a process that keeps more than 1/4 of its allowance takes no other request
 
 
 def serve_jobs(
@@ -50,25 +50,27 @@ def serve_jobs(
     try:
         _die_with(parent)
         os.setpgid(0, 0)
-        hang_on(lifeline, group=os.getpid())  # also if the forkserver is stopped or was killed
+        hang_on(lifeline, group=os.getpid())  # works even if the fork server is stopped or was killed
         for rehearse in rehearsals:
-            with suppress(Exception):  # the job will meet it again, and say so
+            with suppress(Exception):  # the job will raise this error again and report it
                 rehearse(connection.poll)
         request = receive(connection)
-        reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
+        reusable = not has_hung_up(
+            connection.fileno()
+        )  # otherwise the job was cancelled before this process started
         is_first = True
         while reusable:
             answer, reusable = _answer(request, connection)
             send(connection, answer)
             del answer
             if reusable:
-                gc.collect()  # what a calculation leaves in cycles may be large
+                gc.collect()  # reference cycles left by a calculation may be large
                 if is_first:
-                    gc.freeze()  # what was loaded at first use stays: later collections need not look at it
+                    gc.freeze()  # modules loaded at first use stay; later collections can skip them
                 is_first = False
                 request = receive(connection)
         exit_code = 0
-    finally:  # also when the server has closed its end, which is how it dismisses a process
+    finally:  # also if the server closes its end, by which it dismisses a process
         os._exit(exit_code)
 
 
@@ -76,7 +78,7 @@ def _die_with(parent: int) -> None:
     """Make the kernel kill this process when its parent dies; elsewhere than on Linux the parent does it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it died before the kernel knew
+    if os.getppid() != parent:  # the parent died before the kernel was told
         raise ProcessLookupError(parent)
 
 
@@ -90,7 +92,7 @@ def _answer(packed: PackedMessage, connection: Connection) -> tuple[PackedMessag
         _limit(request.limits)
         reusable = request.reusable
         return _run(task, request, connection)
-    except BaseException as error:  # whatever it is belongs to the caller
+    except BaseException as error:  # the caller receives any error
         reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
         return pack(ErrorMessage(pack(_portable(error)), reusable)), reusable
 

@@ -40,7 +40,7 @@ def hang_on(reader: int, group: int | None = None) -> None:
         If the server has already ended.
     """
     if sys.platform == "linux":
-        # Opened again, because a pipe's end that processes share can have one owner only.
+        # Opened again, because an end of a pipe that processes share can have only one owner.
         own = os.open(f"/proc/self/fd/{reader}", os.O_RDONLY | os.O_NONBLOCK)
         fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid() if group is None else -group)
         fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
@@ -52,5 +52,5 @@ def hang_on(reader: int, group: int | None = None) -> None:
 def has_hung_up(descriptor: int) -> bool:
     """Return whether the other end of a pipe or socket is closed, even if there are data left to read."""
     poll = select.poll()
-    poll.register(descriptor, 0)  # a hang-up is reported always
+    poll.register(descriptor, 0)  # a hang-up is always reported
     return any(event & select.POLLHUP for _, event in poll.poll(0))

@@ -23,8 +23,8 @@ Ts = TypeVarTuple("Ts")
 
 logger = logging.getLogger(__name__)
 
-# What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
-# imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
+# Modules that jobs import: the kernel, every model, and the modules of the job functions. Finite elements
+# are imported only by jobs that need them (0.3 s): NGSolve starts threads at once, which a fork would lack.
 KERNEL = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.analysis_process")
 
 
@@ -71,7 +71,7 @@ class LocalProcesses:
         if not self._forkserver.is_alive():
             if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
                 try:
-                    self._spare = self._forkserver.fork()  # starts it again
+                    self._spare = self._forkserver.fork()  # restarts the fork server
                 finally:
                     self._lock.release()
             return False
@@ -79,7 +79,7 @@ class LocalProcesses:
 
     def close(self) -> None:
         """Kill all processes; running jobs end with JobCrashed."""
-        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
+        self._forkserver.close()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             self._closed = True
             self._spare.kill()
@@ -106,14 +106,14 @@ class LocalProcesses:
             process, self._spare = self._spare, self._forkserver.fork()
         try:
             process.start(request)
-        except OSError:  # something killed it while it waited
+        except OSError:  # the process was killed while it waited
             process = self._forkserver.fork()
             process.start(request)
         return process
 
 
-MOST_IN_BATCH = 100  # functions that one process runs: what leaks in it ends with it
-MOST_KEPT = 1  # processes that wait for another job after their own
+MOST_IN_BATCH = 100  # largest number of functions for one process, which limits leaks
+MOST_KEPT = 1  # largest number of idle processes kept for another job
 
 
 class IdleProcess(NamedTuple):
@@ -179,7 +179,7 @@ class Batch:
                 outcome = self._finished(process, request.limits, on_progress, cancelled)
             except (JobCancelled, DeadlineExceeded):
                 raise
-            except (OSError, WorkerError) as error:  # it died, maybe while it waited
+            except (OSError, WorkerError) as error:  # the process died, perhaps while it waited
                 logger.info("once more in a new process: %s", error)
             else:
                 if isinstance(outcome, ResultMessage):

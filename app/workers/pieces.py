@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pickle import PickleBuffer
 from typing import Self, SupportsIndex
 
-PIECE = 2**18  # bytes; a copy takes some 0.1 ms
+PIECE = 2**18  # bytes; copying a piece takes about 0.1 ms
 
 
 @dataclass(frozen=True)

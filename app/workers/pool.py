@@ -14,7 +14,7 @@ from templates.core.progress import Reporter
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-REUSE = 100  # requests that one process takes at most: what leaks in it ends with it
+REUSE = 100  # largest number of requests for one process, which limits leaks
 
 
 class WarmProcesses:
@@ -41,7 +41,7 @@ class WarmProcesses:
         self._spares, self._reuse = spares, reuse
         self._lock = threading.Lock()
         self._closed = False
-        self._served: dict[JobProcess, int] = {}  # requests by process, of those that live
+        self._served: dict[JobProcess, int] = {}  # number of requests of each live process
         self._idle = [self._forked() for _ in range(spares)]
 
     def run(
@@ -74,7 +74,7 @@ class WarmProcesses:
     def close(self) -> None:
         """Kill all processes; running functions end with JobCrashed."""
         self._closed = True
-        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
+        self._forkserver.close()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             for process in self._idle:
                 process.kill()
@@ -91,7 +91,7 @@ class WarmProcesses:
             process = self._idle.pop() if self._idle else self._forked()
         try:
             process.start(request)
-        except OSError:  # something killed it while it waited
+        except OSError:  # the process was killed while it waited
             self._put_back(process)
             with self._lock:
                 process = self._forked()

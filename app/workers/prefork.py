@@ -18,8 +18,8 @@ from typing import NoReturn
 from app.workers.processes import ForkServer
 from app.workers.threads import ONE_THREAD
 
-_GLANCE = 0.01  # between two looks whether a process has ended [s]
-_LONGEST_NAME = 15  # of a process, in Linux [characters]
+_GLANCE = 0.01  # time between two checks whether a process has ended [s]
+_LONGEST_NAME = 15  # longest process name in Linux [characters]
 _started: dict[tuple[str, ...], ForkServer] = {}
 
 
@@ -79,7 +79,9 @@ class ForkedProcess:
         if self._code is None:
             try:
                 ended, status = os.waitpid(self.pid, os.WNOHANG)
-            except ChildProcessError:  # somebody else has asked: its code is lost, as with `Popen`
+            except (
+                ChildProcessError
+            ):  # other code has waited for it, so its exit code is lost, as with `Popen`
                 self._code = 0
             else:
                 self._code = os.waitstatus_to_exitcode(status) if ended else None
@@ -127,12 +129,14 @@ def _become_fork_server(
 
         os.setpgid(0, 0)
         _keep_only(channel, lifeline)
-        with open("/proc/self/comm", "w", encoding="ascii") as comm:  # its command line is the server's
+        with open(
+            "/proc/self/comm", "w", encoding="ascii"
+        ) as comm:  # its command line remains that of the server
             comm.write(modules[0][:_LONGEST_NAME])
         for name, text in environment.items():
             os.environ.setdefault(name, text)
         main(channel, lifeline, modules, prepare)
-    finally:  # whatever happens, it does not go on as a second server
+    finally:  # in no case may it continue as a second server
         os._exit(1)
 
 

@@ -11,10 +11,10 @@ import platform
 import struct
 import sys
 
-_SHORTEST = 100_000  # slice of a thread [ns]; the least that Linux takes
+_SHORTEST = 100_000  # time slice of a thread [ns]; the shortest that Linux accepts
 _DEFAULT = 0  # the slice that Linux chooses
 _SCHED_SETATTR = {"x86_64": 314, "aarch64": 274, "riscv64": 274}
-_NICENESS = 10  # a tenth of a core is left to calculations even if the server wants all of it
+_NICENESS = 10  # leaves a tenth of a core to calculations, even under full load of the server
 
 
 def answer_promptly() -> None:
@@ -38,7 +38,7 @@ def _set_slice(nanoseconds: int) -> bool:
     if sys.platform != "linux" or number is None:
         return False
     policy = os.sched_getscheduler(0)
-    if policy != os.SCHED_OTHER:  # the operator has chosen another
+    if policy != os.SCHED_OTHER:  # the operator has chosen another policy
         return False
     niceness = os.getpriority(os.PRIO_PROCESS, 0)
     attributes = struct.pack("=IIQiIQQQ", 48, policy, 0, niceness, 0, nanoseconds, 0, 0)

@@ -27,8 +27,8 @@ _BOOT = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     "from app.workers.forkserver import main; main(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:])"
 )
-_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
-_PATIENCE = 1.0  # how long the forkserver may take to end [s]
+_GLANCE = 0.05  # time between two checks whether the job was cancelled [s]
+_PATIENCE = 1.0  # longest time for the fork server to end [s]
 
 
 class JobProcess:
@@ -92,7 +92,7 @@ class JobProcess:
         """
         try:
             return "_pid" in self.__dict__ or self._status.poll()
-        except OSError:  # it has got a job and is gone
+        except OSError:  # it has received a job and ended
             return False
 
     @cached_property
@@ -104,7 +104,7 @@ class JobProcess:
 
     def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Outcome:
         end = time.monotonic() + limits.deadline
-        messages = select.poll()  # one for all: `Connection.poll` makes a selector each time
+        messages = select.poll()  # one for all; `Connection.poll` creates a selector each time
         messages.register(self._connection.fileno(), select.POLLIN)
         while True:
             _await_message(messages, end, limits, cancelled)
@@ -172,8 +172,8 @@ def launch(preload: Sequence[str], channel: int, lifeline: int, environment: Map
         pass_fds=[channel, lifeline],
         stdin=subprocess.DEVNULL,
         env={**environment, **os.environ},
-        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
-        # the niceness of the processes would count for nothing: see app/workers/priority.py.
+        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a separate session, the
+        # niceness of the processes would have no effect: see app/workers/priority.py.
         process_group=0,
     )
 
@@ -226,7 +226,7 @@ class ForkServer:
     def close(self) -> None:
         """Kill the fork server and all its processes."""
         self._closed = True
-        self._lifeline.cut()  # before the lock, which who waits for a stopped forkserver may hold
+        self._lifeline.cut()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             self._end()
 
@@ -254,6 +254,6 @@ class ForkServer:
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)
             return
-        self._process.kill()  # where a lifeline kills nobody, it may still be importing
+        self._process.kill()  # without a lifeline it may still be importing
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)

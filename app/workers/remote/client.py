@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from distributed import Client, Security
 
-_CONNECT = 5.0  # how long each step of an attempt to connect may take [s]
-_START = 15.0  # and all of them together [s]
-_END = 1.0  # how long a farewell to the scheduler may take [s]
+_CONNECT = 5.0  # longest time for each step of a connection attempt [s]
+_START = 15.0  # longest time for a whole connection attempt [s]
+_END = 1.0  # longest time to disconnect from the scheduler [s]
 
 
 class BoundedClient(Client):

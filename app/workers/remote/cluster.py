@@ -26,12 +26,12 @@ from templates.core.progress import Reporter
 logger = logging.getLogger(__name__)
 
 LANES: tuple[Lane, ...] = ("geometry", "analysis")
-_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
-_LOOK = 0.25  # time between two looks at the places of all machines [s]
-_PATIENCE = 10.0  # how long the scheduler may take to answer a look [s]
-_PAUSE = 1.0  # before the next [s]
-_TURNS = 5  # machines to which an order is sent, if each goes before it comes there
-_FETCH = 120.0  # how long a result may take on its way [s]
+_GLANCE = 0.05  # time between two checks whether the job was cancelled [s]
+_LOOK = 0.25  # time between two polls of the slots of all machines [s]
+_PATIENCE = 10.0  # longest time for the scheduler to answer a poll [s]
+_PAUSE = 1.0  # time before the next connection attempt [s]
+_TURNS = 5  # attempts to send an order, if machines are lost before it arrives
+_FETCH = 120.0  # longest time to receive a result [s]
 
 Messages = queue.SimpleQueue[tuple[float, str] | None]
 """From a task: how far it is; None when it has ended."""
@@ -57,7 +57,7 @@ class Cluster:
         self._own: Counter[tuple[Lane, str]] = Counter()
         self._changed = threading.Condition()
         self._closed = threading.Event()
-        self._failure = "connecting"  # what came of the latest attempt to connect
+        self._failure = "connecting"  # outcome of the latest connection attempt
         self._thread = threading.Thread(target=self._work, name="scheduler", daemon=True)
         self._thread.start()
 
@@ -119,7 +119,7 @@ class Cluster:
             except Exception as error:
                 if client.status == "running" and not isinstance(error, WorkerLost):
                     raise
-                if self._closed.is_set():  # it is this server that has gone
+                if self._closed.is_set():  # this server itself has disconnected
                     raise JobCancelled from None
                 if client.status == "running":
                     raise
@@ -130,7 +130,7 @@ class Cluster:
         self._closed.set()
         with self._changed:
             self._changed.notify_all()
-        self._thread.join(_PAUSE)  # an attempt to connect may take longer
+        self._thread.join(_PAUSE)  # a connection attempt may take longer
 
     def _run_there(
         self,
@@ -150,7 +150,7 @@ class Cluster:
                 self._follow(client, future, messages, on_progress, cancelled)
                 return _result(future)
             finally:
-                future.release()  # nobody wants it any more: if it runs, its process is killed
+                future.release()  # no longer wanted; if it runs, its process is killed
         finally:
             del self._listeners[key]
 
@@ -166,7 +166,7 @@ class Cluster:
             pure=False,
             retries=0,
             resources={self._labels[lane]: 1},
-            workers=[machine],  # no other: Dask would take any, even of another program
+            workers=[machine],  # only this one; Dask would use any machine, even with another program
         )
 
     def _follow(
@@ -190,7 +190,7 @@ class Cluster:
                 continue
             if message is None:
                 if client.status != "running" or future.status in ("lost", "cancelled"):
-                    continue  # it has not ended: nobody is left who could bring its result
+                    continue  # it has not ended, but its result can no longer arrive
                 return
             if on_progress is not None:
                 on_progress(*message)
@@ -211,7 +211,7 @@ class Cluster:
         finally:
             with self._changed:
                 self._own[lane, machine] -= 1
-                self._own += Counter()  # forgets those of which nothing is left
+                self._own += Counter()  # removes entries with a count of zero
                 self._changed.notify_all()
 
     def _best(self, lane: Lane, preferred: str | None) -> str | None:
@@ -220,7 +220,7 @@ class Cluster:
 
     def _free(self, lane: Lane) -> dict[str, int]:
         if self._client is None or self._client.status != "running":
-            return {}  # what was seen then is no longer true
+            return {}  # the polled data are outdated
         there = self._places.get(lane, {}).items()
         return {machine: its.size - its.of_others - self._own[lane, machine] for machine, its in there}
 
@@ -235,7 +235,7 @@ class Cluster:
                     while client.status == "running" and not self._closed.is_set():
                         self._look_around(client)
                         self._closed.wait(_LOOK)
-            except Exception as error:  # whatever it is, no job can be sent until it has passed
+            except Exception as error:  # after any error no job can be sent until it is resolved
                 self._failure = str(error) or type(error).__name__
                 if not is_logged:
                     logger.warning("no connection to the scheduler %s: %s", self.address, error)
@@ -273,7 +273,9 @@ class Cluster:
         with self._changed:
             self._places = seen
             self._changed.notify_all()
-        self._strays.note(states, time.monotonic())  # last: who looks for another place sees the new ones
+        self._strays.note(
+            states, time.monotonic()
+        )  # last, so that a caller that needs another slot sees the new ones
 
 
 def _result(future: Future[Outcome]) -> Outcome:

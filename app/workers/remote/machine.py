@@ -29,11 +29,11 @@ from templates.core.progress import Reporter
 
 logger = logging.getLogger(__name__)
 
-_GLANCE = 0.05  # how often it is looked whether a task is still wanted [s]
+_GLANCE = 0.05  # time between two checks whether a task is still wanted [s]
 _IDLE = 5.0  # how long a process waits for the next function of its batch [s]
-_PAUSE = 0.5  # before the machine connects again [s]
-_START = 20.0  # how long the machine waits for a scheduler before it begins again [s]
-_END = 10.0  # how long its farewell to a scheduler may take [s]
+_PAUSE = 0.5  # time before the machine reconnects [s]
+_START = 20.0  # longest wait for a scheduler before a new attempt [s]
+_END = 10.0  # longest time to disconnect from a scheduler [s]
 _WANTED = ("executing", "long-running")
 
 
@@ -44,7 +44,7 @@ class Processes:
         self._local = LocalProcesses()
         self._places = places
         self._lock = threading.Lock()
-        self._kept: dict[str, tuple[Batch, float]] = {}  # with when it was last used, latest last
+        self._kept: dict[str, tuple[Batch, float]] = {}  # with the time of last use, latest last
 
     def outcome(self, order: Order, on_progress: Reporter | None, unwanted: threading.Event) -> Outcome:
         """Return the outcome of a request, run in a separate process or in that of its batch."""
@@ -100,7 +100,9 @@ class Machine(Worker):
             security=security,
         )
         self._isolated = processes
-        self._running: dict[str, threading.Event] = {}  # key of a task -> set when nobody wants it
+        self._running: dict[
+            str, threading.Event
+        ] = {}  # key of a task -> event set when it is no longer wanted
         self._watching = threading.Event()
         threading.Thread(target=self._watch, name="unwanted", daemon=True).start()
 
@@ -175,7 +177,7 @@ class Service:
         """Serve the scheduler while it is connected."""
         logger.warning("connecting to %s", self.settings.engine)
         try:
-            await asyncio.wait_for(machine, _START)  # one that falls silent would be waited for without end
+            await asyncio.wait_for(machine, _START)  # otherwise it would wait for a silent scheduler for ever
             logger.warning("at work for %s: %s", machine.scheduler.address, dict(self.settings.lanes))
             await machine.finished()
         except Exception as error:

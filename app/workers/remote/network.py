@@ -10,8 +10,8 @@ from distributed import Security
 from app.settings import Settings
 
 CONFIGURATION = {
-    "distributed.admin.large-graph-warning-threshold": "1GiB",  # a STEP file travels with its task
-    "distributed.scheduler.allowed-failures": 0,  # the queue of jobs decides whether one runs again
+    "distributed.admin.large-graph-warning-threshold": "1GiB",  # a STEP file is sent with its task
+    "distributed.scheduler.allowed-failures": 0,  # the queue of jobs decides about retries
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.worker.profile.enabled": False,

@@ -12,7 +12,7 @@ from app.workers.errors import WorkerLost
 
 _HELD = ("processing", "memory", "erred")  # on a machine, or at its end
 _WITHOUT_MACHINE = "no-worker"
-_ON_ITS_WAY = 120.0  # how long a task of 1 GiB may take to the scheduler [s]
+_ON_ITS_WAY = 120.0  # longest time for a task of 1 GiB to reach the scheduler [s]
 
 
 class NeverBegun(Exception):
@@ -23,7 +23,7 @@ class Strays:
     """The tasks that are on no machine, and since when."""
 
     def __init__(self) -> None:
-        self._since: dict[str, float] = {}  # when the scheduler was first seen without a task [s]
+        self._since: dict[str, float] = {}  # when the scheduler first did not know a task [s]
         self._without_machine: frozenset[str] = frozenset()
         self._lost: frozenset[str] = frozenset()
 
