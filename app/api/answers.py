@@ -45,7 +45,7 @@ async def answered(
     QueueFull
         If too many calculations or jobs are waiting.
     Exception
-        Any error of the calculation itself.
+        An error of the calculation itself.
     """
     services = services_of(request)
     await expensive_steps(request, client)

@@ -44,6 +44,6 @@ class OtherDigest(ApprovalError):
     def __init__(self, right: str) -> None:
         self.headers = {"ETag": f'"{right}"'}
         super().__init__(
-            "what there is to sign is not what If-Match names: read the revision and its approvals again; "
+            "the content to sign is not that of If-Match: read the revision and its approvals again; "
             f'then sign with If-Match: "{right}"'
         )

@@ -168,7 +168,7 @@ class TeamCatalogues(Catalogues):
         except WorkerError:  # the service is stopping
             return
         except Exception:
-            logger.exception("The files of templates could not be looked at")
+            logger.exception("The files of templates could not be checked")
             return
         if is_changed:
             before = {file.path: file for file in self.snapshot.files}

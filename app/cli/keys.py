@@ -117,7 +117,7 @@ def revoke_command(prefix: str, data: Path | None) -> None:
         key, *others = identity.revoke(prefix.removeprefix("cw_")[:10])
     click.echo(f"{key.prefix} is revoked; running servers take notice within a few seconds")
     for other in others:
-        click.echo(f"{_named_key(other)} is revoked with it: made by {other.made_by}")
+        click.echo(f"{_named_key(other)} is also revoked, because {other.made_by} created it")
 
 
 @keys_command.command("disable")

@@ -58,7 +58,9 @@ def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
 
             contents = team.back_up(settings, url, file, _say, with_files=not no_files)
         elif no_files:
-            raise CannotRun("--no-files is for a team's bucket: SQLite's files are beside the database.")
+            raise CannotRun(
+                "--no-files is for a team's bucket: with SQLite, files are stored with the database."
+            )
         elif is_bucket(settings):
             raise CannotRun(IN_BUCKET.format(url=settings.artifacts_url))
         elif settings.artifacts_url is not None:

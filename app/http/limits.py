@@ -132,7 +132,7 @@ class BodyLimits:
     def _too_slow(self, size: int) -> BodyTooSlow:
         pause, rate = self.seconds, self.rate
         wanted = f"it may pause for {pause:g} s and must bring {rate:g} bytes/s on average"
-        return BodyTooSlow(f"the body comes too slowly ({size} bytes came): {wanted}")
+        return BodyTooSlow(f"the body arrives too slowly ({size} bytes so far): {wanted}")
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:

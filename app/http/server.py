@@ -107,7 +107,7 @@ class Server(uvicorn.Server):
         await super().shutdown(sockets)
         if self._is_signalled:
             if running := what_runs():
-                logger.warning("stopped in order, but cut: %s", "; ".join(running))
+                logger.warning("shut down in order, but ended: %s", "; ".join(running))
             self._leave(0)
 
     def _guard(self) -> None:

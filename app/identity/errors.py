@@ -21,7 +21,7 @@ class NotSignedIn(IdentityError):
     def __init__(self) -> None:
         super().__init__(
             "send a valid key in the header Authorization, as `Bearer cw_…`, or sign in at /sign-in; "
-            "the operator makes keys by `crankwright keys add`"
+            "the operator creates keys by `crankwright keys add`"
         )
 
 
@@ -42,7 +42,7 @@ class KeyInAddress(IdentityError):
 
     def __init__(self) -> None:
         super().__init__(
-            "a key stands in the address, where logs and histories keep it: revoke that key, and send the "
+            "the address contains a key, which logs and histories keep: revoke that key, and send the "
             "next one in the header Authorization, as `Bearer cw_…`"
         )
 
@@ -52,8 +52,8 @@ class Outlives(IdentityError):
 
     def __init__(self, latest: str) -> None:
         super().__init__(
-            f"a key ends at the latest with the one that makes it, {latest}: ask for less, or leave the life "
-            "away; an administrator makes one that lives longer"
+            f"a key ends at the latest with the key that creates it, {latest}: choose a shorter lifetime, or "
+            "omit it; an administrator can create a key that is valid for longer"
         )
 
 
@@ -66,7 +66,7 @@ class FirstByCommand(IdentityError):
 
     def __init__(self) -> None:
         super().__init__(
-            "this service asks for no keys yet; the operator adds the first principal, with a key, by "
+            "this service requires no keys yet; the operator adds the first principal, with a key, by "
             "`crankwright keys add NAME --role admin`"
         )
 
@@ -75,4 +75,4 @@ class NameTaken(IdentityError):
     """Another principal has this name."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(f"there is a principal {name!r} already; choose another name")
+        super().__init__(f"there is already a principal {name!r}; choose another name")

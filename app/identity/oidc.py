@@ -174,7 +174,7 @@ async def _asked(
     except (httpx.HTTPError, httpx.InvalidURL, ValueError):
         content = None
     if not isinstance(content, dict):
-        raise ProviderRefused("the provider does not answer, or refuses")
+        raise ProviderRefused("the provider does not answer, or refuses the request")
     return content
 
 

@@ -118,7 +118,7 @@ def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
     if is_outside(cls):
         detail = (
             f"base: {base.model} is no model of this program, so it cannot be the base. Name it as a "
-            "component: a STEP file by `model`, any other by a design that has it"
+            "component: a STEP file by `model`, any other model by a design that has it"
         )
         raise UnreadableModel("base", detail)
     assert base_of((cls.id, cls.version)) is cls, "the models of this program are those of every process"

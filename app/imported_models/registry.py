@@ -64,4 +64,4 @@ class ImportedModelRegistry:
             try:
                 self.look()
             except Exception:
-                logger.exception("The imported models could not be looked at")
+                logger.exception("The imported models could not be read")

@@ -58,7 +58,9 @@ class JobLost(JobError):
     """The servers or workers that ran the job were lost repeatedly."""
 
     def __init__(self, losses: int) -> None:
-        super().__init__(f"What ran the job ended without a word {losses} times, so it is not tried again.")
+        super().__init__(
+            f"The server or worker that ran the job was lost {losses} times, so the job is not retried."
+        )
         self.losses = losses
 
 

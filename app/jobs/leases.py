@@ -80,7 +80,7 @@ class Leases:
     def reap(self) -> None:
         """Queue again the jobs whose leases have expired."""
         for job in self._database.write(self._reaped):
-            logger.warning("job %s (%s) was left behind by its server, loss %d", job.id, job.kind, job.losses)
+            logger.warning("job %s (%s) was abandoned by its server, loss %d", job.id, job.kind, job.losses)
 
     def _reaped(self, session: Session) -> list[Job]:
         jobs = repository.reap(session)
@@ -105,6 +105,6 @@ class Leases:
                     self.beat()
                     self.reap()
             except Exception as error:
-                logger.warning("The leases of jobs could not be prolonged; trying again: %s", error)
+                logger.warning("The leases of jobs could not be renewed; trying again: %s", error)
             self._dispatcher.wake()
             pause = min(self._poll, max(0.0, beaten + self._beat - time.monotonic()))

@@ -84,7 +84,7 @@ def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = No
     # Read files before rows: a row added meanwhile already has its file, and is among the rows.
     ages = files.ages()
     if (marker := marker_of(path)).exists():
-        findings.database.append(f"damage showed while a service used it, see {marker.name}")
+        findings.database.append(f"damage occurred while a service used it, see {marker.name}")
     try:
         findings.database += faults(path, MOST, mode="ro" if marker.exists() else "rw")
         with reading(path) as connection:

@@ -16,8 +16,8 @@ from app.storage.integrity import is_damage, marker_of
 from app.storage.migrations import known_schemas, refuse_unknown
 
 NOT_SQLITE = (
-    "The database is not SQLite, and lost files are not repaired beside it: the servers make them again when "
-    "they are asked for."
+    "The database is not SQLite, so lost files are not repaired here: the servers rebuild them when a client "
+    "requests them."
 )
 
 

@@ -78,7 +78,7 @@ LEADING_NOWHERE = {
         SELECT job.id FROM job LEFT JOIN revision
         ON revision.design_id = job.design_id AND revision.number = job.revision
         WHERE job.design_id IS NOT NULL AND job.revision IS NOT NULL AND revision.number IS NULL""",
-    "design {} has no revision of the number of its newest one": """
+    "design {} lacks the revision that it names as its newest": """
         SELECT design.id FROM design LEFT JOIN revision
         ON revision.design_id = design.id AND revision.number = design.head
         WHERE revision.number IS NULL""",

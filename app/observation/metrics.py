@@ -107,22 +107,26 @@ COMMIT = _histogram("crankwright_commit_seconds", "Time of a group of units of w
 GROUP = _histogram(
     "crankwright_commit_units", "Units of work in a group", buckets=[1, 2, 4, 8, 16, 32, 64, 128, 256]
 )
-FAILURES = _counter("crankwright_failures_total", "What went wrong in the service itself", ["what"])
+FAILURES = _counter("crankwright_failures_total", "Failures of the service itself", ["what"])
 CUT = _counter("crankwright_connections_cut_total", "Connections ended by the server", ["why"])
 
-QUEUED = _gauge("crankwright_jobs_queued", "Jobs that wait")
+QUEUED = _gauge("crankwright_jobs_queued", "Waiting jobs")
 JOBS = _gauge("crankwright_jobs", "Jobs that have not ended", ["kind", "state"])
-OLDEST = _gauge("crankwright_jobs_oldest_seconds", "Since when the oldest queued job waits [s]")
+OLDEST = _gauge("crankwright_jobs_oldest_seconds", "Waiting time of the oldest queued job [s]")
 ENDED = _counter("crankwright_jobs_ended_total", "Jobs that have ended", ["kind", "state"])
 LASTED = _histogram(
     "crankwright_job_seconds", "Time of a run [s]", ["kind"], buckets=[0.1, 0.3, 1, 3, 10, 30, 100, 300]
 )
 
 CHILDREN = _gauge("crankwright_children", "Processes that descend from the server")
-CHILDREN_MEMORY = _gauge("crankwright_children_memory_bytes", "Their memory; what is shared counts for each")
-CHILDREN_SECONDS = _gauge("crankwright_children_cpu_seconds", "Their processor time, of the ended ones too")
+CHILDREN_MEMORY = _gauge(
+    "crankwright_children_memory_bytes", "Memory of these processes; shared memory counts for each"
+)
+CHILDREN_SECONDS = _gauge(
+    "crankwright_children_cpu_seconds", "Processor time of these processes, including ended ones"
+)
 POOL = {
-    figure: _gauge(f"crankwright_pool_{figure}", f"Of a pool of processes: {figure}", ["pool"])
+    figure: _gauge(f"crankwright_pool_{figure}", f"Number in a pool of processes: {figure}", ["pool"])
     for figure in ("running", "waiting", "size")
 }
 

@@ -61,7 +61,7 @@ class Press:
             try:
                 pdf = self._worker.run(as_pdf, svg, limits=self._limits)
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
-                raise Unprintable(f"this drawing cannot be typeset; take its SVG or DXF ({error})") from error
+                raise Unprintable(f"this drawing cannot be typeset; use its SVG or DXF ({error})") from error
         self._keep(key, pdf)
         return pdf
 

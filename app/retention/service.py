@@ -61,7 +61,7 @@ class Retention:
             "files": self._sweep_files(),
         }
         if any(counts.values()):
-            logger.info("Deleted what nobody wanted any more: %s", counts)
+            logger.info("Deleted expired data: %s", counts)
         return counts
 
     def _work(self) -> None:

@@ -73,7 +73,7 @@ class Analyses:
         links = {"analysis": f"/api/v1/analyses/{now}", "job": f"/api/v1/jobs/{job}"}
         detail = (
             f"the surface of analysis {key} was computed by another version of the kernel, the solver or the "
-            "recipe. Restore the file from a backup, or take the new analysis"
+            "recipe. Restore the file from a backup, or use the new analysis"
         )
         raise CannotRebuild("other_recipe", detail, links)
 

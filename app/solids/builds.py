@@ -128,9 +128,7 @@ class Builds:
             with self.database.read() as session:
                 if rows.is_signed(session, key):
                     raise _signed_otherwise(row)
-            logger.warning(
-                "%s of build %s: artifact %s is out of use, now it is %s", kind, key, row.sha256, sha
-            )
+            logger.warning("%s of build %s: artifact %s was replaced by %s", kind, key, row.sha256, sha)
         if row is None or row.sha256 != sha:
             self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
 
@@ -162,8 +160,8 @@ class Builds:
 
 def _changed(shape: CadModel, row: rows.Artifact) -> CannotRebuild:
     detail = (
-        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} makes "
-        "other bytes now: its file has been changed since. Put the old file back, or restore artifact "
+        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} now "
+        "gives different bytes because its file was changed. Put the old file back, or restore artifact "
         f"{row.sha256} from a backup"
     )
     return CannotRebuild("model_changed", detail)
@@ -171,7 +169,7 @@ def _changed(shape: CadModel, row: rows.Artifact) -> CannotRebuild:
 
 def _signed_otherwise(row: rows.Artifact) -> CannotRebuild:
     detail = (
-        f"file {row.kind} of build {row.build_key} is lost, and is made of other bytes now: libraries have "
+        f"file {row.kind} of build {row.build_key} is lost, and a new one has other bytes: libraries have "
         f"changed since. A signed revision has artifact {row.sha256}: restore it from a backup"
     )
     return CannotRebuild("signed_otherwise", detail)

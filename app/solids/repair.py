@@ -88,7 +88,7 @@ class ArtifactRepair:
 def other_bytes(sha: str) -> CannotRebuild:
     """Return the artifact whose recalculation gave different bytes."""
     detail = (
-        f"artifact {sha} is lost. It was made again from its row and has other bytes now, because libraries "
+        f"artifact {sha} is lost. It was rebuilt from its row and now has different bytes, because libraries "
         "have changed since: GET the build, the revision or the analysis that names it for the new hash"
     )
     return CannotRebuild("other_bytes", detail)

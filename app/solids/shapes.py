@@ -56,6 +56,6 @@ def built_by_another(session: Session, key: str, shape: CadModel) -> CannotRebui
         return CannotRebuild("model_changed", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})
     detail = (
         f"build {key} was made by {maker}; this program ({now}) makes another build of the same "
-        "parameters. Restore the file from a backup, or take the new build"
+        "parameters. Restore the file from a backup, or use the new build"
     )
     return CannotRebuild("other_recipe", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})

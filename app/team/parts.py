@@ -67,10 +67,10 @@ def running(
     with ExitStack() as stack:
         database = Cluster()
         stack.callback(database.close)
-        say(f"PostgreSQL on port {database.port}, as a server of its own for this trial")
+        say(f"PostgreSQL on port {database.port}, as a separate server for this trial")
         store = ObjectStore(folder)
         stack.callback(store.close)
-        say(f"S3 server on port {store.port}: moto, which keeps files in memory and proves no durability")
+        say(f"S3 server on port {store.port}: moto, which keeps files only in memory")
         environment = {
             "DASK_TEMPORARY_DIRECTORY": str(folder),  # where Dask keeps its lock files
             **AWS,

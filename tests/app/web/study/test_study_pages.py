@@ -79,7 +79,7 @@ def fieldset(page, legend):
     ("typed", "legend", "words"),
     [
         ({"method": "optimise", "high.0": "60 um"}, "Goals", "name an output to minimise or maximise"),
-        ({"method": "grid", "high.0": "60 kN", "steps.0": "7"}, "What is varied", "kN measures a force"),
+        ({"method": "grid", "high.0": "60 kN", "steps.0": "7"}, "Varied quantities", "kN measures a force"),
         ({"method": "sample", "high.0": "60 um", "points": "0"}, "Rows", "greater than or equal to 1"),
     ],
 )
@@ -151,7 +151,7 @@ def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
     assert "variant main_2" in http.get(study).text
     refused = http.post(f"{bearing}/studies", data={**typed, "variant": "main_3"})
     assert refused.status_code == 422
-    assert "its variants are main_2, main_10" in fieldset(refused.text, "What is varied")
+    assert "its variants are main_2, main_10" in fieldset(refused.text, "Varied quantities")
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
