@@ -3,7 +3,7 @@
 `python -m benchmarks.all kept` prints the table that is kept, without measuring.
 
 Each kind of work runs in a process of its own, one after the other, on one thread of BLAS. Processor time
-decides, as other work of the machine disturbs it least; figures by the clock say so. The whole takes less
+decides, as other work of the machine disturbs it least; figures of wall time are marked. The whole takes less
 than 15 minutes on two idle cores. Prints a table in Markdown and, if all was measured, writes
 benchmarks/results/all.json and the table of docs/costs.md.
 """

@@ -24,8 +24,9 @@ from templates.core.units.units import unit
 FOLDER = Path("docs/drawings")
 PAGE = Path("docs/drawings.md")
 _GALLERY = (
-    "All lengths of the example times 0.25, 1 and 4, drawn by `python -m benchmarks.drawings`; "
-    "of `deep_groove_bearing` 6000, 6210 and 6330.\n"
+    "`python -m benchmarks.drawings` draws each model's example with all lengths multiplied by 0.25, "
+    "1 and 4; for\n"
+    "`deep_groove_bearing` it draws 6000, 6210 and 6330.\n"
 )
 SIZES = (0.25, 1.0, 4.0)
 """Factors of all lengths of a model's example."""
@@ -79,7 +80,7 @@ def main(names: list[str]) -> None:
 
 
 def _write_gallery() -> None:
-    """The pictures at the end of the page."""
+    """Replace the list of pictures at the end of the page."""
     head, mark, _ = PAGE.read_text(encoding="utf-8").partition(_GALLERY)
     lines = [f"![{picture.stem}](drawings/{picture.name})\n" for picture in sorted(FOLDER.glob("*.svg"))]
     PAGE.write_text(head + mark + "\n" + "\n".join(lines), encoding="utf-8")

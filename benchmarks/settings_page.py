@@ -20,7 +20,7 @@ OF_THE_COMMAND = {
 }
 HEAD = """# Settings
 
-The settings are environment variables, read once when the service starts. The service ignores names
+The settings are environment variables, which the service reads once when it starts. The service ignores names
 that are not in this table, so check the spelling first. Lists and objects are written as JSON:
 `["/srv/templates"]`. Options of `crankwright serve` take precedence.
 

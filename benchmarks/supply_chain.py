@@ -27,7 +27,7 @@ LONGEST = 60  # letters; longer "licences" are the text of one
 HEAD = """# Licences
 
 This page lists the licences of everything that is installed with the service, its tests and its
-documentation, as each distribution states them. `python -m benchmarks.supply_chain` generates it from the
+documentation, as each package states them. `python -m benchmarks.supply_chain` generates it from the
 installed distributions, together with a CycloneDX bill of materials, `docs/sbom.cdx.json`. The last column
 names the extra (`study`, `team` or `traces`) that needs a distribution, or *development* for tests and
 documentation; the service runs without these distributions. The owner has not chosen a licence for

@@ -1,10 +1,10 @@
-"""Semantic PMI of AP242: dimensions with their limits, datums, geometric tolerances, on the faces of parts.
+"""Semantic PMI of AP242: dimensions with limits, datums and geometric tolerances on the faces of parts.
 
 Known faults of Open CASCADE 7.9, each found by experiment: the writer crashes unless the schema is AP242; a
 dimension must have limits and never a class of fit, because the writer numbers the grades differently from
 ISO 286; the writer expects a lower deviation with the opposite sign, and writes deviations without their type
-(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn: these
-annotations are for programs, drawings are for people.
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. The file contains no
+graphical annotations: programs read this PMI, people read drawings.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _FORMS: Mapping[Form, str] = {
 
 @dataclass(frozen=True)
 class Product:
-    """A part in a document: its label there, and the solid that is written."""
+    """A part in a document: its label, and the solid that is written."""
 
     label: TDF_Label
     solid: Shape
@@ -52,7 +52,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Annotations:
-    """What is written beside the shape, by parameter: limits, sizes on faces, geometric tolerances."""
+    """The annotations to write, by parameter: limits, sizes on faces, geometric tolerances."""
 
     declared: Mapping[str, FormTolerances] = field(default_factory=dict)
     limits: Mapping[str, Limits] = field(default_factory=dict)
@@ -62,12 +62,12 @@ class Annotations:
     def of(
         declared: Mapping[str, FormTolerances], limits: Mapping[str, Limits], dimensions: Mapping[str, object]
     ) -> Annotations:
-        """Return what is written of a solid with these dimensions.
+        """Return the annotations of a solid with these dimensions.
 
         Raises
         ------
         GeometryError
-            `tolerance`, where no faces carry a dimension that has limits.
+            `tolerance`, if a dimension with limits has no faces.
         """
         sizes = {
             name: size for name, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES
@@ -81,17 +81,17 @@ class Annotations:
 
     @property
     def dimensions(self) -> list[str]:
-        """Return the parameter of every dimension that is written, in the order of the file."""
+        """Return the parameter of every written dimension, in the order of the file."""
         return [n for n in self.limits for _ in self.sizes[n].places]
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the kind of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
     def names(self) -> list[str]:
-        """Return the parameters by which dimensions, and then geometric tolerances, are named."""
+        """Return the parameters of all dimensions, followed by those of all geometric tolerances."""
         return [*self.dimensions, *(name for name, _ in self.forms)]
 
 
@@ -145,7 +145,7 @@ class _Writer:
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """Return the datum of a letter, which is written once."""
+        """Return the datum of a letter; write it at the first call."""
         if letter not in self._letters:
             declared = self._annotations.declared
             name = next(name for name, one in declared.items() if one.datum == letter)
@@ -162,7 +162,7 @@ class _Writer:
         return self._letters[letter]
 
     def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
-        """Return the labels of faces; each is made once."""
+        """Return the labels of faces; create each label once."""
         labels = TDF_LabelSequence()
         for part, number in faces:
             if (part, number) not in self._faces:

@@ -214,7 +214,7 @@ def evaluation(result: Evaluation) -> JsonObject:
     }
 
 
-def assumptions(result: Evaluation, criteria: Iterable[Judgement]) -> list[dict[str, str]]:
+def assumptions(result: Evaluation, criteria: Sequence[Judgement]) -> list[dict[str, str]]:
     """Return the assumptions that an evaluation and its criteria make."""
     return [vars(one) for one in assumed(result.template, result.outputs, criteria)]
 

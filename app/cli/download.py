@@ -15,6 +15,7 @@ from app.settings import Settings
 @click.argument("design")
 @click.argument("kind", default="step")
 @click.option("--model", default=None, help="name of the model in the design, if there are several")
+@click.option("--part", default=None, help="the only part in a glb, stl, 3mf or brep file")
 @click.option("--variant", default=None, help="variant of the design; default: the design itself")
 @click.option(
     "--revision",
@@ -30,6 +31,7 @@ def download_command(
     design: str,
     kind: str,
     model: str | None,
+    part: str | None,
     variant: str | None,
     revision: int | None,
     folder: Path,
@@ -37,13 +39,13 @@ def download_command(
 ) -> None:
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
-    KIND is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP
-    files of all variants. If the service must create the file first, the command waits for it.
+    KIND is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for
+    the STEP files of all variants. If the service must create the file first, the command waits for it.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         with Client(place) as client:
-            file = _file(client, design, kind, model, variant, revision)
+            file = _file(client, design, kind, model, part, variant, revision)
         click.echo(file.save(folder))
     except Problem as problem:
         raise click.ClickException(str(problem)) from None
@@ -54,15 +56,23 @@ def download_command(
 
 
 def _file(
-    client: Client, design: str, kind: str, model: str | None, variant: str | None, revision: int | None
+    client: Client,
+    design: str,
+    kind: str,
+    model: str | None,
+    part: str | None,
+    variant: str | None,
+    revision: int | None,
 ) -> File:
+    if part is not None and (kind == "zip" or variant is not None):
+        raise click.UsageError("--part names a part of the design itself; leave out --variant and zip")
     if kind == "zip":
         return client.download_variants(design, revision, on_progress=_progress)
     if variant is not None:
         return client.download_variant(
             design, variant, kind, model=model, revision=revision, on_progress=_progress
         )
-    return client.download(design, kind, model=model, revision=revision, on_progress=_progress)
+    return client.download(design, kind, model=model, revision=revision, part=part, on_progress=_progress)
 
 
 def _progress(done: float, text: str) -> None:

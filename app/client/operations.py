@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from io import BytesIO
 from typing import TypedDict, Unpack
+from urllib.parse import quote
 
 import httpx
 import numpy as np
@@ -200,7 +201,7 @@ def build(key: str) -> Exchange[Build]:
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
     """Return a file of the design's newest valid model.
 
-    The kind is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
+    The kind is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 
@@ -211,16 +212,18 @@ def download(
     *,
     model: str | None = None,
     revision: int | None = None,
+    part: str | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[File]:
     """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
     Without a revision it is the file of the newest valid model; `model` selects one if the design has
-    several.
+    several. With `part`, a glb, stl, 3mf or brep file holds only this part.
     """
     one = f"/revisions/{revision}" if revision else ""
     named = f"/models/{model}" if model else ""
-    return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}", on_progress)))
+    alone = f"?part={quote(part, safe='')}" if part else ""
+    return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}{alone}", on_progress)))
 
 
 def report(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Container, Coroutine, Iterator, Mapping
 from itertools import islice
 from json import JSONDecodeError
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.types import Receive, Scope, Send
 
 from app.http.openapi import operation_id
@@ -96,7 +97,9 @@ class StrictRequest(Request):
     async def parts(self) -> tuple[bytes, ...]:
         """Return the pieces of the body as received."""
         if not hasattr(self, "_parts"):
-            self._parts = tuple([part async for part in self._received()])
+            parts: list[bytes] = []
+            await self._receive_all(parts.append)
+            self._parts = tuple(parts)
         return self._parts
 
     async def body(self) -> bytes:
@@ -111,14 +114,25 @@ class StrictRequest(Request):
 
     async def discard(self) -> None:
         """Receive and discard the body, because a client that is still sending may not read an answer yet."""
-        async for _ in self._received():
-            pass
+        await self._receive_all()
 
-    async def _received(self) -> AsyncIterator[bytes]:
-        size = 0
-        async for part in self.stream():
-            if part:
-                yield part
+    async def _receive_all(self, take: Callable[[bytes], object] | None = None) -> None:
+        """Receive the body and give each piece to a function, if there is one.
+
+        Raises
+        ------
+        ClientDisconnect
+            If the client leaves before the end.
+        """
+        size, is_complete = 0, False
+        while not is_complete:
+            message = await self.receive()
+            if message["type"] == "http.disconnect":
+                raise ClientDisconnect
+            part = message.get("body", b"")
+            if part and take is not None:
+                take(part)
+            is_complete = not message.get("more_body", False)
             size += len(part)
             if size > PIECE:
                 await self.pace.step()

@@ -34,7 +34,7 @@ def figures() -> list[Figure]:
             10.0,
             detail=f"{of} {100 * stress['error']:.2g} %",
         ),
-        Figure("its most memory", stress["most memory"], "MB", 800.0, detail="the whole process"),
+        Figure("its peak memory", stress["most memory"], "MB", 800.0, detail="the whole process"),
     ]
 
 

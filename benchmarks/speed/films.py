@@ -52,7 +52,11 @@ def _film(
     return (
         Figure(f"`reynolds` film, {what}", 1e3 * float(spent), "ms", cost, detail=f"mean of {points}"),
         Figure(
-            "its error of the load", 100 * float(np.abs(errors).max()), "%", error, detail="worst of them"
+            "its error of the load",
+            100 * float(np.abs(errors).max()),
+            "%",
+            error,
+            detail="largest of these points",
         ),
     )
 

@@ -52,9 +52,9 @@ def figures() -> list[Figure]:
         ready = time.perf_counter() - begin
         time.sleep(2 * SETTLING)
         memory = proportional_megabytes(server.pid)
-        at_rest = "proportional set size, at rest"
+        at_rest = "proportional set size, idle"
         rows = [
-            Figure("`serve` to ready", ready, "s", 3.0, detail="by the clock"),
+            Figure("`serve` until ready", ready, "s", 3.0, detail="wall time"),
             Figure("its memory, all processes", memory, "MB", 500.0, detail=at_rest),
         ]
         evaluations, alone = evaluating(server, folder)
@@ -81,7 +81,7 @@ def evaluating(server: Server, folder: Path) -> tuple[list[Figure], float]:
                     others.append(other)
             ratio = median(np.divide(own, others).tolist())
             detail = (
-                f"processor time over the bare one's, {1e6 * median(own):.0f} µs; median of {ROUNDS} turns"
+                f"processor time over the bare endpoint, {1e6 * median(own):.0f} µs; median of {ROUNDS} turns"
             )
             rows.append(
                 Figure(f"`evaluate`, {name}, against bare FastAPI", ratio, "times", aim, detail=detail)
@@ -108,11 +108,11 @@ def changes(server: Server, alone: float) -> list[Figure]:
             runs = [pool.submit(clients, action, server.url, f"{name} {n}") for n in range(PROCESSES)]
             delays = [delay for run in runs for delay in run.result()]
             spent, clock = (used(server.pid) - before) / len(delays), time.perf_counter() - begin
-            rate = f"{len(delays) / clock:.0f} a second beside the clients"
+            rate = f"{len(delays) / clock:.0f} per second while the clients also run"
             rows.append(Figure(f"accepted {name}, {CLIENTS} clients", 1e3 * spent, "ms", 1.0, detail=rate))
             slow = 1e3 * quantiles(delays, n=100)[98]
-            rows.append(Figure("their 99th percentile", slow, "ms", 50.0, detail="by the clock"))
-    against = "processor time over the bare endpoint of one output"
+            rows.append(Figure("their 99th percentile", slow, "ms", 50.0, detail="wall time"))
+    against = "processor time relative to the bare endpoint of one output"
     rows.append(Figure("PATCH against bare FastAPI", spent / alone, "times", 12.0, detail=against))
     return rows
 
@@ -186,7 +186,7 @@ def regenerations(server: Server, folder: Path) -> list[Figure]:
                 ours.append(1e3 * spent)
                 alone.append(1e3 * own)
                 ratios.append(spent / own)
-    detail = f"{median(ours):.0f} ms of {median(alone):.0f} ms; median of {ROUNDS} turns"
+    detail = f"{median(ours):.0f} ms and {median(alone):.0f} ms; median of {ROUNDS} turns"
     return [Figure("PATCH → new STEP, against build and export", median(ratios), "times", 4.3, detail=detail)]
 
 
@@ -216,7 +216,7 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
             1e3 * processor_seconds(write),
             "ms",
             aim,
-            detail=f"{len(write()) / 1e6:.1f} MB; writing alone",
+            detail=f"{len(write()) / 1e6:.1f} MB; only writing",
         )
         for name, (write, aim) in forms.items()
     ]

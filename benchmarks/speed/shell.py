@@ -25,7 +25,7 @@ def figures() -> list[Figure]:
         spent, memory = min(run[0] for run in runs), min(run[1] for run in runs)
         rows += [
             Figure(f"`{name}`", spent, "s", 0.5, detail=f"least of {REPEATS}"),
-            Figure("its most memory", memory, "MB", 60.0),
+            Figure("its peak memory", memory, "MB", 60.0),
         ]
     return rows
 

@@ -30,8 +30,8 @@ from app.solids.schemas.models import Build, Verification
 from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.file_kinds import plain_kind
 from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
