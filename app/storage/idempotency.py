@@ -1,8 +1,8 @@
 """Idempotent requests: a repeated Idempotency-Key makes one change only.
 
-The key is kept in the transaction of the change itself, so that after a crash a repeated request finds either
-the change or nothing. Where several servers share a database it is inserted before anything else: the second
-of two simultaneous requests waits there for the first.
+The key is stored in the transaction of the change itself, so that after a crash a repeated request finds
+either the change or nothing. If several servers share a database, the key is inserted before anything else:
+the second of two simultaneous requests then waits for the first.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _KEPT = Statement(
 
 @dataclass(frozen=True)
 class Once:
-    """A request that is to be carried out once; without a key every request is a new one."""
+    """A request that must be carried out once; without a key every request is a new one."""
 
     key: str | None
     scope: str  # method and path
@@ -55,11 +55,10 @@ class Once:
         return self._answer(*kept) if kept else None
 
     def begin(self, session: Session) -> JsonObject | None:
-        """Return the stored answer of an equal earlier request.
+        """Return the stored answer of an equal earlier request; else reserve the key and return None.
 
-        Else let `keep` follow, for which a key is reserved.
-
-        It comes first in a unit of work: while another server carries out the same request, this waits.
+        Call this first in a unit of work, and `keep` later. While another server carries out the same
+        request, the call waits.
 
         Raises
         ------
@@ -68,7 +67,9 @@ class Once:
         """
         if not self.key:
             return None
-        if DRIVER in session.info:  # SQLite runs one unit after another: nobody else carries it out meanwhile
+        if (
+            DRIVER in session.info
+        ):  # SQLite runs units one after the other, so no other unit carries it out meanwhile
             return self.find(session)
         repeatable(session)
         mine = self._new(operated(session), status=0, location={})

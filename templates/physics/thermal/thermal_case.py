@@ -1,4 +1,4 @@
-"""A journal bearing with its groove, its oil and its thermal surroundings, in SI."""
+"""A journal bearing with its groove, its oil and its thermal boundary conditions, in SI."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from templates.physics.thermal.thermal_balance import Bearing
 
 @dataclass(frozen=True)
 class ThermalCase:
-    """A bearing with its oil, SI; arrays that broadcast together, NaN where something is not given."""
+    """A bearing with its oil, in SI; arrays that broadcast together, NaN where data are not given."""
 
     F: Array
     """Load [N]."""
@@ -69,12 +69,12 @@ class ThermalCase:
         )
 
     def is_whole(self) -> bool:
-        """Return whether all data of a film are known."""
+        """Return whether all data that a film needs are known."""
         needed = (self.F, self.D, self.W, self.psi, self.omega, self.pressure, self.viscosity(self.supply))
         return bool(np.isfinite(needed).all())
 
     def bearing(self) -> Bearing:
-        """Return one point, dimensionless."""
+        """Return one point as a dimensionless bearing."""
         eta = float(self.viscosity(self.supply))
         scale = eta * self.omega / self.psi**2
         per_second = self.heat_capacity * self.omega
@@ -94,7 +94,7 @@ class ThermalCase:
         )  # fmt: skip
 
     def _thinner(self, eta: float) -> Callable[[Array], Array]:
-        """Return a viscosity [Pa s] over that at a temperature [K]; 0 where the oil is as good as stiff."""
+        """Return a viscosity [Pa s] over that at a temperature [K]; 0 where the oil is practically solid."""
 
         def fluidity(T: Array) -> Array:
             with np.errstate(over="ignore"):
@@ -105,5 +105,5 @@ class ThermalCase:
 
 @units(None, "K", returns="Pa*s", latex=r"\eta\left({1}\right)")
 def warm_viscosity(case: ThermalCase, T: Array) -> Array:
-    """Return the viscosity of the case's oil at a temperature T [K]; NaN where that is [Pa s]."""
+    """Return the viscosity of the case's oil at a temperature T [K]; NaN where T is NaN [Pa s]."""
     return np.where(np.isnan(T), np.nan, case.viscosity(T))[()]

@@ -122,7 +122,7 @@ def test_levels_of_another_truth_are_left_out():
     decision = decided(document(f"film.power_loss >= {value!r} W", level="mass_conserving"))
     assert (decision.trials, decision.stopped, decision.undecided) == ((), "no_finer_level", ["own"])
     reasons = {trial.level: trial.reason for trial in decision.skipped}
-    assert "another truth" in reasons["map"]
+    assert "another reference" in reasons["map"]
 
 
 def test_no_level_begins_beyond_the_budget():
