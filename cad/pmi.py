@@ -3,19 +3,20 @@
 Known faults of Open CASCADE 7.9, each found by experiment: the writer crashes unless the schema is AP242; a
 dimension must have limits and never a class of fit, because the writer numbers the grades differently from
 ISO 286; the writer expects a lower deviation with the opposite sign, and writes deviations without their type
-(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. The file contains no
-graphical annotations: programs read this PMI, people read drawings.
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Each dimension and each
+geometric tolerance is also drawn as lines beside the solid (`cad.pmi_presentation`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cadquery import Shape
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopoDS import TopoDS_Compound
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DatumObject as DatumObject
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionObject as DimensionObject
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionType as DimensionType
@@ -24,8 +25,9 @@ from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as Toleran
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
 from cad.errors import GeometryError
+from cad.pmi_presentation import Sheet
 from cad.surfaces import Face, Kind, Place, Size
-from cad.tolerances import Form, FormTolerances, Limits
+from cad.tolerances import Form, FormTolerances, Limits, deviations, number_of
 
 _TYPES: Mapping[Kind, str] = {
     "diameter": "XCAFDimTolObjects_DimensionType_Size_Diameter",
@@ -34,12 +36,18 @@ _TYPES: Mapping[Kind, str] = {
     "distance": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
     "chamfer": "XCAFDimTolObjects_DimensionType_Size_Thickness",
 }
+SIGNS: Mapping[Kind, str] = {"diameter": "Ø", "sphere": "SØ", "radius": "R"}
+FORM_SIGNS: Mapping[Form, str] = {"cylindricity": "⌭", "perpendicularity": "⊥", "parallelism": "∥"}
 _FORMS: Mapping[Form, str] = {
     "cylindricity": "XCAFDimTolObjects_GeomToleranceType_Cylindricity",
     "perpendicularity": "XCAFDimTolObjects_GeomToleranceType_Perpendicularity",
     "parallelism": "XCAFDimTolObjects_GeomToleranceType_Parallelism",
 }
 """Names of the kernel's types, which is asked for them when it writes."""
+
+_ASCII = str.maketrans(
+    {"Ø": "diameter ", "±": "+/-", "⌭": "cylindricity", "⊥": "perpendicularity", "∥": "parallelism"}
+)
 
 
 @dataclass(frozen=True)
@@ -111,6 +119,7 @@ class _Writer:
         self._products, self._annotations = products, annotations
         self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
+        self._sheets: dict[str, Sheet] = {}
 
     def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
@@ -122,7 +131,7 @@ class _Writer:
             one = self._annotations.declared[name]
             for form, share in one.forms.items():
                 faces = [face for place in sizes[name].places for face in (*place.first, *place.second)]
-                self._form(form, within.share(share), self._labels(dict.fromkeys(faces)), one.to)
+                self._form(form, within.share(share), list(dict.fromkeys(faces)), one.to)
 
     def _dimension(self, kind: Kind, place: Place, within: Limits) -> None:
         size = DimensionObject()
@@ -130,17 +139,23 @@ class _Writer:
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
         size.SetLowerTolValue(-within.lower)  # which the writer turns round
+        ends = "/".join(filter(None, deviations(within)))
+        text = f"{SIGNS.get(kind, '')}{number_of(within.nominal, 6)} {ends}"
+        size.SetPresentation(self._drawn(text, [*place.first[:1], *place.second[:1]]), _name(text))
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
         self._tool.SetDimension(self._labels(place.first), self._labels(place.second), label)
 
-    def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
+    def _form(self, form: Form, width: float, faces: Sequence[Face], to: str) -> None:
         tolerance = ToleranceObject()
         tolerance.SetType(getattr(ToleranceType, _FORMS[form]))
         tolerance.SetValue(width)
+        datum = "" if form == "cylindricity" else f" {to}"
+        text = f"{FORM_SIGNS[form]} {number_of(width, 6)}{datum}"
+        tolerance.SetPresentation(self._drawn(text, faces[:1]), _name(text))
         label = self._tool.AddGeomTolerance()
         XCAFDoc_GeomTolerance.Set_s(label).SetObject(tolerance)
-        self._tool.SetGeomTolerance(faces, label)
+        self._tool.SetGeomTolerance(self._labels(faces), label)
         if form != "cylindricity":
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
@@ -161,6 +176,14 @@ class _Writer:
             self._letters[letter] = label
         return self._letters[letter]
 
+    def _drawn(self, text: str, faces: Sequence[Face]) -> TopoDS_Compound:
+        """Return the lines of a text beside its part, and leaders to the middles of faces."""
+        part = faces[0][0]
+        if part not in self._sheets:
+            self._sheets[part] = Sheet(self._products[part].solid)
+        middles = [self._products[name].solid.Faces()[number].Center() for name, number in faces]
+        return self._sheets[part].drawn(text, middles)
+
     def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
         """Return the labels of faces; create each label once."""
         labels = TDF_LabelSequence()
@@ -171,3 +194,8 @@ class _Writer:
                 self._faces[part, number] = self._shapes.AddSubShape(product.label, face)
             labels.Append(self._faces[part, number])
         return labels
+
+
+def _name(text: str) -> TCollection_HAsciiString:
+    """Return the text as the name of its lines, in the letters of a STEP file."""
+    return TCollection_HAsciiString(text.translate(_ASCII))

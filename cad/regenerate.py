@@ -54,7 +54,7 @@ __all__ = [
 Value = float | str | list[float]
 """A parameter: a number, a word, or a list; beside it its limit deviations and their zone."""
 
-RECIPE = 3
+RECIPE = 4
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"

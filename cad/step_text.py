@@ -25,6 +25,7 @@ _TOKEN = re.compile(r"'(?:[^']|'')*',?|[^',)]+,?|\)")
 _WIDEST = 72  # a line of the kernel's writer [characters]
 _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
+_PEN = "DRAUGHTING_PRE_DEFINED_COLOUR('{}')"
 _POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
 _NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
 _NUMBER = re.compile(r"#(\d+) = ")
@@ -84,6 +85,7 @@ def _annotated(data: str, names: Sequence[str]) -> str:
     """Return the data section with parameters as names of dimensions, and with the types of deviations."""
     number = iter(names)
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
+    named = named.replace(_PEN.format("white"), _PEN.format("magenta"))  # on white paper and on black screens
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 

@@ -187,3 +187,18 @@ def in_unit(within: Limits, name: str) -> tuple[float, float]:
     factor = unit("mm").factor / unit(name).factor
     lower, upper = (float(f"{end * factor:.12g}") for end in (within.lower, within.upper))
     return lower, upper
+
+
+def deviations(limits: Limits) -> tuple[str, str]:
+    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
+    texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
+    digits = max(1, *(len(text.partition(".")[2]) for text in texts))
+    if limits.upper == -limits.lower:
+        return f"±{limits.upper:.{digits}f}", ""
+    upper, lower = (f"{end:+.{digits}f}" if end else "0" for end in (limits.upper, limits.lower))
+    return upper, lower
+
+
+def number_of(value: float, digits: int) -> str:
+    """Return a number with at most this many decimals."""
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")

@@ -1,4 +1,4 @@
-"""Keep the imported models of the database in the catalogue."""
+"""Publish the imported models of the database in the catalogue."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ logger = logging.getLogger(__name__)
 
 
 def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
-    """Yield the classes of rows; an unreadable row does not affect the others."""
+    """Yield the classes of rows; an unreadable row is skipped."""
     for row in rows:
         try:
             yield (row.id, row.number), class_of(row.description, row.id, row.number)
@@ -28,7 +28,7 @@ def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[Impor
 
 
 class ImportedModelRegistry:
-    """Publishes imported models; a version is read once."""
+    """Publishes imported models, and reads each version only once."""
 
     def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
         self.database, self.catalogues = database, catalogues
@@ -38,7 +38,7 @@ class ImportedModelRegistry:
         self.look()
 
     def look(self) -> None:
-        """Look for new versions."""
+        """Publish new versions in the database."""
         with self._looking, self.database.read() as session:
             if (count := repository.count(session)) == self._count:
                 return
