@@ -93,7 +93,7 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("mm", "rod centre from wristpin", symbol="a_{g}")
     def a_g(self) -> Array:
-        """Distance of the rod's centre of mass from the wristpin: rod length minus distance from the crankpin."""
+        """Distance of the rod's centre of mass from the wristpin: the rest of the rod's length."""
         return self.l - self.b_g
 
     @formula("kg", "rod mass at crankpin", symbol="m_{3A}", source=DYREMI)
