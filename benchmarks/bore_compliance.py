@@ -1,4 +1,4 @@
-"""Compliance of a bore by finite elements: error, cost and distance from the finest level.
+"""Measure the compliance of a bore by finite elements: error, cost and difference from the finest level.
 
 python -m benchmarks.bore_compliance       about two minutes of processor time
 """
@@ -17,7 +17,7 @@ from cad.step import write_step
 
 
 def main() -> None:
-    """A table of both example solids at every level."""
+    """Print a table of both example solids at every level."""
     print("| model | level | elements | unknowns | stated error | from fine | processor s |")
     for cls in (BearingHousing, ConnectingRod):
         model = cls.from_quantities(cls.example)

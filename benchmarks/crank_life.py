@@ -43,7 +43,7 @@ def stresses_of(sizes: dict[str, float]) -> UnitStresses:
 
 
 def as_inputs(found: UnitStresses) -> dict[str, Any]:
-    """Return the tensors as `fatigue_life` 1 takes them."""
+    """Return the tensors as inputs of `fatigue_life` 1."""
     tables = {}
     for load, tensors in found.tensors.items():
         unit, factor = UNITS[load.split("_")[0]]
@@ -52,7 +52,7 @@ def as_inputs(found: UnitStresses) -> dict[str, Any]:
 
 
 def pin_forces() -> np.ndarray:
-    """Return the load of pin 1 over the cycle, along the throw and (imaginary) across it [N]."""
+    """Return the load of pin 1 over the cycle, along the throw (real) and across it (imaginary) [N]."""
     engine = built_in().get("engine", 1)
     names = ["crankpin_load_x", "crankpin_load_y", "crank_angle", "crankpin_angles"]
     raw = {**IN_LINE_FOUR, "crank_angle_step": "5 deg"}
@@ -61,7 +61,7 @@ def pin_forces() -> np.ndarray:
 
 
 def main() -> None:
-    """Print what each part takes, and the life."""
+    """Print the time of each part, and the life."""
     begin = time.perf_counter()
     found = stresses_of(SIZES)
     print(f"finite elements: {len(found.points)} points, {found.elements} elements, "

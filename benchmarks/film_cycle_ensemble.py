@@ -1,32 +1,36 @@
-"""How far the cheap levels of `oil_film_cycle` 1 may be from level supplied: bounds from random duties.
+"""Bound the errors of the cheap levels of `oil_film_cycle` 1 relative to level supplied, by random duties.
 
-    python -m benchmarks.film_cycle_ensemble run            marches 60 duties in every band
-    python -m benchmarks.film_cycle_ensemble more           marches 93 duties in every band
+    python -m benchmarks.film_cycle_ensemble run            calculates 60 duties in every band
+    python -m benchmarks.film_cycle_ensemble more           calculates 93 duties in every band
     python -m benchmarks.film_cycle_ensemble check          the same with another seed, 100 of each supply
-    python -m benchmarks.film_cycle_ensemble write          makes the accuracy file from what there is
-    python -m benchmarks.film_cycle_ensemble ratios         smallest films of mobility_grooved over supplied
+    python -m benchmarks.film_cycle_ensemble write          writes the accuracy file from the stored duties
+    python -m benchmarks.film_cycle_ensemble ratios         minimum films of mobility_grooved over supplied
     python -m benchmarks.film_cycle_ensemble page           the tables of docs/oil_film_cycle.md
-    python -m benchmarks.film_cycle_ensemble again          compares kept marches with a changed cheap level
+    python -m benchmarks.film_cycle_ensemble again          compares stored duties with a changed cheap level
 
-`run`, `more` and `check` take 1 to 4 s a duty in the mean, some 45 s; each duty is one line of
-benchmarks/results/film_cycle_ensemble.jsonl, written when it is done, and a run goes on where it was stopped.
-`run half_groove` does one kind of supply alone, `more half_groove 0,1` one band of it (row of load, column of
-B/D). `write` prints how often the bounds hold on other duties.
+`run`, `more` and `check` take 1 to 4 s per duty on average, and up to about 45 s. Each duty is one line of
+benchmarks/results/film_cycle_ensemble.jsonl, written when it is finished, and an interrupted run continues.
+`run half_groove` calculates only one kind of supply, `more half_groove 0,1` only one of its bands (row of
+load, column of B/D). `write` prints how often the bounds are right on other duties.
 
-Half of the duties are random engines, half Fourier loads with firings (`supplied_duties`); those of seeds
-101 and 202 of `film_cycle_engines`, which are engines alone, count with them. Half grooves extend over 120°
-to 240°. Holes are well placed: under the load, within 60° of its direction, for a tenth of the cycle at
-most. A case is a kind of supply with a sleeve that is fixed or swings, as a rod does: so big ends are apart
-from loads of any other kind. In each case the bound is a factor times powers of load number, B/D, the
-course of the load and supply pressure. The powers make the bound small in the median (`powers_of`); the
-factor is an order statistic, a one-sided tolerance bound: it is not below the 95 % quantile of the error
-over the powers with a confidence of 95 %, and needs 59 duties. It is rounded up. How many duties are
-marched does not depend on what they show. Beyond the range of an attribute among the duties the bound is
-null. Each is tried on duties by which it was not chosen: a fifth of them, with the bounds of the other four
-fifths, five times; and the engines of seed 303. One that holds for fewer than 93 of 100 is withdrawn: null.
-Errors are relative to the march; what that lacks of repeating is added. A duty that starves has an infinite
-error. Pressures have no bound: that of level supplied is not converged where a starved film ends in an
-impact. Angles have none: of two films nearly alike, now one, now the other is the smallest.
+Half of the duties are random engines, half are Fourier loads with firings (`supplied_duties`); the duties of
+seeds 101 and 202 of `film_cycle_engines`, which are engines only, are added. Half grooves extend over 120° to
+240°. A hole is under the load, that is, within 60° of its direction, for at most a tenth of the cycle. A case
+is a kind of supply together with a sleeve that is fixed or that swings like a rod, so big ends have their own
+cases.
+
+In each case the bound is a factor times powers of load number, B/D, the course of the load and supply
+pressure. The powers minimise the median bound (`powers_of`). The factor is a one-sided tolerance bound from
+an order statistic: with a confidence of 95 % it is not below the 95 % quantile of the error over the powers,
+which needs 59 duties. It is rounded up. The number of duties does not depend on their results. Outside the
+range of an attribute among the duties the bound is null.
+
+Each bound is tested on duties that were not used to choose it: five times on a fifth of the duties, with
+bounds from the other four fifths, and on the engines of seed 303. A bound that is right for fewer than 93 of
+100 is replaced by null. Errors are relative to level `supplied`; the change of its orbit from cycle to cycle
+is added. A duty that starves has an infinite error. Pressures have no bound, because the pressure of level
+supplied does not converge where a starved film ends in an impact. Angles have none, because either of two
+nearly equal minima of the film may be the smaller one.
 """
 
 import json
@@ -112,7 +116,7 @@ LEAST = 3e-3
 
 
 def bound(errors: list[float]) -> float | None:
-    """Return the one-sided tolerance bound; None where there are too few, or it is infinite."""
+    """Return the one-sided tolerance bound; None if there are too few errors, or if it is infinite."""
     ranks = np.arange(1, len(errors) + 1)
     high = ranks[binom.cdf(ranks - 1, len(errors), QUANTILE) >= CONFIDENCE]
     if high.size == 0:
@@ -122,7 +126,7 @@ def bound(errors: list[float]) -> float | None:
 
 
 def rounded_up(value: float) -> float:
-    """Return a number in two digits, rounded up."""
+    """Return a number rounded up to two digits."""
     if value <= 0:
         return 0.0
     digit = 10.0 ** (floor(log10(value)) - 1)
@@ -139,7 +143,7 @@ class Law:
     """Range of each attribute among the duties."""
 
     def of(self, line: Line) -> float | None:
-        """Return the bound for a duty; None where none is stated."""
+        """Return the bound for a duty; None if none is stated."""
         if self.factor is None:
             return None
         if not all(
@@ -163,7 +167,7 @@ def logs(line: Line) -> Array:
 
 
 def case_of(line: Line) -> str | None:
-    """Return the case of a duty as `OilFilmCycle.measured_case` has it; None where it has none."""
+    """Return the case of a duty as `OilFilmCycle.measured_case` names it; None if it has none."""
     names = {"slot": "sleeve_hole", "part_groove": "half_groove"}
     kind = line.get("kind") or names.get(line["fed_by"], line["fed_by"])
     if kind not in KINDS or not PRESSURES[0] <= line["P"] <= PRESSURES[1]:
@@ -176,25 +180,25 @@ def case_of(line: Line) -> str | None:
 
 
 def first_duties() -> list[Line]:
-    """Return the marched duties on which the bounds stand."""
+    """Return the duties from which the bounds are derived."""
     own = [line for line in engines.kept() if line["seed"] in ENGINES]
     return [line for line in (*kept(), *own) if case_of(line)]
 
 
 def fresh_engines() -> list[Line]:
-    """Return the engines on which the bounds are tried."""
+    """Return the engines on which the bounds are tested."""
     return [line for line in engines.kept() if line["seed"] == OTHER_ENGINES]
 
 
 def error_of(line: Line, level: str, output: str) -> float:
-    """Return the error of an output, with what the orbit lacks of repeating; infinite where there is none."""
+    """Return the error of an output plus the change from cycle to cycle; infinite if there is no error."""
     errors = line.get("errors", {}).get(level)
     own = errors[OUTPUTS.index(output)] if errors else None
     return np.inf if own is None else own + (line["repeat"] or 0.0)
 
 
 def powers_of(places: Array, errors: Array) -> dict[str, float]:
-    """Return exponents of the attributes that make the bound of errors small in the median.
+    """Return exponents of the attributes that minimise the median bound of the errors.
 
     Parameters
     ----------
@@ -216,7 +220,7 @@ def powers_of(places: Array, errors: Array) -> dict[str, float]:
 
 
 def law_of(lines: list[Line], level: str, output: str) -> Law:
-    """Return the bound of the errors of some duties."""
+    """Return the bound of the errors of some duties as a power law."""
     errors = np.array([error_of(line, level, output) for line in lines])
     if bound(errors.tolist()) is None:
         return NONE
@@ -227,7 +231,7 @@ def law_of(lines: list[Line], level: str, output: str) -> Law:
 
 
 def ranges(places: Array) -> dict[str, tuple[float, float]]:
-    """Return the range of each attribute, in four digits and outwards."""
+    """Return the range of each attribute, rounded outwards to four digits."""
     low, high = np.exp(places.min(axis=0)) * (1 - 1e-3), np.exp(places.max(axis=0)) * (1 + 1e-3)
     every = zip(ATTRIBUTES, low, high, strict=True)
     return {name: (float(f"{a:.4g}"), float(f"{b:.4g}")) for name, a, b in every}
@@ -251,7 +255,7 @@ Counts = dict[str, dict[str, dict[str, list[int]]]]
 
 
 def trials(first: list[Line], fresh: list[Line], stated: Laws) -> list[Trial]:
-    """Return bounds, each with duties by which they were not chosen."""
+    """Return bounds, each with duties that were not used to choose it."""
     part = np.random.default_rng(SEED).integers(0, PARTS, len(first))
     parts = [[line for line, own in zip(first, part, strict=True) if own == k] for k in range(PARTS)]
     others = [[line for j, own in enumerate(parts) for line in own if j != k] for k in range(PARTS)]
@@ -259,7 +263,7 @@ def trials(first: list[Line], fresh: list[Line], stated: Laws) -> list[Trial]:
 
 
 def coverage(tried: list[Trial]) -> Counts:
-    """Return for how many duties each bound holds, of how many, by case, level and output."""
+    """Return for how many duties each bound is right, of how many, by case, level and output."""
     held: Counts = {}
     for stated, lines in tried:
         for line in lines:
@@ -273,7 +277,7 @@ def coverage(tried: list[Trial]) -> Counts:
 
 
 def admitted(stated: Laws, held: Counts) -> Laws:
-    """Return the bounds that hold often enough on other duties; the others are null."""
+    """Return the bounds that are right often enough on other duties; the others become null."""
     return {
         case: {
             level: {
@@ -286,13 +290,13 @@ def admitted(stated: Laws, held: Counts) -> Laws:
 
 
 def holds(held: Counts, case: str, level: str, output: str) -> bool:
-    """Return whether a bound holds often enough, or was not checked."""
+    """Return whether a bound is right often enough, or was not tested."""
     good, of = held.get(case, {}).get(level, {}).get(output, [0, 0])
     return good >= HOLDS * of
 
 
 def ratios_of(tried: list[Trial], level: str, output: str) -> list[tuple[Line, float]]:
-    """Return the duties that have a bound at a level, with the bound over the error."""
+    """Return the duties that have a bound at a level, with the ratio of bound to error."""
     every = [
         (line, law.of(line), error_of(line, level, output))
         for stated, lines in tried
@@ -303,7 +307,7 @@ def ratios_of(tried: list[Trial], level: str, output: str) -> list[tuple[Line, f
 
 
 def write() -> None:
-    """Make the accuracy file, and print the coverage."""
+    """Write the accuracy file and print the coverage."""
     first = first_duties()
     measured = laws(first)
     held = coverage(trials(first, fresh_engines(), measured))
@@ -355,7 +359,7 @@ def write() -> None:
 
 
 def by_output(stated: Laws, part: Callable[[Law], Any]) -> dict[str, Any]:
-    """Return a part of every law, by case, level and output."""
+    """Return one field of every power law, by case, level and output."""
     return {
         case: {
             level: {output: part(law) for output, law in outputs.items()} for level, outputs in levels.items()
@@ -365,9 +369,9 @@ def by_output(stated: Laws, part: Callable[[Law], Any]) -> dict[str, Any]:
 
 
 def costs(level: str) -> dict[str, float]:
-    """Return the processor time of a point, alone and among many, all outputs [s].
+    """Return the processor time of a point with all outputs [s], alone and among many.
 
-    Of level supplied it is the median of all marches, at the other levels that of the example.
+    At level supplied it is the median of all duties, at the other levels the time of the example.
     """
     if level == "supplied":
         each = float(f"{np.median([line['seconds'] for line in (*kept(), *engines.kept())]):.2g}")
@@ -387,7 +391,7 @@ def costs(level: str) -> dict[str, float]:
 
 
 def expected_seconds(lines: list[Line]) -> dict[str, Any]:
-    """Return the median processor time of a march by case and band of load and width [s].
+    """Return the median processor time [s] at level supplied, by case and band of load and width.
 
     A band with fewer than `FEWEST_TIMED` duties has the median of its case.
     """
@@ -408,7 +412,7 @@ def _median(lines: list[Line], rest: list[Line]) -> float:
 
 
 def ratios() -> None:
-    """Print the smallest film of level mobility_grooved over that of level supplied, of all kept duties."""
+    """Print the minimum film of level mobility_grooved over that of level supplied for all stored duties."""
     for kind, seed in product(("half_groove", "full_groove"), (SEED, OTHER_SEED)):
         films = {
             line["number"]: line["gap"]
@@ -445,7 +449,7 @@ def spread(listed: Array) -> str:
 
 
 def page() -> None:
-    """Print what docs/oil_film_cycle.md shows: verdicts, bounds of the smallest film, how many hold."""
+    """Print the tables of docs/oil_film_cycle.md: verdicts, bounds of the minimum film, and coverage."""
     first, fresh = first_duties(), fresh_engines()
     measured = laws(first)
     tried = trials(first, fresh, measured)
@@ -489,7 +493,7 @@ def row(
 
 
 def summaries(tried: list[Trial], name: str) -> None:
-    """Print for how many duties the bound of the smallest film holds at the levels at which designs start."""
+    """Print for how many duties the bound of the minimum film is right, at the default levels of designs."""
     every = ratios_of(tried, STARTS[0], SMALLEST) + [
         pair for pair in ratios_of(tried, STARTS[1], SMALLEST) if "groove" not in (case_of(pair[0]) or "")
     ]
@@ -503,7 +507,7 @@ def summaries(tried: list[Trial], name: str) -> None:
 
 
 def main() -> None:
-    """Run, check, write or print."""
+    """Carry out the command: run, check, write or print."""
     task, *named = sys.argv[1:] or ["write"]
     marches = {"run": (SEED, ENOUGH), "more": (SEED, MORE), "check": (OTHER_SEED, FRESH)}
     if task in marches:

@@ -1,4 +1,4 @@
-"""Processor time of tests, by file and by test: where the time of the quick suite goes.
+"""Measure the processor time of tests by file and by test, to show where the quick suite spends its time.
 
 Run with: python -m benchmarks.lanes [files, folders and options of pytest, such as tests/physics -n 2]
 
@@ -38,14 +38,14 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 
 def read() -> tuple[float, float]:
-    """Return the processor time of this process and its family, and what it takes to read that [s]."""
+    """Return the processor time of this process and its descendants, and the time to read it [s]."""
     begin = time.process_time()
     family = used(os.getpid())
     return family, time.process_time() - begin
 
 
 def main(arguments: list[str]) -> int:
-    """Run pytest and print what its tests take, the longest files first."""
+    """Run pytest and print the times of its tests, the slowest files first."""
     with tempfile.TemporaryDirectory() as folder:
         costs = Path(folder, "costs")
         costs.touch()

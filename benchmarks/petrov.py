@@ -38,7 +38,7 @@ POINTS = 100_000
 
 
 def error(eps: Array, ratio: Array) -> Array:
-    """Return Petrov's friction over that of the loaded film, less 1."""
+    """Return Petrov's friction over that of the loaded film, minus 1."""
     return 1 / friction_over_Petrov(eps, ratio) - 1
 
 
@@ -50,7 +50,7 @@ def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
 
 
 def seconds_a_point(count: int) -> float:
-    """Return the cost of Petrov's force among so many, the best of some runs."""
+    """Return the cost per point of Petrov's force among many points, the shortest of some runs [s]."""
     clearance = np.full(count, 2.5e-4) if count > 1 else np.float64(2.5e-4)
     runs = [_seconds(lambda: friction_Petrov_1883(0.025, 0.1, clearance, 0.0119, 157.1)) for _ in range(9)]
     return float(f"{min(runs) / count:.1e}")
@@ -63,7 +63,7 @@ def _seconds(run: Callable[[], object]) -> float:
 
 
 def measure() -> None:
-    """Fill the table, draw the picture, print the figures."""
+    """Fill the table, draw the picture and print the figures."""
     errors = [[cell(eps, ratio) for ratio in pairwise(RATIO)] for eps in pairwise(EPS)]
     table = {
         "template": {"id": JournalFriction.id, "version": JournalFriction.version},
@@ -94,7 +94,7 @@ def measure() -> None:
 
 
 def draw() -> None:
-    """The picture: film friction over Petrov's, over eccentricity."""
+    """Draw film friction over Petrov's against eccentricity."""
     plt.rcParams.update({"svg.hashsalt": "crankwright", "svg.fonttype": "none"})  # the same bytes again
     gap = np.geomspace(1e-3, 1, 400)
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
@@ -117,7 +117,7 @@ def draw() -> None:
 
 
 def check() -> None:
-    """The map's friction against full solutions, extrapolated."""
+    """Compare the map's friction with full solutions, extrapolated."""
     rng, worst = np.random.default_rng(2), 0.0
     for eps, ratio in zip(1 - 10 ** rng.uniform(-4, 0, 60), 10 ** rng.uniform(-1, 1, 60), strict=True):
         full = extrapolated_film(float(eps), float(ratio))[0].friction / np.pi

@@ -1,4 +1,4 @@
-"""Draw the README's picture from a running service: the worksheet beside the part that it drives.
+"""Draw the README's picture from a running service: the worksheet and the part that it drives.
 
     python -m benchmarks.readme_picture
 
@@ -29,7 +29,7 @@ WIDEST = 116  # of what is shown of a part [mm]
 
 
 def main() -> None:
-    """Create the paper's design at two scales and draw both, the parts in true proportion to each other."""
+    """Create the paper's design at two scales and draw both, with the parts in true proportion."""
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         formulas = {f.name: f.latex for f in client.template("oil_film", 1).formulas}
@@ -48,7 +48,7 @@ def _document(scale: str) -> dict[str, Any]:
 
 
 def _worksheet(axes: Any, client: Client, design: Design, formulas: dict[str, str]) -> None:
-    """The relation and three of the formulas with their results, as a worksheet shows them."""
+    """Draw the relation and three formulas with their results, as a worksheet shows them."""
     step = client.revision(design.id, design.revision).steps["film"]
     diameter = step.inputs["bearing_diameter"].value
     lines = [

@@ -44,12 +44,12 @@ DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
 
 
 def derive(step: bytes, kind: str) -> bytes:
-    """Return the file of that kind for a STEP file; equal STEP bytes give equal bytes.
+    """Return the file of a kind, derived from a STEP file; equal STEP bytes give equal bytes.
 
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape, or validation properties match no part.
+        If the bytes are not a STEP file or contain no shape, or validation properties match no part.
     KeyError
         If no such kind can be derived.
     InvalidInputs

@@ -1,8 +1,8 @@
-"""Options of a requested file: one part instead of all, and the deflection of a mesh.
+"""Kinds of derived files with options: the deflection of a mesh, and a single part.
 
-A kind with options is written `stl@0.05mm#upper_shell`, and its file is stored beside that of `stl`. The
-deflection is the largest distance of a facet from the true surface. Deflections are rounded down to steps,
-six in a decade. So a part has at most 19 meshes of a kind, however many deflections are requested.
+A kind with options is named `stl@0.05mm#upper_shell`, and its file is stored in addition to that of `stl`.
+The deflection is the largest distance of a facet from the true surface. Deflections are rounded down to six
+values per decade, so a part has at most 19 meshes of a kind, however many deflections are requested.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
 
 
 def with_deflection(kind: str, raw: str) -> str:
-    """Return the kind of file with a deflection as a user typed it, such as `0.05 mm`.
+    """Return the file kind for a deflection as the user typed it, such as `0.05 mm`.
 
     Raises
     ------
@@ -61,12 +61,12 @@ def with_deflection(kind: str, raw: str) -> str:
 
 
 def with_part(kind: str, part: str) -> str:
-    """Return the kind of file that holds one part alone.
+    """Return the file kind for a file that contains only one part.
 
     Raises
     ------
     InvalidInputs
-        If a file of that kind always holds all parts.
+        If a file of that kind always contains all parts.
     """
     if plain_kind(kind) not in BY_PART:
         detail = f"only {listed(BY_PART)} can hold one part alone; leave it out for {plain_kind(kind)}"
@@ -75,28 +75,28 @@ def with_part(kind: str, part: str) -> str:
 
 
 def _steps(around: float) -> list[float]:
-    """Return the steps from a decade below a length to a decade above it, ascending."""
+    """Return the allowed deflections from a decade below a length to a decade above it, ascending."""
     decade = floor(log10(around))
     return [float(f"{step:g}e{decade + more}") for more in (-1, 0, 1) for step in STEPS]
 
 
 def _step_not_above(length: float) -> float:
-    """Return the greatest step that is not coarser than a length."""
+    """Return the largest allowed deflection that does not exceed a length."""
     return max(step for step in _steps(length) if step <= length * (1 + _SAME))
 
 
 def _step_not_below(length: float) -> float:
-    """Return the least step that is not finer than a length."""
+    """Return the smallest allowed deflection that is not below a length."""
     return min(step for step in _steps(length) if step >= length * (1 - _SAME))
 
 
 def plain_kind(kind: str) -> str:
-    """Return the kind without its options."""
+    """Return the file kind without its deflection."""
     return kind.partition(_OF)[0].partition(_AT)[0]
 
 
 def bodies_of(kind: str, bodies: Sequence[Body]) -> Sequence[Body]:
-    """Return the bodies that a file of that kind holds: all, or one part once, in its own coordinates.
+    """Return the bodies in a file of that kind: all bodies, or one part once in its own coordinates.
 
     Raises
     ------
@@ -116,9 +116,9 @@ def bodies_of(kind: str, bodies: Sequence[Body]) -> Sequence[Body]:
 
 
 def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
-    """Return the deflection [mm] of a kind of file.
+    """Return the deflection [mm] of a file kind.
 
-    None where it has the usual one, a part of each body's size.
+    None stands for the default, a fraction of the size of each body.
 
     Raises
     ------
@@ -138,5 +138,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """Return the largest diagonal of a body's box [mm], whatever the number of its positions."""
+    """Return the largest diagonal of the bounding box of a body [mm]; its positions do not matter."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

@@ -1,4 +1,4 @@
-"""3MF: closed meshes in millimetres, with names, colours and positions, for programs of 3D printing.
+"""3MF files for 3D printing: closed meshes in millimetres, with names, colours and positions.
 
 The package follows the 3MF Core Specification 1.3: a ZIP archive of one model, its relationship and the list
 of content types. Equal meshes give equal bytes.

@@ -1,4 +1,4 @@
-"""Request bodies for designs, besides the design itself."""
+"""Request bodies about designs, except the document itself."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ Note = Field(
 
 
 class DesignIn(Document):
-    """A new design."""
+    """Request for a new design."""
 
     model_config = ConfigDict(
         strict=True,
@@ -66,21 +66,21 @@ class DesignIn(Document):
 
 
 class RestoreIn(Bounded):
-    """A note for the revision that a restore makes."""
+    """Request to restore a revision, with a note for the new one."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     note: str | None = Note
 
 
 class CopyIn(Bounded):
-    """A name for the copy."""
+    """Request to copy a design, with a name for the copy."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     name: Name | None = None
 
 
 class DecideIn(Bounded):
-    """The criteria of a design and its variants to decide, and the time that may take."""
+    """Request to decide criteria of a design and its variants within a time budget."""
 
     model_config = ConfigDict(
         strict=True,

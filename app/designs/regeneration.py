@@ -65,7 +65,7 @@ class Regeneration:
         )
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Regenerate the revision of a job; the completion attaches the results.
+        """Regenerate the revision of a job, and return a completion that stores the results.
 
         Raises
         ------

@@ -46,10 +46,11 @@ class Local:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes [SI] and elasticities of one value, shape (d,); an elasticity is a ratio of relative changes.
+    """Slopes [SI] and elasticities of one value, shape (d,).
 
-    An elasticity is NaN if the value is zero, and zero if the variable is zero. A slope is one-sided if the
-    value is missing on one side of the point, and NaN if it is missing on both sides.
+    An elasticity is the relative change of the value per relative change of a variable. It is NaN if the
+    value is zero, and zero if the variable is zero. A slope is one-sided if the value is missing on one side
+    of the point, and NaN if it is missing on both sides.
     """
 
     value: float

@@ -30,7 +30,8 @@ PROBED = 33  # number of rows from which levels are chosen
 class RootQuestion:
     """Request for the values of `unknown` between two bounds that give `target` the value `value` [SI].
 
-    `tolerance` is the relative error to which solutions are confirmed; None means that of the design.
+    `tolerance` is the relative error to which solutions are confirmed. None means the tolerance of the
+    design.
     """
 
     unknown: Reference

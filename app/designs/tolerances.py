@@ -1,4 +1,4 @@
-"""Warn about tolerances that no calculation uses: those of a design's own parameters and of its models.
+"""Warn about tolerances that no calculation uses: of a design's own parameters, and of its models.
 
 A step warns about tolerances of its own inputs. A tolerance of a model parameter only appears in the STEP
 file, on the faces that have the dimension.

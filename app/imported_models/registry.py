@@ -1,4 +1,4 @@
-"""Keep the imported models of the database in the catalogue."""
+"""Publish the imported models of the database in the catalogue."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EVERY = 1.0
 
 
 def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
-    """Yield the classes of rows; an unreadable row does not affect the others."""
+    """Yield the classes of rows; an unreadable row is skipped."""
     for row in rows:
         try:
             yield (row.id, row.number), class_of(row.description, row.id, row.number)
@@ -30,7 +30,7 @@ def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[Impor
 
 
 class ImportedModelRegistry:
-    """Publishes imported models; a version is read once."""
+    """Publishes imported models, and reads each version only once."""
 
     def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
         self.database, self.catalogues = database, catalogues
@@ -40,18 +40,18 @@ class ImportedModelRegistry:
         self.look()
 
     def start(self) -> None:
-        """Start looking for models that other servers import, if the database may have other servers."""
+        """Start to check for models that other servers import, if several servers share the database."""
         if self._is_shared:
             self._thread.start()
 
     def stop(self) -> None:
-        """Stop looking."""
+        """Stop the checks."""
         self._ending.set()
         if self._thread.is_alive():
             self._thread.join()
 
     def look(self) -> None:
-        """Look for new versions."""
+        """Publish new versions in the database."""
         with self._looking, self.database.read() as session:
             if (count := repository.count(session)) == self._count:
                 return
@@ -64,4 +64,4 @@ class ImportedModelRegistry:
             try:
                 self.look()
             except Exception:
-                logger.exception("The imported models could not be looked at")
+                logger.exception("The imported models could not be read")

@@ -55,7 +55,9 @@ class Settings(BaseSettings):
     poll_seconds: float = Field(
         5.0, gt=0, description="time between two checks of the database by a server of a team [s]"
     )
-    minimum_free_mb: int = Field(200, ge=0, description="free disk space below which /readyz says 503 [MiB]")
+    minimum_free_mb: int = Field(
+        200, ge=0, description="free disk space below which /readyz returns 503 [MiB]"
+    )
     owner: str = Field(
         "", max_length=80, description="legal owner in the title blocks of drawings (ISO 7200)"
     )
@@ -94,9 +96,11 @@ class Settings(BaseSettings):
     creo_version: int | None = Field(
         None, ge=7, le=99, description="major version of Creo; required by CREOSON from Creo 7 on"
     )
-    wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
-    queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
-    client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")
+    wait_seconds: float = Field(2.0, ge=0, description="how long a request waits for its job by default [s]")
+    queue_limit: int = Field(
+        1000, gt=0, description="largest number of queued jobs; further ones are refused"
+    )
+    client_queue_limit: int = Field(50, gt=0, description="largest number of queued jobs of one client")
     workers: int = Field(1, gt=0, description="jobs that run at the same time, in addition to one analysis")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
     job_memory_mb: int = Field(
@@ -118,7 +122,7 @@ class Settings(BaseSettings):
         2048, gt=0, description="memory of one calculation in addition to the program [MiB]"
     )
     analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")
-    analysis_memory_mb: int = Field(6144, gt=0, description="memory of one such analysis [MiB]")
+    analysis_memory_mb: int = Field(6144, gt=0, description="memory limit of an analysis of a solid [MiB]")
     cache_mb: int = Field(256, gt=0, description="memory for cached results [MiB]")
     keep_jobs_days: float = Field(
         90, gt=0, description="how long an ended job is listed [days of operation]; at least `keep_keys_days`"
@@ -158,7 +162,9 @@ class Settings(BaseSettings):
     oidc_client: str | None = Field(None, description="client id of this service at that provider")
     oidc_secret: SecretStr | None = Field(None, description="client secret of this service at that provider")
     session_hours: float = Field(12, gt=0, description="how long a browser stays signed in [h]")
-    principal_rate: float = Field(600, gt=0, description="requests of one principal; others get 429 [1/min]")
+    principal_rate: float = Field(
+        600, gt=0, description="largest request rate of one principal; further requests get 429 [1/min]"
+    )
     principal_storage_mb: int = Field(
         20480, gt=0, description="files that one principal may have stored [MiB]"
     )
@@ -168,8 +174,10 @@ class Settings(BaseSettings):
     traces_url: Annotated[str | None, AfterValidator(check_collector)] = Field(
         None, description="address of the OpenTelemetry collector for traces: `http://127.0.0.1:4318`"
     )
-    streams: int = Field(200, gt=0, description="streams of events that may be open")
-    streams_per_client: int = Field(20, gt=0, description="streams of events that one client may have open")
+    streams: int = Field(200, gt=0, description="largest number of open event streams")
+    streams_per_client: int = Field(
+        20, gt=0, description="largest number of open event streams of one client"
+    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "warning", description="least severe level that is logged; `info` logs a line for each request"
     )
@@ -179,5 +187,5 @@ class Settings(BaseSettings):
 
     @property
     def stop_seconds(self) -> float:
-        """Return the share of the drain time kept for jobs and database after the last request [s]."""
+        """Return the part of the drain time reserved for jobs and the database after the last request [s]."""
         return min(4.0, 0.4 * self.drain_seconds)

@@ -218,7 +218,7 @@ class BucketStore:
         return entry is not None and entry.tag is not None and self._tags.has(sha, entry.tag)
 
     def _note(self, sha: str, tag: str | None) -> None:
-        """Remember the tag of an object whose bytes are right; without a tag the bucket is asked again."""
+        """Remember the tag of an object whose bytes are right; without a tag, remember nothing."""
         if tag:
             self._tags.add(sha, tag)
 

@@ -48,7 +48,7 @@ _ADVANCED = "UPDATE counter SET value = value + ? WHERE name = ?"
 class present(GenericFunction[float]):  # noqa: N801 - it is written as a function
     """Return an SQL expression for the present time by the clock of the database [s since 1970].
 
-    The clocks of servers may differ. Within a transaction the time does not stand still.
+    The clocks of servers may differ. The time advances within a transaction.
     """
 
     type = Double()

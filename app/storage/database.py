@@ -90,7 +90,7 @@ class Database:
         DatabaseDamaged
             If the database is damaged; nothing is stored.
         Exception
-            Any error that the unit raises; only its own changes are undone.
+            The error that the unit raises; only its own changes are undone.
         """
         return self._writer.write(unit)
 

@@ -71,7 +71,7 @@ class DatabaseClosed(StorageError):
 
 
 class CommitFailed(StorageError):
-    """A unit of work could not be committed, so nothing of it is stored. The cause is attached."""
+    """A unit of work could not be committed; nothing of it is stored. `__cause__` is the original error."""
 
 
 class CommitUnknown(CommitFailed):

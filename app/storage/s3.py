@@ -52,9 +52,10 @@ class Bucket:
     """A bucket, or the part of it below a prefix.
 
     A request that fails quickly is repeated twice. If a bucket accepts connections but does not answer, a
-    request ends after 5 s. An upload has 4 to 8 s more for each MiB, because the bucket sends nothing
-    meanwhile. Texts of the client may quote addresses and keys, so messages contain only their codes. After a
-    failure the bucket `is_silent` for `retry_after` seconds, during which a caller may prefer another source.
+    request ends after 5 s. An upload has 4 to 8 s more for each MiB, because the bucket sends nothing until
+    it is complete. Texts of the client may quote addresses and keys, so messages contain only their codes.
+    After a failure the bucket `is_silent` for `retry_after` seconds, during which a caller may prefer another
+    source.
     """
 
     def __init__(

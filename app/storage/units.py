@@ -177,9 +177,8 @@ class Statement:
 class _DriverStatement:
     """A statement in the form that SQLite's driver executes.
 
-    `places` has for each parameter the name of its value; `constants` are the values that callers do not
-    give. `writing` has converters of parameters by position, `reading` those of the columns of rows. None is
-    NULL in all columns.
+    `places` names the value of each parameter; `constants` are values that callers do not give. `writing`
+    converts parameters by position, and `reading` converts columns of rows. None is NULL in all columns.
     """
 
     text: str

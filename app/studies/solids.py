@@ -64,7 +64,7 @@ class SolidPool:
 
     @contextmanager
     def turn(self, context: JobContext) -> Iterator[None]:
-        """Wait until a solid may be made, and occupy one place meanwhile.
+        """Wait until a solid may be made, and occupy one place of the pool in the block.
 
         Raises
         ------

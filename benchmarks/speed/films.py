@@ -1,4 +1,4 @@
-"""Films: processor time and error of `reynolds`, of `mass_conserving` and of a supplied orbit."""
+"""Measure films: processor time and error of `reynolds`, of `mass_conserving` and of a supplied orbit."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ SEED, ENGINES = 17, 15  # duties of engines have even numbers
 
 
 def figures() -> list[Figure]:
-    """Return all lines about films."""
+    """Return all figures about films."""
     return [*reynolds(), mass_conserving(), supplied()]
 
 
 def reynolds() -> list[Figure]:
-    """Return the mean cost and worst error of the load number, without and with extrapolation."""
+    """Return the mean cost and largest error of the load number, with and without extrapolation."""
     points = list(product(ECCENTRICITIES, WIDTHS))
     truth = np.array([extrapolated_film(eps, ratio, 512, 64)[0].So for eps, ratio in points])
     rows = []
@@ -62,7 +62,7 @@ def _film(
 
 
 def mass_conserving() -> Figure:
-    """Return one output of the template's example at level `mass_conserving`."""
+    """Return the cost of one output of the template's example at level `mass_conserving`."""
     output = ["minimum_film_thickness"]
     spent = processor_seconds(
         lambda: evaluate(OilFilm, OilFilm.example, level="mass_conserving", outputs=output)
@@ -73,7 +73,7 @@ def mass_conserving() -> Figure:
 
 
 def supplied() -> Figure:
-    """Return supplied orbits of random engines' bearings."""
+    """Return the cost of supplied orbits of random engine bearings."""
     _march(random_duty(SEED, 1))  # compiles
     duties = [random_duty(SEED, 2 * number) for number in range(ENGINES)]
     spent = median_seconds([lambda duty=duty: _march(duty) for duty in duties])  # type: ignore[misc]

@@ -219,7 +219,9 @@ class Calculation:
         return result["value"]
 
     def instance(self, block: str) -> Template:
-        """Return the template of a step, or the model, with its values; for rows, that of the first part.
+        """Return the template of a step, or the model, with its values.
+
+        If the rows were evaluated in several parts, it is the template of the first part.
 
         Raises
         ------

@@ -63,7 +63,7 @@ class JudgedColumn:
     low, high
         The error band of the value as far as known; infinite at an unknown end.
     utilisation
-        Limit over value, or value over limit; NaN for temperatures, and unless both are positive.
+        Limit over value, or value over limit; NaN for temperatures, and if either is not positive.
     margin
         The difference between value and limit; positive is safe.
     is_known

@@ -90,7 +90,7 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
 
 
 def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]:
-    """Return the evaluations of one array call; if the call refuses, those of two calls for its halves."""
+    """Return the evaluations of one array call; if it is refused, of two calls for its halves."""
     if len(asked) < 2:
         return [None] * len(asked)  # a single variant is calculated in the normal way
     first = asked[0]

@@ -185,7 +185,7 @@ class Statements:
         return words
 
     def asked(self, value: Node, literal: ScaledNumber | None = None) -> list[str]:
-        """Return preferred units for a declaration: the region's unit, then that of the typed value."""
+        """Return preferred units for a declaration: the region's unit, then the unit of the typed value."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
         scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
         units = []

@@ -128,7 +128,8 @@ def verdicts(
     The bands include the known errors; `is_known` states where all errors are known.
     """
     safe, bad = _opposed(sign, value_bounds, limit_bounds)
-    if not np.ndim(is_known) and all(isinstance(end, float) for end in (value, limit, *safe, *bad)):
+    ends = value, limit, *safe, *bad
+    if isinstance(is_known, (bool, np.bool_)) and not [end for end in ends if not isinstance(end, float)]:
         if value != value or limit != limit:
             return NOT_CHECKED
         met = MET if is_known else MET_ERROR_UNKNOWN

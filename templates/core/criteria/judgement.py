@@ -96,8 +96,7 @@ class Judgement:
     @property
     def sides(self) -> tuple[str, str]:
         """Return value and limit as text."""
-        parts = _parts_of(self.require)
-        return parts.value, parts.limit
+        return _parts_of(self.require).sides
 
     @property
     def sign(self) -> str:
@@ -107,7 +106,7 @@ class Judgement:
     @property
     def has_fixed_limit(self) -> bool:
         """Return whether the limit is a literal number in the criterion."""
-        return _is_number(_parts_of(self.require).limit)
+        return _is_number(self.sides[1])
 
     @property
     def misses(self) -> bool:
@@ -140,9 +139,11 @@ def verdict_sentence(
     """Return a sentence that states a requirement and its verdict, with value, limit and unit if present."""
     parts = _parts_of(require)
     words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
-    if numbers is None or not all(map(math.isfinite, numbers[:2])):
+    if numbers is None:
         return f"{parts.written}: {words}"
     value, limit, unit = numbers
+    if not (math.isfinite(value) and math.isfinite(limit)):
+        return f"{parts.written}: {words}"
     actual = {">=": "<", "<=": ">"}[parts.sign] if misses else parts.sign
     unknown = "" if error_known or verdict == "not_checked" else "; error unknown"
     sides = Side(parts.value_words, value), Side(parts.limit_words, limit)
@@ -152,12 +153,12 @@ def verdict_sentence(
 class _Parts(NamedTuple):
     """A required comparison, split into its parts.
 
-    `written` is the whole comparison with labels for names; the words of each side precede its number.
+    `sides` are value and limit as text; `written` is the whole comparison with labels for names; the words of
+    each side precede its number.
     """
 
     sign: str
-    value: str
-    limit: str
+    sides: tuple[str, str]
     value_words: str
     limit_words: str
     written: str
@@ -169,7 +170,7 @@ def _parts_of(require: str) -> _Parts:
     left, _, right = require.partition(sign)
     value, limit = left.strip(), right.strip()
     written = f"{_name(value)} {sign} {_name(limit)}"
-    return _Parts(sign, value, limit, _in_words(value), _in_words(limit), written)
+    return _Parts(sign, (value, limit), _in_words(value), _in_words(limit), written)
 
 
 def _is_number(side: str) -> bool:
@@ -198,8 +199,7 @@ def _name(text: str) -> str:
     return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
 
 
-@dataclass(frozen=True)
-class Side:
+class Side(NamedTuple):
     """One side of a comparison: its words, which may be empty, and its magnitude in the common unit."""
 
     words: str
@@ -214,8 +214,8 @@ def related(left: str, sign: str, right: str) -> str:
 def compared(left: Side, sign: str, right: Side, unit: str) -> str:
     """Return a true comparison, such as `minimum film thickness 2.133 µm is below permissible film 3 µm`."""
     printed, (one, other) = unit_symbol(unit), told_apart(left.magnitude, right.magnitude)
-    sides = f"{left.words} {one} {printed}", f"{right.words} {other} {printed}"
-    return f" {IS[sign]} ".join(side.strip() for side in sides)
+    first, second = f"{left.words} {one} {printed}".strip(), f"{right.words} {other} {printed}".strip()
+    return f"{first} {IS[sign]} {second}"
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:

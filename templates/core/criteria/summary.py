@@ -12,7 +12,7 @@ from templates.core.criteria.judgement import Judgement
 SHOWN: tuple[Verdict, ...] = ("met", "not_met", "undecided", "not_checked")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Summary:
     """The verdict over all criteria; green only if all are met and none of them is uncertain.
 
@@ -64,9 +64,10 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
     decisive = [judgement for judgement in ordered if judgement.waived is None]
     waiting = {_subject(j) for j in ordered if j.verdict == "not_checked"}
     governing = next((j.name for j in ordered if _may_govern(j, waiting)), None)
-    unknown = sum(j.verdict == "met" and not j.error_known for j in ordered)
+    met = [judgement for judgement in ordered if judgement.verdict == "met"]
+    unknown = sum([not judgement.error_known for judgement in met])
     verdict = decisive[0].verdict if decisive else ordered[0].verdict if ordered else "not_checked"
-    green = bool(ordered) and all(j.verdict == "met" and j.is_certain for j in ordered)
+    green = bool(ordered) and len(met) == len(ordered) and all(judgement.is_certain for judgement in met)
     headline = _headline(tuple(counts.values()), unknown, len(ordered) - len(decisive))
     return Summary(verdict, counts, unknown, governing, headline, green)
 

@@ -375,27 +375,27 @@ def _noticed(rungs: list[Rung]) -> list[Notice]:
 
 
 def assumed(
-    template: Calculation, outputs: Collection[str], criteria: Iterable[Judgement] = ()
+    template: Calculation, outputs: Collection[str], criteria: Sequence[Judgement] = ()
 ) -> list[Assumption]:
     """Return the assumptions behind the outputs and the judged criteria of a template."""
     cls, typed = type(template), template.ledger.typed
-    own = [Assumption("", detail) for detail in cls.assumptions]
-    given = frozenset(name for name in typed if isinstance(cls.inputs.get(name), Derived))
-    stated = _defaults(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
-    defaults = [one for one in stated if one.name not in typed]
-    return [*own, *defaults, *_limits(cls, list(criteria))]
+    given = frozenset([name for name in typed if isinstance(cls.inputs.get(name), Derived)])
+    stated = _stated(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
+    return [*(one for one in stated if one.name not in typed), *_limits(cls, criteria)]
 
 
 @lru_cache(maxsize=1024)
-def _defaults(
-    cls: type[Calculation], outputs: frozenset[str], given: frozenset[str]
-) -> tuple[Assumption, ...]:
-    """Return the assumptions of the inputs on which the outputs depend, with these derived inputs given."""
+def _stated(cls: type[Calculation], outputs: frozenset[str], given: frozenset[str]) -> tuple[Assumption, ...]:
+    """Return the assumptions of the model, and of the inputs on which the outputs depend.
+
+    `given` are the derived inputs that the user gave.
+    """
+    own = tuple(Assumption("", detail) for detail in cls.assumptions)
     declared = {name: one.meaning.assumed for name, one in cls.inputs.items()}
     if not any(declared.values()):
-        return ()
+        return own
     reached = set(_beneath(cls, outputs, given))
-    return tuple(
+    return own + tuple(
         Assumption(name, detail)
         for name, detail in declared.items()
         if detail and (cls.inputs[name].attribute in reached or getattr(cls.inputs[name], "optional", False))
@@ -416,13 +416,25 @@ def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[s
         waiting += uses
 
 
-def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> Iterator[Assumption]:
-    """Yield the limits that a template provides where the user gave none."""
+def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> list[Assumption]:
+    """Return the limits that a template provides where the user gave none."""
     open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
-    checked = [one for one in criteria if one.verdict != "not_checked"] if open_values else []
+    if not open_values:
+        return []
+    checked = [one for one in criteria if one.verdict != "not_checked"]
     open_values.difference_update([one.sides[0] for one in checked if not one.has_fixed_limit])
-    declared = {(one.name, one.require) for one in cls.declared_criteria} if open_values and checked else ()
-    for one in checked:
-        value, limit = one.sides
-        if value in open_values and _AMOUNT.fullmatch(limit) and (one.name, one.require) in declared:
-            yield Assumption(one.name, f"the limit of {value.replace('_', ' ')} is {limit}, a default")
+    provided = _provided(cls)  # type: ignore[arg-type]  # a class has a hash
+    found = (provided.get((one.name, one.require)) for one in checked if one.sides[0] in open_values)
+    return [one for one in found if one]
+
+
+@lru_cache(maxsize=1024)
+def _provided(cls: type[Calculation]) -> dict[tuple[str, str], Assumption]:
+    """Return the fixed limits of a template's criteria, by name and requirement."""
+    return {
+        (one.name, one.require): Assumption(
+            one.name, f"the limit of {one.value.text.replace('_', ' ')} is {one.limit.text}, a default"
+        )
+        for one in cls.declared_criteria
+        if _AMOUNT.fullmatch(one.limit.text)
+    }

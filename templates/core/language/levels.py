@@ -109,9 +109,10 @@ class Accuracy:
         stated. Errors are scalars, or arrays of the shape of the points. The names must not include texts.
         """
         errors = self.expected(template, template.level, outputs)
-        own = self.own(template.level) if template.states_own_errors() else {}
-        for name in own.keys() & errors.keys():
-            errors[name] = template.own_error(name) + self._added(template, name)
+        own = self.own(template.level)
+        if own and template.states_own_errors():
+            for name in own.keys() & errors.keys():
+                errors[name] = template.own_error(name) + self._added(template, name)
         return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
@@ -122,7 +123,8 @@ class Accuracy:
         tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
-        own = self.own(level or SINGLE) if there.states_own_errors() else {}
+        own = self.own(level or SINGLE)
+        own = own if own and there.states_own_errors() else {}
         available = tables if there.is_measured() else {}
         measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
@@ -135,6 +137,8 @@ class Accuracy:
             estimates |= {name: none + own[name] for name in names if name in own and name not in exact}
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
+        if not any(one.holds(there) for one in self._conditions):
+            return errors
         return {name: error + self._added(there, name) for name, error in errors.items()}
 
     def _power(self, template: Template, level: str, output: str) -> Any:

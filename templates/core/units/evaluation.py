@@ -24,13 +24,13 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
     FaultyText
         With code `shape`, if a single value is used as a list, or a list as a single value.
     """
-    if isinstance(node, Apply):
-        if node.operation in LISTWISE:
-            parts = [value_of(argument, values) for argument in node.arguments]
-            return listwise(node.operation, parts, [np.ndim(part) for part in parts])
-        return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
     if isinstance(node, Name):
         return values[node.name]
+    if isinstance(node, Apply):
+        parts = [value_of(argument, values) for argument in node.arguments]
+        if node.operation in LISTWISE:
+            return listwise(node.operation, parts, [np.ndim(part) for part in parts])
+        return node.operation.calculate(*parts)
     if isinstance(node, Constant):
         return node.value
     return values[node.text] if isinstance(node, Item) else node.text  # a word is compared with a word
