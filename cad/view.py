@@ -1,4 +1,4 @@
-"""The view direction of pictures and drawings: from above the front, where a half shell is open."""
+"""View direction of pictures and drawings: from above and in front, to show the inside of a half shell."""
 
 from __future__ import annotations
 

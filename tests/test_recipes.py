@@ -17,7 +17,8 @@ from patience import patient
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
-OUTPUT, FORMAT, FILTER = "one more output, as a new version", "a new file format", "one more filter on a list"
+OUTPUT, FORMAT = "an additional output, as a new version", "a new file format"
+FILTER = "an additional filter on a list"
 FIELD, SECTION = "a field of a resource", "a section of a page"
 RECIPES = (OUTPUT, FORMAT, FILTER, FIELD, SECTION)
 BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)

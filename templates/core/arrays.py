@@ -1,4 +1,4 @@
-"""The array types of templates, physics and geometry."""
+"""Array types shared by templates, physics and geometry."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -4,10 +4,11 @@ r"""Mass-conserving film rupture and re-formation (Jakobsson, Floberg, Olsson; E
     \nabla\cdot(H^3\nabla P) = 6\,\partial_x\left[(1-\lambda) H\right],\quad
     P \ge 0,\ \lambda \ge 0,\ P\lambda = 0
 
-P is the pressure above the cavity pressure, lambda the void fraction. Shear transports the oil, discretised
-upwind. Solved by the Fischer–Burmeister–Newton–Schur method: the complementarity becomes the equation P +
-lambda = sqrt(P² + lambda²), Newton's method solves for both at once. At every node the unknown on which this
-equation depends more is eliminated, which leaves one sparse system.
+P is the pressure above the cavity pressure, lambda the void fraction. The transport of oil by shear is
+discretised upwind. The equations are solved by the Fischer–Burmeister–Newton–Schur method: the
+complementarity condition becomes the equation P + lambda = sqrt(P² + lambda²), and Newton's method solves for
+both unknowns at once. At every node the unknown on which this equation depends more strongly is eliminated,
+which leaves one sparse system.
 
 References
 ----------
@@ -33,7 +34,7 @@ _DAMPING = 1e-10
 
 @dataclass(frozen=True)
 class Network:
-    """Balance of flow at nodes: A P + T fill = 0 where the pressure is unknown."""
+    """The flow balance at nodes: A P + T fill = 0 where the pressure is unknown."""
 
     A: csc_array
     """(N, N) what a node loses by pressure, per pressure."""
@@ -46,9 +47,10 @@ class Network:
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
-        """Nodes whose pressure is unknown, from the end of the longest run of fixed ones around the ring.
+        """Return the indices of nodes with unknown pressure, from the end of the longest run of fixed ones.
 
-        Where a groove is as long as the bearing is wide, neighbours are then near each other.
+        If a groove is as long as the bearing is wide, neighbouring nodes are then near each other in this
+        order.
         """
         count = self.fixed.size
         around = np.arange(2 * count)
@@ -77,14 +79,14 @@ class Cavitation:
 
 
 def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Cavitation:
-    """Solve for pressure and void.
+    """Return the pressure and void of a film with mass-conserving cavities.
 
     Parameters
     ----------
     network
-        Balances of flow.
+        The flow balances.
     start
-        Pressure and void of a nearby film; a re-formation front moves about one node a step.
+        Pressure and void of a nearby film; a re-formation front moves about one node per step.
 
     Raises
     ------
@@ -112,8 +114,8 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
 def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array, fischer: Array) -> Array:
     """Return the changes of pressure and void times their scale, (2, N).
 
-    From loss + A dP − T dvoid = 0 and the changed complementarity.
-    Where the film is full dvoid is eliminated, in the cavity dP: the larger slope divides.
+    They solve loss + A dP − T dvoid = 0 together with the linearised complementarity condition. In the full
+    film dvoid is eliminated, in the cavity dP, so that the larger of the two slopes is the divisor.
     """
     full = pair[0] >= pair[1]
     dependence = 1 - pair / np.maximum(np.hypot(*pair), np.finfo(float).tiny)

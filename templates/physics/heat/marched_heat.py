@@ -1,9 +1,9 @@
 """The heat balance over a cycle with the mass-conserving film of level `supplied`.
 
-Its side flow is all the oil that leaves at the ends, displaced by the journal or driven by the supply against
-the film's own pressure, including the oil from groove ends and holes. A march takes a second or more, so the
-balance starts from the result of a cheap level and continues by the secant method; three or four marches are
-enough.
+The side flow of this level is all the oil that leaves at the ends, displaced by the journal or driven by the
+supply against the film's own pressure, including oil from groove ends and holes. A march takes a second or
+more, so the balance starts from the result of a cheap level and continues by the secant method; three or four
+marches are enough.
 """
 
 from __future__ import annotations
@@ -34,16 +34,13 @@ FARTHEST = float(np.log(4))
 
 @on_paper("solved numerically by secants of the viscosity in the heat balance over the cycle")
 def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """Return the viscosity at which heat and viscosity agree, at any level.
-
-    At level supplied of one point.
-    """
+    """Return the viscosity that satisfies the heat balance, at any level; level supplied takes one point."""
     if bearing.level != "supplied":
         return cycle_heat(bearing, oil)
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"
     first = cycle_heat(replace(bearing, level=cheap), oil)
     shape = np.shape(first.eta)
-    start = first.eta if np.all(np.isfinite(first.eta)) else oil.still(oil.supply) / 2
+    start = first.eta if np.all(np.isfinite(first.eta)) else oil.viscosity(oil.supply) / 2
     rounds: list[tuple[float, float]] = [(float(np.log(np.ravel(start)[0])), np.nan)]
     while len(rounds) <= ROUNDS:
         x = rounds[-1][0]
@@ -59,7 +56,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def following(rounds: list[tuple[float, float]]) -> float:
-    """Return the next ln(viscosity), by a secant, from those with what each lacks.
+    """Return the next ln(viscosity) by a secant, from pairs of earlier values and their residuals.
 
     Examples
     --------
@@ -76,7 +73,7 @@ def following(rounds: list[tuple[float, float]]) -> float:
 
 
 def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, float]:
-    """Return the film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
+    """Return the film at a viscosity, and the residual of its heat balance in ln; NaN without a film."""
     film = heated_film(bearing, eta)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
         lack = np.log(oil.sheared(temperature(oil, film), film.rate) / eta)

@@ -20,7 +20,7 @@ NEARLY_HALF = 0.3
 
 @dataclass(frozen=True)
 class Duty:
-    """What a bearing has to do over a cycle, SI; axes before that of the cycle are points."""
+    """Loads and speeds of a bearing over a cycle, in SI; the axes before that of the cycle are points."""
 
     angle: Array
     """(N,) crank angles [rad]."""
@@ -48,7 +48,7 @@ class Duty:
 
 @dataclass(frozen=True)
 class CycleFilm:
-    """What the film does."""
+    """The results of the film over the cycle."""
 
     P: Array
     """Largest pressure over the bearing, (..., N)."""
@@ -71,10 +71,10 @@ def weights(angle: Array, period: float) -> Array:
 
 
 def cycle_of(angle: Array) -> float:
-    """Return the cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi; NaN if neither, or not rising.
+    """Return the cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi.
 
-    The last angle is not the first one again, and from it to the end of the cycle is no farther than twice
-    the largest other step.
+    The result is NaN if they cover neither or do not ascend. The last angle must not repeat the first, and
+    its distance to the end of the cycle must be at most twice the largest other step.
     """
     if angle.ndim != 1 or not FEWEST <= angle.size <= MOST:
         return float("nan")
@@ -88,13 +88,13 @@ def cycle_of(angle: Array) -> float:
 
 @units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
-    """Return the same as a number for a formula."""
+    """Return the result of `cycle_of` as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]
 
 
 @dataclass(frozen=True)
 class LoadCourse:
-    """How a load varies over the cycle; dimensionless, (...)."""
+    """Measures of how a load varies over the cycle; dimensionless, (...)."""
 
     peak: Array
     """Its largest size over its mean size."""
@@ -106,7 +106,7 @@ class LoadCourse:
 
 
 def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:
-    """Return how a load [N], (..., N), varies over crank angles (N,) [rad]."""
+    """Return measures of how a load [N], (..., N), varies over crank angles (N,) [rad]."""
     period = cycle_of(angle)
     weight, size = weights(angle, period) / period, np.hypot(F_x, F_y)
     mean = size @ weight
@@ -122,5 +122,5 @@ def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:
 
 @units("rad/s", returns="rad/s", latex=r"\left|\overline{{{0}}}\right|")
 def mean_speed(speed: Array) -> Array:
-    """Return the size of the mean of a speed over the cycle [rad/s]."""
+    """Return the magnitude of the mean of a speed over the cycle [rad/s]."""
     return np.abs(speed if np.ndim(speed) == 0 else np.mean(speed, axis=-1))

@@ -4,12 +4,12 @@ r"""The orbit of a journal under a periodic load, by the mobility method; many c
     \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
 
 theta is the crank angle, which increases with Omega; the load on the journal is linear between its points.
-The film is massless and always full where it carries, so its history does not matter. All nodes of the cycle
-are solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
-of Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and
-a quarter of that where the error bound of the smallest gap is above 0.2 per cent. The intervals of the load
-are halved until they are short enough: the nodes, the answer and its bound do not change if the same load is
-given at twice as many angles.
+The film is massless and always full where it carries load, so it has no memory. All nodes of the cycle are
+solved at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance of
+Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and a
+quarter of that if the error bound of the smallest gap exceeds 0.2 per cent. The intervals of the load are
+halved until they are short enough: nodes, result and bound do not change if the same load is given at twice
+as many angles.
 
 References
 ----------
@@ -55,7 +55,7 @@ _BLOCK = 1 << 16
 
 @dataclass(frozen=True)
 class CyclicLoad:
-    """A load on the journal over one cycle, in a frame that may turn itself."""
+    """A load on the journal over one cycle, in a frame that may rotate."""
 
     angle: Array
     """(N,) rising crank angles [rad]."""
@@ -92,7 +92,7 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Ring:
-    """Nodes over the cycle, with load and speed there."""
+    """Nodes over the cycle, with the load and speed at each."""
 
     place: Array
     """(K,) crank angles [rad]."""
@@ -112,7 +112,7 @@ class Ring:
         return Ring(self.place[part], self.period, self.S[..., part], self.w[..., part])
 
     def of(self, cases: Mask) -> "Ring":
-        """Return the same nodes of fewer cases."""
+        """Return the same nodes for a subset of the cases."""
         return Ring(self.place, self.period, self.S[:, cases], self.w[cases])
 
 
@@ -122,7 +122,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
     Parameters
     ----------
     load
-        The cycle; a case without any load has no orbit of its own and is NaN.
+        The cycle; a case with zero load has no unique orbit and gives NaN.
     law
         Mobility of the same cases.
     """
@@ -148,14 +148,14 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
 
 
 def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
-    """Return the number of steps into which each interval between the load's angles is halved, (N,)."""
+    """Return the number of steps into which each interval between the load's angles is divided, (N,)."""
     widths = np.diff(load.angle, append=load.angle[0] + load.period)
     halvings = np.ceil(np.log2(finer * widths / LARGEST_STEP) - 1e-6)
     return (1 << np.maximum(0, halvings).astype(np.intp)).astype(np.intp)
 
 
 def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
-    """Return the finest nodes, and which of them are the load's own."""
+    """Return the finest nodes, and a mask of those at the load's own angles."""
     counts = node_counts(load, finer)
     own = np.cumsum(counts) - counts
     interval = np.repeat(np.arange(counts.size), counts)
@@ -171,7 +171,7 @@ def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
 
 
 def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: int) -> None:
-    """Enter the orbits of those cases of a part that settle."""
+    """Store the orbits of those cases of a part that converge."""
     if not part.any():
         return
     ring, own = ring_of(load.of(part), finer)
@@ -188,11 +188,10 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:
-    """Return orbits on the finest ring, from coarser ones.
+    """Return the orbits on the finest ring, started from coarser ones, and further results.
 
-    Which settled, and the error of the gap at the nodes.
-
-    And the smallest gaps between the nodes of every ring, NaN where it did not settle, the finest last.
+    These are a mask of converged cases, the error of the gap at the nodes, and the smallest gaps between the
+    nodes of every ring, the finest last; NaN where a ring did not converge.
     """
     stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
     tolerance = _ROUGH if stride > 1 else TOLERANCE
@@ -220,7 +219,7 @@ def _between(ring: Ring, e: Array, settled: Mask) -> Array:
 
 
 def _halved(e: Array, nodes: int) -> Array:
-    """Return the values on a ring with a node midway in every step."""
+    """Return the values on a ring with an additional node in the middle of every step."""
     finer = np.empty((*e.shape[:-1], nodes))
     finer[..., ::2] = e
     finer[..., 1::2] = ((e + np.roll(e, -1, axis=-1)) / 2)[..., : nodes // 2]
@@ -228,7 +227,7 @@ def _halved(e: Array, nodes: int) -> Array:
 
 
 def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
-    """Return Newton's method from a start, for the cases tried; which have settled away from the wall."""
+    """Return the result of Newton's method from a start, and a mask of cases converged away from the wall."""
     left, settled = tried.copy(), np.zeros(tried.shape, bool)
     a = differences(ring.steps())
     for _ in range(_MOST_STEPS if left.any() else 0):
@@ -247,9 +246,9 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """Return the change applied, each node held within its bearing.
+    """Return the applied change, limited so that each node stays within its bearing.
 
-    And its largest size over the gap, (C,).
+    The second result is its largest magnitude over the gap, (C,).
     """
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
@@ -262,7 +261,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """Return d(eps)/d(theta), (2, C, K), and its slopes by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its derivatives by eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])

@@ -1,8 +1,8 @@
 """Angles of sleeve and journal in the frame of the load, from their speeds over the cycle.
 
 The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. A part returns to its
-position after each cycle only if it makes whole turns in the frame; a groove in any other part is elsewhere
-in every cycle.
+position after each cycle only if it makes whole revolutions in the frame; a groove in any other part has a
+different position in every cycle.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ CLOSED = np.radians(2.0)
 
 @dataclass(frozen=True)
 class PartRotation:
-    """The angle of a part in the frame of some cases: even turning, and a swing that repeats."""
+    """The angle of a part in the frame, for some cases: uniform rotation plus a periodic swing."""
 
     turns: Array
     """(C,) turns in the frame over the cycle; NaN where these are not whole [-]."""
@@ -31,12 +31,12 @@ class PartRotation:
         return PartRotation(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:
-        """Return the angle at crank angles, with the swing there, (C, K) [rad]."""
+        """Return the angle at crank angles from the swing there, (C, K) [rad]."""
         return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
 
 
 def turning(angle: Array, period: float, speed: Array) -> PartRotation:
-    """Return the turning of a part by its speed in the frame over that of the crank.
+    """Return the rotation of a part from its speed in the frame over that of the crank.
 
     Parameters
     ----------

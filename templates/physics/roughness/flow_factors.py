@@ -1,13 +1,13 @@
-r"""The average Reynolds equation of rough surfaces after Patir and Cheng, and its film of a journal.
+r"""The average Reynolds equation of rough surfaces after Patir and Cheng, solved for a journal bearing.
 
 .. math::
     \partial_x(\phi_x h^3\partial_x p) + \partial_z(\phi_x h^3\partial_z p)
     = 6\,\eta\,U\,\partial_x(\bar h_T + \sigma\Phi_s)
 
 phi_x is that of isotropic roughness (gamma = 1) in both directions. Phi_s is (sigma_1/sigma)² phi_s of the
-moving face minus (sigma_2/sigma)² phi_s of the other, so it vanishes for faces of equal roughness. The mean
-gap h_T of a normal distribution is h where the faces do not touch. Below h/sigma = 0.5, where the tables end,
-the factors stay constant.
+moving surface minus (sigma_2/sigma)² phi_s of the other, so it vanishes for surfaces of equal roughness. The
+mean gap h_T of a normal distribution is h where the surfaces do not touch. Below h/sigma = 0.5, where the
+tables end, the factors are constant.
 
 The tables' numbers were taken from the source code of foam-extend 4.0 (flowFactorsPatirCheng.C), which quotes
 the papers; at h/sigma = 5 the two branches of phi_s agree to 1e-3.
@@ -43,9 +43,9 @@ THINNEST = 0.5
 
 
 def pressure_flow_factor(u: Array, gamma: float = 1) -> Array:
-    """Return phi_x at u = h/sigma, for a gamma of the table.
+    """Return phi_x at u = h/sigma, for a gamma of the table [-].
 
-    Correlation length along over across the flow [-].
+    gamma is the correlation length along the flow over that across it.
     """
     C, r = PRESSURE[gamma]
     u = np.maximum(u, THINNEST)
@@ -62,7 +62,7 @@ def shear_flow_factor(u: Array, gamma: float = 1) -> Array:
 
 
 def mean_gap(u: Array) -> Array:
-    """Return the mean gap over sigma of rough, normally distributed faces, where they do not overlap [-]."""
+    """Return the mean gap over sigma of rough, normally distributed surfaces, without overlaps [-]."""
     return u * ndtr(u) + np.exp(-np.square(u) / 2) / np.sqrt(2 * np.pi)
 
 
@@ -82,7 +82,7 @@ def rough_journal(
     asymmetry
         (sigma_journal² − sigma_bearing²)/sigma² times sliding over hydrodynamic speed [-].
     around, across
-        Intervals of the mesh.
+        Numbers of circumferential and axial intervals.
     """
     mesh = journal_mesh(eps, ratio, around, across)
     H, H_mid = gap(mesh.phi, eps), gap(midpoints(mesh.phi), eps)

@@ -4,9 +4,9 @@ The levels compute orbit, pressure, power loss and flow:
 
     mobility_short    Booker's closed form (1971) of the short bearing's half film; ignores the supply
     mobility          the finite bearing's mobility from its map; ignores the supply
-    mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
+    mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands carry it
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
-                      nowhere else; knows no groove, hole or supply pressure; one case at a time
+                      nowhere else; ignores groove, hole and supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; case after case
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
@@ -86,7 +86,7 @@ REMEDY = {
 
 @dataclass(frozen=True)
 class FedDuty:
-    """What a bearing has to do over a cycle, and what feeds it; SI."""
+    """Loads and speeds of a bearing over a cycle, and its oil supply; SI."""
 
     duty: Duty
     """Load and speeds; the load is what the journal pushes with."""
@@ -104,7 +104,7 @@ class FedDuty:
 
 @dataclass(frozen=True)
 class FedOrbit:
-    """Where the journal goes; NaN, and eps_max infinite, where no orbit was found."""
+    """The orbit of the journal; NaN, and eps_max infinite, where no orbit was found."""
 
     eps_x: Array
     eps_y: Array
@@ -123,7 +123,7 @@ class FedOrbit:
     """Results of marching in time at level flooded."""
 
     def admitted(self, eps_max: Array) -> "FedOrbit":
-        """Return the same with NaN where the largest eccentricity was not admitted."""
+        """Return the same orbit with NaN where the largest eccentricity is NaN."""
         lost = np.isnan(eps_max)
 
         def kept(values: Array) -> Array:
@@ -135,12 +135,12 @@ class FedOrbit:
         return FedOrbit(**values, marches=self.marches, flooded=self.flooded)
 
     def required(self) -> "FedOrbit":
-        """Return the same if a film repeats, or if there are several points.
+        """Return the same orbit if a film repeats, or if there are several points.
 
         Raises
         ------
         InvalidInputs
-            By the name of the verdict, if the film of a single point starves or no orbit was found.
+            Named after the verdict, if the film of a single point starves or no orbit was found.
         """
         if len(self.marches) == 1 and (marched := self.marches[0]) and marched.verdict in UNREPEATED:
             detail = f"no film repeats: {marched.reason}; {REMEDY[marched.verdict]}"
@@ -149,12 +149,12 @@ class FedOrbit:
 
     @property
     def verdict(self) -> str:
-        """End of a march at level supplied, of several points with the number of each; empty without one."""
+        """Return how a march of level supplied ended, numbered for several points; empty without one."""
         return _of_points([marched.verdict.value if marched else "" for marched in self.marches])
 
     @property
     def reason(self) -> str:
-        """Return why no film repeats, in words; empty where one does or level supplied did not march."""
+        """Return a text on why no film repeats; empty if one does or level supplied was not used."""
         return _of_points([marched.reason if marched else "" for marched in self.marches])
 
     @property
@@ -166,19 +166,19 @@ class FedOrbit:
 
     @property
     def mass_balance(self) -> Array:
-        """Return oil fed less oil lost and stored, over the oil lost; NaN but at level supplied."""
+        """Return oil fed minus oil lost and stored, over the oil lost; NaN except at level supplied."""
         return self.of_marches(lambda marched: marched.mass_balance)
 
     @property
     def feed(self) -> Array:
-        """Return oil fed, Q/(B D c Omega), c the radial clearance, in the mean.
+        """Return the mean flow of oil fed, Q/(B D c Omega), c the radial clearance, (...).
 
-        NaN if no film repeats, (...).
+        It is NaN if no film repeats.
         """
         return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else m.mean_feed)
 
     def of_marches(self, value: Callable[[SuppliedOrbit], float]) -> Array:
-        """Return a value of the march of each point; NaN without one, (...)."""
+        """Return a value from the march of each point; NaN without one, (...)."""
         if not self.marches:
             return self._everywhere(np.nan)
         values = [value(marched) if marched else np.nan for marched in self.marches]
@@ -194,7 +194,7 @@ class FedOrbit:
 
 
 def _of_points(texts: Sequence[str]) -> str:
-    """Return a statement for all points, or one for each point; empty if there is none."""
+    """Return a text for all points, or one for each point; empty if there is none."""
     if len(set(texts)) <= 1:
         return next(iter(texts), "")
     return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)
@@ -202,7 +202,7 @@ def _of_points(texts: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class _Cases:
-    """The points of a duty in one row, dimensionless."""
+    """The points of a duty as a one-dimensional array, dimensionless."""
 
     passing: GroovePassage
     ratio: Array
@@ -215,7 +215,7 @@ class _Cases:
 
     @property
     def load(self) -> CyclicLoad:
-        """Return the load on its own."""
+        """Return the cyclic load alone."""
         return self.passing.load
 
 
@@ -253,9 +253,9 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
     }
 )
 def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
-    """Return the pressure, loss and flow along an orbit.
+    """Return pressure, loss and flow along an orbit.
 
-    Side flow of level supplied with what its supply drives.
+    The side flow of level supplied includes the flow driven by the supply.
     """
     cases = _cases(level, fed)
     load, points = cases.load, cases.points
@@ -280,10 +280,10 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
 
 
 def _driven(level: str, cases: _Cases, eps: Array, weight: Array) -> Array:
-    """Return the mean flow from the groove over both lands due to supply pressure, (C,).
+    """Return the mean flow from the groove over both lands that the supply pressure drives, (C,).
 
-    The pressure of the film does not hinder it, as ISO 7902-1 has it for a steady load. 0 where the level
-    knows no supply pressure, or counts that flow as side flow.
+    The pressure of the film does not reduce it, as in ISO 7902-1 for a steady load. It is 0 if the level
+    ignores supply pressure, or includes this flow in the side flow.
     """
     if level not in MOBILITY:
         return np.zeros(cases.ratio.shape)
@@ -304,7 +304,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
     eps_x, eps_y
         Relative eccentricity [-].
     start, extent
-        Where the arc begins and how far it goes [rad].
+        Start and extent of the arc [rad].
     """
     eps, centre = np.hypot(eps_x, eps_y), np.arctan2(eps_y, eps_x)
 
@@ -317,14 +317,14 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
 
 
 def fed_duty(level: str, duty: Duty, feeding: SupplyGeometry, pressure: Array) -> FedDuty:
-    """Return a duty with its oil supply at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
+    """Return a duty with its oil supply at a level, for a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supplies = supplies_of(feeding, pressure) if level == "supplied" else None
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, pressure, supplies)
 
 
 def _cases(level: str, fed: FedDuty) -> _Cases:
-    """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
+    """Return the points of a duty, dimensionless; NaN speeds where the level does not support the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
     fed_points = np.zeros(
@@ -351,7 +351,7 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
 
 
 def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
-    """Return which cases a level takes: by their width, that of the lands, and what the sleeve does."""
+    """Return a mask of the cases that a level supports, by bearing and land width and sleeve rotation."""
     low, high = WIDTHS[level]
     taken = (ratio >= low) & (ratio <= high)
     if level != "mobility_grooved":
@@ -362,7 +362,7 @@ def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
 
 
 def _flooded_orbit(cases: _Cases) -> FedOrbit:
-    """Return the orbit of the one case at level flooded, marched from that at level mobility."""
+    """Return the orbit of a single case at level flooded, marched from that at level mobility."""
     ratio = cases.ratio
     start, flooded = periodic_orbit(cases.load, MapLaw(ratio)), None
     if np.isfinite(start.least_gap).all():
@@ -379,7 +379,7 @@ def _periodic(level: str, cases: _Cases) -> Orbit:
 
 
 def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
+    """Return pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
     S, ratio = cases.load.S, cases.ratio
     size = np.hypot(*S)
     c, s = np.where(size > 0, S / np.where(size > 0, size, 1.0), 0.0)
@@ -398,13 +398,13 @@ def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array,
 
 
 def _one_by_one(marches: tuple[SuppliedOrbit | None, ...]) -> Iterator[tuple[Mask, SuppliedOrbit | None]]:
-    """Yield the mask of each case, and its march."""
+    """Yield the mask of each case with its march."""
     for number, marched in enumerate(marches):
         yield np.arange(len(marches)) == number, marched
 
 
 def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit | None:
-    """March one case; None where the level does not take it."""
+    """Return the march of one case; None if the level does not support it."""
     load = cases.load.of(np.arange(cases.ratio.size) == number)
     if supply is None or not np.isfinite(load.w).all():
         return None
@@ -413,7 +413,7 @@ def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit
 
 
 def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> FedOrbit:
-    """Return the orbits of all cases; a film that starves has no eccentricity, and is not refused for it."""
+    """Return the orbits of all cases; a starved film has NaN eccentricities, which no bound refuses."""
     orbits = [
         _sampled(marched, cases.load.of(one)) if marched and marched.verdict not in UNREPEATED
         else _nowhere(cases.load.of(one))
@@ -429,7 +429,7 @@ def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> Fed
 
 
 def _shaped(orbit: Orbit, cases: _Cases) -> FedOrbit:
-    """Return the cases in the shape of the points."""
+    """Return the values of the cases in the shape of the points."""
     points = cases.points
     x, y = (e.reshape(*points, -1) for e in orbit.eps)
     gap = orbit.between.reshape(points)
@@ -461,12 +461,14 @@ def _at(marched: SuppliedOrbit, values: Array, load: CyclicLoad) -> Array:
 def _of_march(
     marched: SuppliedOrbit | None, load: CyclicLoad, eps: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, mean side flow, shear and the load's work on the film, (1, N) each."""
+    """Return pressure, mean side flow, shear and the work of the load on the film, (1, N) each."""
     if marched is None:
         nothing = np.full_like(load.w, np.nan)
         return nothing, nothing, nothing, nothing
     P, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.shear))
-    flow = np.full_like(P, marched.mean_side_flow)  # of the steps, which are finer than the load's angles
+    flow = np.full_like(
+        P, marched.mean_side_flow
+    )  # mean over the steps, which are finer than the load's angles
     rate = [_at(marched, _slope(marched.theta, e, load.period), load) for e in marched.eps]
     squeezing = np.stack(rate)[:, None] - load.w * np.stack([-eps[1], eps[0]])
     valid = np.isfinite(eps[0])
@@ -475,7 +477,7 @@ def _of_march(
 
 
 def _slope(theta: Array, values: Array, period: float) -> Array:
-    """Return d/d(theta) of what repeats, from the neighbours on either side, (K,)."""
+    """Return d/d(theta) of periodic values by central differences, (K,)."""
     before = theta - np.roll(theta, 1)
     before[0] += period
     after = np.roll(before, -1)

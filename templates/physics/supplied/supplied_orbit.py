@@ -1,9 +1,9 @@
 """The orbit of a journal in a mass-conserving film fed by holes and grooves: level `supplied`.
 
-The film is marched over several cycles (`supplied_march`) in a mesh that turns with the mean speed of journal
-and sleeve. In this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so its history is not
-smeared. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves; then on a mesh
-whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures it.
+The film is marched over several cycles (`supplied_march`) on a mesh that rotates at the mean speed of journal
+and sleeve. On this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so there is no
+numerical diffusion. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves;
+then on a mesh whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures its errors.
 """
 
 from dataclasses import astuple, dataclass, replace
@@ -40,7 +40,7 @@ _REPORTED = 0.05  # share of a cycle between two reports of progress
 
 
 class Verdict(StrEnum):
-    """End of a march."""
+    """How a march ended."""
 
     REPEATING = "repeating"
     """The orbit repeats: its least gap to 1e-3."""
@@ -55,7 +55,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class MeshSettings:
-    """A mesh, the largest step in time on it, and how many cycles to march on it at most."""
+    """A mesh, its largest time step, and the largest number of cycles to march on it."""
 
     around: int
     across: int
@@ -91,7 +91,7 @@ THIN, MORE_ROWS = 0.002, 4
 
 @dataclass(frozen=True)
 class Totals:
-    """What one cycle on one mesh comes to; dimensionless."""
+    """The results of one cycle on one mesh; dimensionless."""
 
     gap: float
     """Smallest gap, between the angles too."""
@@ -103,14 +103,14 @@ class Totals:
     """Mean of the oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
 
     def change(self, before: "Totals") -> "Totals":
-        """Return the change from another mesh, relative to this one [-]."""
+        """Return the change to another mesh, relative to this one [-]."""
         pairs = zip(astuple(self), astuple(before), strict=True)
         return Totals(*(abs(old / new - 1) for new, old in pairs))
 
     def error(self, repeat: float, least: "Totals") -> "Totals":
-        """Return the error left by mesh and step where this is the change from the mesh before [-].
+        """Return the remaining error of mesh and step from the change since the previous mesh [-].
 
-        `repeat` is the change from cycle to cycle, `least` what is left at least.
+        `repeat` is the change from cycle to cycle, `least` the smallest error that is stated.
         """
         parts = zip(astuple(self), astuple(least), astuple(LEAVES), astuple(COARSE_BEYOND), strict=True)
         return Totals(*(
@@ -131,7 +131,7 @@ meshes, and checked on others, by `python -m benchmarks.film_cycle_engines` [-].
 
 @dataclass(frozen=True)
 class SuppliedOrbit:
-    """The last cycle marched; dimensionless, at K angles of unequal steps."""
+    """The last marched cycle; dimensionless, at K angles of unequal steps."""
 
     theta: Array
     """(K,) rising crank angles; the last is one cycle after the load's first [rad]."""
@@ -180,7 +180,7 @@ class SuppliedOrbit:
 
     @property
     def reason(self) -> str:
-        """Return why the orbit does not repeat, in words; empty if it does."""
+        """Return a text on why the orbit does not repeat; empty if it does."""
         if self.verdict is Verdict.REPEATING:
             return ""
         if self.verdict is Verdict.WANDERING:
@@ -203,35 +203,36 @@ def supplied_orbit(
     refined: bool = True,
     near_holes: tuple[MeshSettings, ...] = (),
 ) -> SuppliedOrbit:
-    """March one case until it repeats, or until it is clear that it starves.
+    """Return the orbit of one case, marched until it repeats or clearly starves.
 
-    Says how far it is by `templates.core.progress.report`, which may raise to cancel. The first call compiles
-    the kernel, or reads it from disk (`templates.physics.numerics.machine_code`).
+    It reports progress by `templates.core.progress.report`, which may raise an error to cancel. The first
+    call compiles the kernel, or reads it from disk (`templates.physics.numerics.machine_code`).
 
     Parameters
     ----------
     load
-        One case: S (2, 1, N), with which the journal pushes; w (1, N).
+        One case: S (2, 1, N), the force of the journal; w (1, N).
     sliding
-        (N,) speed of the journal over the sleeve, over Omega, at the load's angles [-].
+        (N,) speed of the journal relative to the sleeve, over Omega, at the load's angles [-].
     ratio
         Width over diameter B/D [-].
     supply
         Pockets and supply pressure.
     meshes
-        Meshes to march on in turn.
+        The successive meshes of the march.
     mass
         Mass of the journal m c Omega psi²/(B D eta), c radial [-].
     refined
-        Whether meshes after the first follow a thin gap: more cells around, and rows nearer to the edges.
+        Whether meshes after the first follow a thin gap, with more cells and with rows closer to the edges.
     near_holes
-        Meshes to march on after these where every pocket stays under the load, for more than `STAYS` of the
+        Further meshes for a case in which every pocket stays under the load for more than `STAYS` of the
         cycle.
 
     Raises
     ------
     ValueError
-        If a pocket that does not go all around is not back at its place in the frame after the cycle.
+        If a pocket that does not extend around the whole circle is not back at its position in the frame
+        after the cycle.
     """
     duty = Duty(load, np.asarray(sliding, float), supply, mass)
     _require_return(duty)
@@ -253,13 +254,13 @@ def supplied_orbit(
 
 
 def _cells(gap: float, times: float = 1.0) -> int:
-    """So many times the cells around that resolve a gap, in steps of 16."""
+    """Return `times` the number of circumferential cells that resolves a gap, in steps of 16."""
     wanted = times * 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
     return int(min(16 * np.ceil(wanted / 16), MOST_AROUND))
 
 
 class _Progress:
-    """Says how far a march is, a few times in a cycle."""
+    """Reports the progress of a march several times per cycle."""
 
     def __init__(self, number: int, meshes: tuple[MeshSettings, ...]) -> None:
         self.number, self.meshes, self.last = number, meshes, -1.0
@@ -273,7 +274,7 @@ class _Progress:
 
 
 def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
-    """Return a state on another mesh."""
+    """Return a state interpolated to another mesh."""
     void = carried(mesh, finer, state.void, state.void[:, -1])
     P = carried(mesh, finer, state.P, 0 * state.P[:, -1])
     oil = (1 - void) * gap_at(finer, state.e)[:, None]
@@ -281,7 +282,7 @@ def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
 
 
 def return_error(duty: Duty) -> float:
-    """Return the largest distance of a pocket from its start position after a cycle [rad]."""
+    """Return the largest distance of a pocket from its initial position after a cycle [rad]."""
     mean, half = duty.mesh_turning.of_cycle, duty.journal_turning.of_cycle
     turns = [
         mean + half if p.on_journal else mean - half for p in duty.supply.pockets if p.half_angle < np.pi
@@ -290,7 +291,7 @@ def return_error(duty: Duty) -> float:
 
 
 def under_load(duty: Duty) -> float:
-    """Return the share of the cycle in which every pocket lies within 60° of the load's direction [-]."""
+    """Return the fraction of the cycle in which every pocket is within 60° of the load's direction [-]."""
     theta = duty.begin + duty.load.period * np.arange(720) / 720
     S, places = duty.seen(theta)
     off = places[..., 0] - np.arctan2(S[:, 1], S[:, 0])[:, None]
@@ -347,14 +348,14 @@ def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
 
 
 def _change(duty: Duty, runs: list[Run]) -> Totals:
-    """Return the change between the results of the last two meshes; NaN without a whole cycle on both."""
+    """Return the change between the results of the last two meshes; NaN without a full cycle on both."""
     if len(runs) < 2 or not (runs[-2].gaps and runs[-1].gaps):
         return UNKNOWN
     return _totals(duty, runs[-1]).change(_totals(duty, runs[-2]))
 
 
 def _totals(duty: Duty, run: Run) -> Totals:
-    """Return the summary values of the last cycle of a run."""
+    """Return the results of the last cycle of a run."""
     states, mesh = run.states[1:], run.mesh
     theta, z = in_frame(duty, run.states)
     fill = np.array([(1 - state.void) @ mesh.width for state in states])
@@ -373,7 +374,7 @@ def _totals(duty: Duty, run: Run) -> Totals:
 
 
 def _verdict(run: Run, share: float) -> Verdict:
-    """Return how the last run ended; `share` is the share of the cycle with all pockets under the load."""
+    """Return how the last run ended; `share` is that fraction of the cycle with all pockets under load."""
     if run.ending is RunOutcome.REPEATING:
         return Verdict.REPEATING
     if run.ending is RunOutcome.THINNING or (run.ending is RunOutcome.FAILED and share >= OFTEN):
@@ -385,15 +386,15 @@ def _verdict(run: Run, share: float) -> Verdict:
 def _flows(states: list[State]) -> tuple[float, float]:
     """Return oil fed and oil lost over a cycle.
 
-    A step of BDF2 stores a mean of the flow at its end and of the mean of the step before. Summed in this way
-    the flows are those of the oil that the march kept; the trapezoidal rule differs by up to some per cent
-    where the steps do, as at an impact.
+    A BDF2 step stores a weighted mean of the flow at its end and the mean of the step before. The flows are
+    summed with the same weights, so that they are consistent with the marched oil content; the trapezoidal
+    rule differs by up to some per cent where the step size changes, as at an impact.
     """
     fed, lost = (sum(state.step * state.flows[k] for state in states[1:]) for k in range(2))
     return float(fed), float(lost)
 
 
 def _stored(mesh: Mesh, states: list[State]) -> float:
-    """Return oil in the film at the end of a cycle less that at its start."""
+    """Return the oil in the film at the end of a cycle minus that at its start."""
     kept = (states[-1].oil - states[0].oil) @ mesh.width
     return float(kept.sum()) * np.pi / mesh.order.size

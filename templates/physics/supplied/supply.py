@@ -1,4 +1,4 @@
-"""Oil supply of a film over a cycle: holes, slots and grooves of either surface, and their pressure.
+"""Oil supply of a film over a cycle: holes, slots and grooves in either surface, and their pressure.
 
 Angles are positive in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0:
 the angle of a hole in the pin is measured from the throw, that of a groove in the rod's bore from the rod's
@@ -29,7 +29,7 @@ class Pocket:
 
 @dataclass(frozen=True)
 class Supply:
-    """What feeds a film: at least one pocket, and a pressure above that of the cavities.
+    """The oil supply of a film: at least one pocket, and a pressure above that of the cavities.
 
     Raises
     ------
@@ -54,10 +54,10 @@ class Supply:
 
     @property
     def grooved(self) -> bool:
-        """Return whether a pocket goes half around or more, and so passes through the loaded zone."""
+        """Return whether a pocket extends at least half around, and so passes through the loaded zone."""
         return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Return the different half lengths, rising [-]."""
+        """Return the distinct half lengths in ascending order [-]."""
         return tuple(sorted({pocket.half_length for pocket in self.pockets}))

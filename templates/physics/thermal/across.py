@@ -7,7 +7,7 @@ With :math:`Y = y/h` from the sleeve (0) to the journal (1), and fluidity :math:
     F_2 = \int Y\left(Y - F_1/F_0\right) f\,dY
 
 The flow is :math:`-F_2 h^3/\eta_s\,\nabla p + U h (1 - F_1/F_0)`. Fluidity is constant in each strip, so
-every integral is exact, and strips and film carry the same flow.
+every integral is exact, and the flows of the strips add up to that of the film.
 
 References
 ----------
@@ -23,7 +23,7 @@ from templates.core.arrays import Array
 
 @dataclass(frozen=True)
 class Across:
-    """The integrals at N places around; the last axis is that of J strips across, from the sleeve."""
+    """The integrals at N circumferential places; the last axis is that of J strips, from the sleeve."""
 
     conductance: Array
     """(N,) F_2; 1/12 at even viscosity [-]."""
@@ -50,14 +50,14 @@ def strip_edges(count: int) -> Array:
 
 
 def across(fluidity: Array, edges: Array) -> Across:
-    """Integrate across the film.
+    """Return the integrals across the film.
 
     Parameters
     ----------
     fluidity
         (N, J) eta_s over the viscosity of each strip [-].
     edges
-        (J + 1,) of the strips [-].
+        (J + 1,) edges of the strips across [-].
     """
     Y, step = edges[:-1], np.diff(edges)
     first, second, third = (np.diff(edges**k) / k for k in (1, 2, 3))

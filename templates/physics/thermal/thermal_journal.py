@@ -21,7 +21,7 @@ ANGLES = np.radians(np.arange(0, 360, 5))
 
 @dataclass(frozen=True)
 class WarmFilm:
-    """What the film does, at each point; dimensionless but for temperatures [K]."""
+    """The results of the film at each point; dimensionless except temperatures [K]."""
 
     eps: Array
     """Relative eccentricity; infinite where no film was found [-]."""
@@ -62,7 +62,7 @@ class WarmFilm:
     """(..., 72) temperature of the bush's surface at `ANGLES` [K]."""
 
     def admitted(self, eps: Array) -> "WarmFilm":
-        """Return the same with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is NaN."""
         none = np.isnan(eps)
         each = {f.name: getattr(self, f.name) for f in fields(self)}
         bush = np.where(np.asarray(none)[..., None], np.nan, each.pop("bush"))
@@ -84,7 +84,7 @@ _FIELD = "solved numerically by finite volumes of Dowson's generalised Reynolds 
 def warm_film(level: str, case: ThermalCase) -> WarmFilm:
     """Return the film of every point at a level.
 
-    All at once with one temperature, else one after the other.
+    With one temperature all points are solved at once, otherwise one after the other.
     """
     if level == ONE:
         return _of_one(case)
@@ -120,7 +120,7 @@ def _of_one(case: ThermalCase) -> WarmFilm:
 
 
 def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, float]:
-    """Return the single values of `WarmFilm`."""
+    """Return the scalar values of `WarmFilm`."""
     film, heat, supply = fine.film, fine.heated, fine.supply
     least, before = 1 - film.gap.eps, 1 - coarse.film.gap.eps
     return {
@@ -138,12 +138,12 @@ def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, flo
 
 
 def _above_rounding(value: float, size: float) -> float:
-    """Return a difference of numbers of a size, 0 where it is no more than their rounding."""
+    """Return a difference of numbers of a given magnitude; 0 if it is no more than rounding error."""
     return value if abs(value) > _ROUNDING * size else 0.0
 
 
 def _around(warm: Warm) -> Array:
-    """Return the temperature of the bush's surface at `ANGLES`; in the groove that of its oil."""
+    """Return the temperature of the bush's surface at `ANGLES`; in the groove, that of its oil."""
     phi = warm.placing.arc.phi
     return np.interp(
         phi[0] + (ANGLES - phi[0]) % (2 * np.pi), phi, warm.heated.bush, right=warm.heated.groove
@@ -152,7 +152,7 @@ def _around(warm: Warm) -> Array:
 
 @units("1", returns="rad", latex=r"k\,5°")
 def bush_angles(eps: Array) -> Array:
-    """Return the angles of the bush's temperatures, from the load, for each eccentricity [-]; [rad]."""
+    """Return the angles of the bush's temperatures from the load [rad], for each eccentricity [-]."""
     return np.asarray(np.broadcast_to(ANGLES, (*np.shape(eps), ANGLES.size)))
 
 
@@ -165,5 +165,5 @@ def bush_angles(eps: Array) -> Array:
 )
 @units("1", returns="K")
 def in_kelvin(value: Array) -> Array:
-    """Return a temperature, or a heat over that of 1 K, of a `WarmFilm` [K]."""
+    """Return a temperature [K] of a `WarmFilm`, or a heat flow expressed in kelvin."""
     return value
