@@ -1,4 +1,4 @@
-"""Refusals of violated rules: each sentence states what is the case, by its own numbers.
+"""Refusals of violated rules: each sentence agrees with its own numbers.
 
 Random changes to the examples of all templates and models look for inputs that violate each rule.
 """
