@@ -1,4 +1,4 @@
-"""Values of a petrol engine of 86 mm bore and stroke, from which examples and designs of engines begin."""
+"""Values of a petrol engine of 86 mm bore and stroke, from which examples and designs of engines start."""
 
 from __future__ import annotations
 
