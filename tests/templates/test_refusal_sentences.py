@@ -1,4 +1,4 @@
-"""Refusals of violated rules: each sentence states what is the case, by its own numbers.
+"""Refusals of violated rules: each sentence agrees with its own numbers.
 
 Every rule of every template and model is violated: most by one input of the example, which is searched over
 its bounds and around what the rule compares; others beside random changes; the rest by the inputs of `HARD`.

@@ -1,4 +1,4 @@
-"""Temperatures and differences of temperature in worksheets: which is which, and what each refuses."""
+"""Temperatures and temperature differences in worksheets: their kinds, and what each refuses."""
 
 import itertools
 
