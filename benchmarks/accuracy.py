@@ -112,7 +112,7 @@ def coefficient_errors(values: tuple[Array, Array], truth: tuple[Array, Array]) 
 
 
 def _threshold(K: Array, B: Array) -> Array:
-    is_finite = np.isfinite(K).all(axis=(-1, -2))
+    is_finite = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
     unit = np.broadcast_to(np.eye(2), K.shape)
     mass = threshold_mass(*(np.where(is_finite[:, None, None], matrix, unit) for matrix in (K, B)))
     return np.where(is_finite, mass, np.nan)
@@ -216,9 +216,10 @@ def cost(level: str) -> dict[str, float]:
     So, many = 3.5718, (FEWER_POINTS.get(level) and 20) or 20_000
 
     def seconds(count: int) -> float:
-        loads = np.full(count, So) if count > 1 else np.float64(So)
+        loads: Any = np.full(count, So) if count > 1 else np.float64(So)
+        ratio: Any = 1.0
         begin = process_time()
-        static_film_at(level, loads, 1.0)
+        static_film_at(level, loads, ratio)
         return (process_time() - begin) / count
 
     seconds(1)
@@ -253,7 +254,7 @@ def rounded(table: Array) -> list[list[float | None]]:
     return [[None if not np.isfinite(v) else float(f"{v:.2g}") for v in row] for row in up]
 
 
-def write(cls: type, content: dict[str, Any]) -> None:
+def write(cls: type[Template], content: dict[str, Any]) -> None:
     """Write the file with one line per row of cells, so that a diff is readable."""
     path = FOLDER / f"{cls.id}_v{cls.version}.accuracy.json"
     path.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")

@@ -29,10 +29,10 @@ def main() -> None:
             answer = bore_tables(step, place, level, lambda done, what: None)["compliance"]
             answers[level] = answer, process_time() - start
         finest = np.array(answers["fine"][0]["value"])
-        for level, (answer, seconds) in answers.items():
+        for name, (answer, seconds) in answers.items():
             away = difference(np.array(answer["value"]), finest)
             mesh = answer["mesh"]
-            print(f"| {cls.id} | {level} | {mesh['elements']} | {mesh['degrees_of_freedom']} "
+            print(f"| {cls.id} | {name} | {mesh['elements']} | {mesh['degrees_of_freedom']} "
                   f"| {answer['error']:.2%} | {away:.3%} | {seconds:.1f} |")  # fmt: skip
 
 

@@ -153,26 +153,33 @@ def state(client: Client, design: Design) -> State:
     return State(
         stiffness=_number(stiffness.value),
         error=_number(stiffness.error),
-        frequency=vibration.outputs["natural_frequencies"].value[0],
+        frequency=_first(vibration.outputs["natural_frequencies"].value),
         mode=_number(mode.outputs["torsional_frequency"].value),
-        recommended=throw.outputs["recommended_stiffness"].value,
+        recommended=_number(throw.outputs["recommended_stiffness"].value),
         mass=measured.mass.value,
         inertia=_inertia(vibration.inputs["inertias"]),
     )
 
 
-def _number(value: float | None) -> float:
+def _number(value: object) -> float:
     """Return a value that the study needs."""
-    if value is None:
-        raise ValueError("the service has no value for an output of the study")
+    if not isinstance(value, float):
+        raise ValueError("the service has no single value for an output of the study")
     return value
+
+
+def _first(values: object) -> float:
+    """Return the first of several values."""
+    if not isinstance(values, list):
+        raise ValueError("the service has no list of values for an output of the study")
+    return _number(values[0])
 
 
 def _inertia(used: object) -> float:
     """Return the first inertia that a step used."""
     if not isinstance(used, UsedInput):
         raise ValueError("the step of the vibration waits for its inputs")
-    return float(used.value[0])
+    return _first(used.value)
 
 
 def main() -> None:

@@ -69,8 +69,9 @@ def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDu
             (pocket,) = duty.supply.pockets
             half = float(rng.uniform(np.pi / 3, 2 * np.pi / 3))
             duty = replace(duty, supply=replace(duty.supply, pockets=(replace(pocket, half_angle=half),)))
-        if kind.endswith("groove") or (moved := well_placed(duty, rng)):
-            yield number, duty if kind.endswith("groove") else moved
+        placed = duty if kind.endswith("groove") else well_placed(duty, rng)
+        if placed is not None:
+            yield number, placed
         number += 1
 
 
@@ -92,25 +93,30 @@ def course(duty: RandomDuty) -> list[float | None]:
 
 def fed(duty: RandomDuty) -> FedDuty:
     """Return the duty as templates use it, in dimensionless form: the crank turns at 1, F is S."""
-    load, one = duty.load, np.float64(1.0)
+    load, one = duty.load, _single(1.0)
     journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
-    asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
+    F_x, F_y = load.S[:, 0]
+    asked = Duty(load.angle, F_x, F_y, journal, sleeve, np.zeros(1), one, one, _single(duty.ratio))
     pocket = duty.supply.pockets[0]
     start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
     share = pocket.half_length if duty.fed_by in GROOVED else 0.0
-    groove = tuple(np.float64(v) for v in (share, start, extent))
-    pressure = np.float64(duty.supply.pressure)
-    return FedDuty(asked, *groove, pressure, np.array(duty.supply, dtype=object))
+    groove = (_single(share), _single(start), _single(extent))
+    return FedDuty(asked, *groove, _single(duty.supply.pressure), np.array(duty.supply, dtype=object))
+
+
+def _single(value: float) -> Array:
+    """Return a number as the type of arrays and single values that films take."""
+    single: Array = np.float64(value)  # type: ignore[assignment]
+    return single
 
 
 def under_load(duty: RandomDuty) -> float:
     """Return the share of the cycle for which the hole is under the load."""
     (pocket,) = duty.supply.pockets
-    none, length = np.float64(np.nan), np.float64(pocket.half_length)
-    hole = (length, np.float64(pocket.half_angle), np.float64(pocket.centre))
-    no_hole = (none, none, none)
-    holes = (*no_hole, *hole) if pocket.on_journal else (*hole, *no_hole)
-    one = np.float64(1.0)
+    one, none = _single(1.0), _single(np.nan)
+    hole = [_single(v) for v in (pocket.half_length, pocket.half_angle, pocket.centre)]
+    no_hole = [none, none, none]
+    holes = [*no_hole, *hole] if pocket.on_journal else [*hole, *no_hole]
     return float(feed_under_load(fed(duty).duty, SupplyGeometry(one, one, none, none, none, *holes)))
 
 
@@ -151,7 +157,7 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
 def keep(line: Line, truth: dict[str, Array]) -> None:
     """Store the values of a calculation on this machine."""
     TRUTHS.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(truth_file(line), **truth)
+    np.savez_compressed(truth_file(line), allow_pickle=True, **truth)
 
 
 def truth_file(line: Line) -> Path:

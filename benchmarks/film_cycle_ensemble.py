@@ -427,7 +427,10 @@ def ratios() -> None:
                 break
             if number in films:
                 asked = fed(duty)
-                for listed, variant in ((plain, replace(asked, pressure=np.float64(0.0))), (less, asked)):
+                for listed, variant in (
+                    (plain, replace(asked, pressure=0.0 * asked.pressure)),
+                    (less, asked),
+                ):
                     film = 1 - fed_orbit("mobility_grooved", variant).eps_max
                     listed.append(float(film) / films[number])
                 if not 0.75 <= less[-1] <= 1.25:

@@ -17,6 +17,7 @@ from functools import partial
 from itertools import pairwise
 from time import process_time
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from templates.core.language.levels import SINGLE, accuracy_file
 from templates.core.language.template import Template
 from templates.physics.journals import mixed_journal
 from templates.physics.pads import thrust_collar
+from templates.physics.roughness.flow_factors import rough_journal
 
 SEED, OTHER_SEED = 36, 63
 CHUNK = 50
@@ -150,13 +152,10 @@ def finer_collars(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Va
 
 def refined_films(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Values:
     """Return the results of level averaged on a mesh twice as fine, at twice as many eccentricities."""
-    before = mixed_journal.rough_journal, mixed_journal._NODES
-    finer = partial(mixed_journal.rough_journal, around=ROUGH_MESH[0], across=ROUGH_MESH[1])
-    mixed_journal.rough_journal, mixed_journal._NODES = finer, 2 * mixed_journal._NODES
-    try:
+    finer = partial(rough_journal, around=ROUGH_MESH[0], across=ROUGH_MESH[1])
+    twice = 2 * mixed_journal._NODES
+    with patch.multiple(mixed_journal, rough_journal=finer, _NODES=twice):
         return at(cls, raw, outputs, "averaged")[0]
-    finally:
-        mixed_journal.rough_journal, mixed_journal._NODES = before
 
 
 def of_level(level: str) -> Callable[[type[Template], Raw, tuple[str, ...]], Values]:

@@ -101,7 +101,7 @@ class Bench:
         stack.callback(self.database.close)
         catalogues = Catalogues(find_templates(()), models())
         self.jobs = Jobs(self.database, Inline(), Settings(data=folder), problems.describe)
-        builds = Builds(self.database, store, *_folders(Builds))
+        builds = Builds(self.database, store)
         analysing = AnalysisRunner(self.database, store, Limits())
         self.designs = Designs(self.database, self.jobs, catalogues)
         self.regeneration = Regeneration(
@@ -144,11 +144,6 @@ class Bench:
 
 def _forget(*progress: Any) -> None:
     """Discard progress, because its frequency depends on the machine."""
-
-
-def _folders(builds: type) -> list[tuple[()]]:
-    """Return the folders of a team's models, which older programs hand to the builds."""
-    return [()] if "folders" in signature(builds).parameters else []
 
 
 def _recent(designs: Any) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
@@ -72,10 +73,10 @@ class Bearings:
         vars(template)["balance"] = HeatBalance(self.T, self.T_out, np.zeros(self.T.shape))
         return template
 
-    def some(self, rows: Array) -> "Bearings":
+    def some(self, rows: NDArray[np.intp]) -> "Bearings":
         """Return a subset of the bearings."""
         inputs = {
-            n: replace(v, si=v.si[rows]) if isinstance(v, TypedQuantity) else v
+            n: replace(v, si=np.asarray(v.si)[rows]) if isinstance(v, TypedQuantity) else v
             for n, v in self.inputs.items()
         }
         film = replace(self.film, **{f.name: getattr(self.film, f.name)[rows] for f in fields(self.film)})
@@ -100,7 +101,7 @@ def drawn(
         return _viscosity(oil, T)
 
     def power(T: Array) -> Array:
-        return scale * viscosity(T) * psi * D / 2 * (film.shear + couple) * omega
+        return np.asarray(scale * viscosity(T) * psi * D / 2 * (film.shear + couple) * omega)
 
     carried = HEAT_CAPACITY * film.side_flow * (D / 2) ** 3 * psi * omega * 2
     rise = np.exp(rng.uniform(np.log(2), np.log(120), count))
@@ -142,7 +143,7 @@ def sizes(template: OilFilm, output: str) -> Array:
     kind = output.partition("_")[0]
     if kind in ("stiffness", "damping") and not output.endswith("scale"):
         names = [f"{kind}_{xy}" for xy in ("xx", "xy", "yx", "yy")]
-        return np.max([np.abs(value_of(template, name)) for name in names], axis=0)
+        return np.asarray(np.max([np.abs(value_of(template, name)) for name in names], axis=0))
     return np.abs(value_of(template, output))
 
 

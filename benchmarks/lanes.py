@@ -65,9 +65,9 @@ def report(lines: list[str]) -> None:
     sums = {file: sum(cost for cost, _ in tests) for file, tests in files.items()}
     for file in sorted(files, key=sums.__getitem__, reverse=True):
         print(f"{sums[file]:8.1f} s  {file} ({len(files[file])})")
-        for cost, test in sorted(files[file], reverse=True):
-            if cost >= 0.5:
-                print(f"          {cost:8.1f} s  {test}")
+        for seconds, test in sorted(files[file], reverse=True):
+            if seconds >= 0.5:
+                print(f"          {seconds:8.1f} s  {test}")
     print(f"{sum(sums.values()):8.1f} s  all tests")
 
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from matplotlib import pyplot as plt
@@ -52,7 +53,8 @@ def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
 def seconds_a_point(count: int) -> float:
     """Return the cost per point of Petrov's force among many points, the shortest of some runs [s]."""
     clearance = np.full(count, 2.5e-4) if count > 1 else np.float64(2.5e-4)
-    runs = [_seconds(lambda: friction_Petrov_1883(0.025, 0.1, clearance, 0.0119, 157.1)) for _ in range(9)]
+    journal: tuple[Any, ...] = (0.025, 0.1, clearance, 0.0119, 157.1)
+    runs = [_seconds(lambda: friction_Petrov_1883(*journal)) for _ in range(9)]
     return float(f"{min(runs) / count:.1e}")
 
 
@@ -65,6 +67,7 @@ def _seconds(run: Callable[[], object]) -> float:
 def measure() -> None:
     """Fill the table, draw the picture and print the figures."""
     errors = [[cell(eps, ratio) for ratio in pairwise(RATIO)] for eps in pairwise(EPS)]
+    cost = {"single": seconds_a_point(1), "vectorised": seconds_a_point(POINTS)}
     table = {
         "template": {"id": JournalFriction.id, "version": JournalFriction.version},
         "made_by": "python -m benchmarks.petrov",
@@ -79,7 +82,7 @@ def measure() -> None:
         ],
         "levels": {
             "only": {
-                "cost": {"single": seconds_a_point(1), "vectorised": seconds_a_point(POINTS)},
+                "cost": cost,
                 "truth": dict.fromkeys(OUTPUTS, FULL_SHEAR),
                 "errors": dict.fromkeys(OUTPUTS, errors),
             }
@@ -90,7 +93,7 @@ def measure() -> None:
     for eps in (0.2, 0.5, 0.9, 0.99):
         low, high = 100 * error(np.array(eps), np.array([NARROWEST, WIDEST]))
         print(f"eps {eps}: {low:.1f} % at B/D {NARROWEST}, {high:.1f} % at B/D {WIDEST:g}")
-    print("seconds a point", table["levels"]["only"]["cost"])
+    print("seconds a point", cost)
 
 
 def draw() -> None:

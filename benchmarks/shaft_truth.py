@@ -111,10 +111,10 @@ def layered_grid(solid: Solid, layers: int) -> Grid:
 def _edges_at(solid: Solid, edges: Edges) -> list[Any]:
     """Return the kernel's edges to which segments belong."""
     proper = [edge for edge in solid.shape.edges if edge.mass > 0]
-    lines = [
-        np.array([[*edge.Value(t)] for t in np.linspace(*edge.parameter_interval, _SAMPLES)])
-        for edge in proper
-    ]
+    lines = []
+    for edge in proper:
+        low, high = edge.parameter_interval
+        lines.append(np.array([[*edge.Value(t)] for t in np.linspace(low, high, _SAMPLES)]))
     nearest = {
         int(np.argmin([np.linalg.norm(line - middle, axis=1).min() for line in lines]))
         for middle in edges.ends.mean(axis=1)

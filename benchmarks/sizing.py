@@ -69,14 +69,14 @@ def sizing(random: np.random.Generator, heat: bool) -> Sizing:
     oil = (
         {"supply_temperature": f"{temperature} degC"} if heat else {"dynamic_viscosity": f"{viscosity} mPa*s"}
     )
-    numbers = {
-        "diameter_mm": random.uniform(30, 90),
-        "width_ratio": random.uniform(0.3, 0.55),
-        "clearance_ratio": 10 ** random.uniform(-3.1, -2.7),
-        "pressure_MPa": random.uniform(5, 35),
-        "speed_rpm": random.uniform(1500, 7000),
-    }
-    return Sizing(**{name: float(number) for name, number in numbers.items()}, oil=oil)
+    return Sizing(
+        diameter_mm=float(random.uniform(30, 90)),
+        width_ratio=float(random.uniform(0.3, 0.55)),
+        clearance_ratio=float(10 ** random.uniform(-3.1, -2.7)),
+        pressure_MPa=float(random.uniform(5, 35)),
+        speed_rpm=float(random.uniform(1500, 7000)),
+        oil=oil,
+    )
 
 
 def space(of: Sizing) -> Space:
@@ -118,9 +118,16 @@ def level(design: DesignEngine, name: str, limit: float) -> Answer:
         film, loss, error = table.columns[FILM], table.columns[LOSS], table.errors[FILM]
         reasons = {row: refusal.detail for row, refusal in table.refusals.items()}
         least, most = film / (1 + error), film / np.maximum(1 - error, 1e-300)
-        columns = (loss, film, np.full_like(film, limit), least - limit, most - limit)
+        parts = {
+            "objectives": loss,
+            "values": film,
+            "limits": np.full_like(film, limit),
+            "low": least - limit,
+            "high": most - limit,
+        }
         seconds = process_time() - start
-        return Columns(*(each[:, None] for each in columns), reasons=reasons, seconds=seconds)
+        columns: dict[str, Any] = {name: part[:, None] for name, part in parts.items()}
+        return Columns(**columns, reasons=reasons, seconds=seconds)
 
     return answer
 

@@ -84,11 +84,12 @@ def table(level: str) -> dict[str, list[list[float]]]:
 
 def seconds_a_point(level: str, count: int) -> float:
     """Return the cost of a pad among many, the shortest of some runs [s]."""
-    a = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
+    a: Any = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
+    single: Any = 1.0
     runs = []
     for _ in range(5):
         begin = perf_counter()
-        pad_film(level, a, 1.0)
+        pad_film(level, a, single)
         runs.append(perf_counter() - begin)
     return float(f"{min(runs) / count:.1e}")
 

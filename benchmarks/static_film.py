@@ -38,7 +38,7 @@ def places(seed: int, count: int) -> tuple[Array, Array]:
 
 def stated(level: str, So: Array, b: Array) -> dict[str, Array]:
     """Return the error that a level states for each output at the points."""
-    given = {
+    given: dict[str, tuple[Any, str]] = {
         "radial_load": (So * b * D**2 * ETA * OMEGA / PSI**2, "N"), "bearing_width": (b * D, "m"),
         "bearing_diameter": (D, "m"), "diametral_clearance": (PSI * D, "m"),
         "dynamic_viscosity": (ETA, "Pa*s"), "speed": (OMEGA, "rad/s"),
@@ -47,7 +47,7 @@ def stated(level: str, So: Array, b: Array) -> dict[str, Array]:
     parts = []
     for some in np.array_split(np.arange(So.size), -(-So.size // OilFilm.most_points.get(level, So.size))):
         part = {
-            n: q if np.ndim(q.si) == 0 else TypedQuantity(None, q.unit, q.si[some], {})
+            n: q if np.ndim(q.si) == 0 else TypedQuantity(None, q.unit, np.asarray(q.si)[some], {})
             for n, q in raw.items()
         }
         error = evaluate(OilFilm, part, level=level, judge=False).error
@@ -75,7 +75,9 @@ def held(level: str, eps: Array, b: Array, solutions: Array) -> dict[str, Any]:
 def main() -> None:
     """Measure all levels, and print the shares of right errors."""
     eps, b = places(SEED, COUNT)
-    solutions = np.array([extrapolated(*map(float, place), 256, 32) for place in zip(eps, b, strict=True)])
+    solutions = np.array(
+        [extrapolated(float(at), float(width), 256, 32) for at, width in zip(eps, b, strict=True)]
+    )
     found = {}
     for level in OilFilm.levels:
         some = slice(FEWER.get(level, COUNT))

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "docs" / "requirements.lock"
@@ -74,7 +75,7 @@ def _needs(package: Distribution) -> tuple[str, ...]:
 
 
 def _licence(package: Distribution) -> str:
-    metadata = package.metadata
+    metadata: Any = package.metadata
     classified = [
         line.rpartition("::")[2].strip()
         for line in metadata.get_all("Classifier", ())
@@ -95,10 +96,11 @@ def _from_text(package: Distribution) -> str:
 
 
 def _home(package: Distribution) -> str:
-    urls = dict(line.split(", ", 1) for line in package.metadata.get_all("Project-URL", ()))
+    metadata: Any = package.metadata
+    urls = dict(line.split(", ", 1) for line in metadata.get_all("Project-URL", ()))
     named = {name.lower(): url for name, url in urls.items()}
     ways = ("homepage", "home", "source", "repository", "source code", "github", "documentation")
-    return package.metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
+    return metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
 
 
 EXTRAS = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from statistics import mean
 
 import numpy as np
 
@@ -28,13 +29,13 @@ def reynolds() -> list[Figure]:
     """Return the mean cost and largest error of the load number, with and without extrapolation."""
     points = list(product(ECCENTRICITIES, WIDTHS))
     truth = np.array([extrapolated_film(eps, ratio, 512, 64)[0].So for eps, ratio in points])
-    rows = []
+    rows: list[Figure] = []
     for n, m in RUNGS:
         So = np.array([static_film(eps, ratio, n, m).So for eps, ratio in points])
-        spent = np.mean([_cost(eps, ratio, n, m, is_extrapolated=False) for eps, ratio in points])
+        spent = mean(_cost(eps, ratio, n, m, is_extrapolated=False) for eps, ratio in points)
         rows += _film(f"one mesh {n} × {m}", spent, So / truth - 1, RUNGS[n, m])
     So = np.array([extrapolated_film(eps, ratio)[0].So for eps, ratio in points])
-    spent = np.mean([_cost(eps, ratio, 0, 0, is_extrapolated=True) for eps, ratio in points])
+    spent = mean(_cost(eps, ratio, 0, 0, is_extrapolated=True) for eps, ratio in points)
     return [*rows, *_film("extrapolated, as level `reynolds`", spent, So / truth - 1, (8.0, 0.004))]
 
 

@@ -82,7 +82,7 @@ def _await(port: int, process: subprocess.Popen[bytes]) -> None:
     end = time.monotonic() + PATIENCE
     while not _healthy(port):
         if process.poll() is not None or time.monotonic() > end:
-            raise RuntimeError(f"the server did not start: {process.args}")
+            raise RuntimeError(f"the server did not start: {process.args!r}")
         time.sleep(0.1)
 
 
@@ -140,7 +140,8 @@ def bare_app(answers: dict[str, Any]) -> FastAPI:
 
     @app.post("/{name}")
     async def answer(name: str, body: Body) -> dict[str, Any]:
-        return answers[name]
+        answered: dict[str, Any] = answers[name]
+        return answered
 
     return app
 

@@ -206,7 +206,7 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
     result.inputs.clear()  # the echo is what was sent
-    forms = {
+    forms: dict[str, tuple[Callable[[], bytes], float | None]] = {
         "JSON": (lambda: to_json(json_values.evaluation(result)), None),
         NPY: (lambda: npy(result), 10.0),
     }

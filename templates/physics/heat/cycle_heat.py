@@ -27,7 +27,7 @@ from scipy.optimize.elementwise import find_root
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.oil import ViscousOil, viscosity_at
 from templates.physics.journals.shear_thinning import (
     HTHS_TEMPERATURE,
     critical_rate_at,
@@ -51,22 +51,10 @@ _STEP = float(np.log(4))
 """Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
 
 
-@dataclass(frozen=True)
-class CycleOil:
+@dataclass(frozen=True, kw_only=True)
+class CycleOil(ViscousOil):
     """The oil and its heat capacity, in SI; single values for each point."""
 
-    A: Array
-    B: Array
-    """Walther's intercept and slope [-]."""
-    a: Array
-    b: Array
-    offset: Array
-    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
-    eta: Array
-    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    T_ref: Array
-    """Density [kg/m³] at a temperature [K]."""
     left: Array
     """Fraction of the shear-dependent viscosity that remains at 150 °C and 1e6 1/s; NaN without shear
     thinning [-].
@@ -82,15 +70,9 @@ class CycleOil:
     share: Array
     """Share of the power loss that the oil removes [-]."""
 
-    def still(self, T: Array) -> Array:
-        """Return the viscosity at low shear [Pa s] at a temperature [K]."""
-        return viscosity_at(
-            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
-        )
-
     def sheared(self, T: Array, rate: Array) -> Array:
         """Return the viscosity [Pa s] at a temperature [K] and a shear rate [1/s]."""
-        still, hot = self.still(T), self.still(np.asarray(HTHS_TEMPERATURE))
+        still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
         at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
         critical = critical_rate_at(at_150, hot, still)
         with np.errstate(invalid="ignore"):
@@ -173,7 +155,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
         *(np.shape(getattr(bearing.feeding, field.name)) for field in fields(bearing.feeding)),
         np.shape(bearing.pressure), np.shape(bearing.clearance),
     )  # fmt: skip
-    top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
+    top = np.log(np.broadcast_to(oil.viscosity(oil.supply), shape))
 
     def lack(x: Array) -> Array:
         """Return the logarithm of the viscosity from the heat balance minus that of the assumed viscosity."""

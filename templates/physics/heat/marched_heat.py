@@ -40,7 +40,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"
     first = cycle_heat(replace(bearing, level=cheap), oil)
     shape = np.shape(first.eta)
-    start = first.eta if np.all(np.isfinite(first.eta)) else oil.still(oil.supply) / 2
+    start = first.eta if np.all(np.isfinite(first.eta)) else oil.viscosity(oil.supply) / 2
     rounds: list[tuple[float, float]] = [(float(np.log(np.ravel(start)[0])), np.nan)]
     while len(rounds) <= ROUNDS:
         x = rounds[-1][0]

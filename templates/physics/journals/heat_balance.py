@@ -22,7 +22,7 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 from templates.core.language.declare import on_paper
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_load
-from templates.physics.journals.oil import density, vogel, walther
+from templates.physics.journals.oil import ViscousOil
 from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.roots import bracketed_root
@@ -33,7 +33,7 @@ _ACCURACY = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
-class OperatingPoint:
+class OperatingPoint(ViscousOil):
     """A bearing in operation, in SI; arrays that broadcast together."""
 
     F: Array
@@ -48,22 +48,6 @@ class OperatingPoint:
     """Magnitude of the hydrodynamic speed [rad/s]."""
     omega_s: Array
     """Sliding speed, positive with the hydrodynamic speed [rad/s]."""
-    A: Array
-    """Walther's intercept [-]."""
-    B: Array
-    """Walther's slope [-]."""
-    a: Array
-    """Vogel's factor, if his law is used, else NaN [Pa s]."""
-    b: Array
-    """Vogel's slope [K]."""
-    offset: Array
-    """Vogel's offset [K]."""
-    eta: Array
-    """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    """Density at T_ref [kg/m³]."""
-    T_ref: Array
-    """Temperature of rho_ref [K]."""
     heat_capacity: Array
     """Heat capacity of the oil per volume, rho c [J/(m³ K)]."""
     T_supply: Array
@@ -72,13 +56,6 @@ class OperatingPoint:
     """Temperature of the air, else NaN [K]."""
     kA: Array
     """Heat transfer coefficient times area, else NaN [W/K]."""
-
-    def viscosity(self, T: Array) -> Array:
-        """Return the dynamic viscosity [Pa s] at T [K]."""
-        of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
-        of_vogel = vogel(self.a, self.b, self.offset, T)
-        thin = np.where(np.isnan(self.a), of_walther, of_vogel)
-        return np.where(np.isnan(self.eta), thin, self.eta)
 
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:
         """Return power loss [W] and side flow [m³/s] at T [K]; beyond the film map, those at its limit."""

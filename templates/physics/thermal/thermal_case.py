@@ -7,13 +7,13 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.language.declare import units
-from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.oil import ViscousOil
 from templates.physics.thermal.energy import HeatSources
 from templates.physics.thermal.thermal_balance import Bearing
 
 
-@dataclass(frozen=True)
-class ThermalCase:
+@dataclass(frozen=True, kw_only=True)
+class ThermalCase(ViscousOil):
     """A bearing with its oil, in SI; arrays that broadcast together, NaN where data are not given."""
 
     F: Array
@@ -49,24 +49,6 @@ class ThermalCase:
     """Temperature behind it, else NaN [K]."""
     journal: Array
     """Temperature of the journal, NaN for one without net heat [K]."""
-    A: Array
-    B: Array
-    """Walther's intercept and slope [-]."""
-    a: Array
-    b: Array
-    offset: Array
-    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
-    eta: Array
-    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    T_ref: Array
-    """Density [kg/m³] at a temperature [K]."""
-
-    def viscosity(self, T: Array) -> Array:
-        """Return the dynamic viscosity [Pa s] at T [K]."""
-        return viscosity_at(
-            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
-        )
 
     def is_whole(self) -> bool:
         """Return whether all data that a film needs are known."""
