@@ -49,6 +49,8 @@ SEED, OTHER_SEED = 1, 3
 """Seed 2 belongs to version 2, on which the law of mobility_grooved was chosen."""
 CLEAR = 0.1
 """Share of the cycle for which a well placed hole is under the load at most."""
+PRESSURES = 0.02, 1.0
+"""Relative supply pressures of the duties that count [-]."""
 CHEAP = ("mobility_short", "mobility", "mobility_grooved")
 OUTPUTS = ("minimum_film_thickness", "maximum_eccentricity", "film_thickness", "eccentricity_x",
            "eccentricity_y", "power_loss", "side_flow")  # fmt: skip

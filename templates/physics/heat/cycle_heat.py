@@ -72,12 +72,17 @@ class CycleOil(ViscousOil):
 
     def sheared(self, T: Array, rate: Array) -> Array:
         """Return the viscosity [Pa s] at a temperature [K] and a shear rate [1/s]."""
+        return self.viscosity(T) * (1 - self.taken(T, rate))
+
+    def taken(self, T: Array, rate: Array) -> Array:
+        """Return the share [-] of the viscosity that shear takes at a temperature [K] and a rate [1/s]."""
+        one, nothing = np.asarray(1.0), np.asarray(0.0)
         still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
-        at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
+        at_150 = critical_rate_of_HTHS(self.left, one, nothing, self.exponent)
         critical = critical_rate_at(at_150, hot, still)
         with np.errstate(invalid="ignore"):
-            thin = viscosity_Cross_1965(rate, still, self.endless * still, critical, self.exponent)
-        return np.where(np.isnan(self.left), still, thin)
+            kept = viscosity_Cross_1965(rate, one, nothing, critical, self.exponent)
+        return np.where(np.isnan(self.left), 0.0, (1 - self.endless) * (1 - kept))
 
 
 @dataclass(frozen=True)
@@ -107,6 +112,8 @@ class CycleHeat:
     """Effective viscosity [Pa s]; infinite where no balance was found."""
     T: Array
     """Effective temperature [K]."""
+    taken: Array
+    """Share of the viscosity that shear takes [-]."""
     rate: Array
     """Mean shear rate [1/s]."""
     loss: Array
@@ -187,7 +194,8 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     with np.errstate(invalid="ignore"):
         residual = np.asarray(oil.sheared(T, film.rate) / np.exp(solved) - 1)
     eta = np.where(np.isfinite(residual), np.exp(solved), np.inf)
-    values = (eta, T, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
+    taken = oil.taken(T, film.rate)
+    values = (eta, T, taken, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
     return CycleHeat(*(np.asarray(value)[()] for value in values))
 
 
@@ -246,6 +254,16 @@ def temperature_of(heat: CycleHeat, eta: Array) -> Array:
 def rate_of(heat: CycleHeat, eta: Array) -> Array:
     """Return the mean shear rate [1/s]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.rate)
+
+
+@units(None, "Pa*s", "Pa*s", returns="1", latex=r"1-\frac{{{1}}}{{{2}}}")
+def shear_loss_of(heat: CycleHeat, eta: Array, still: Array) -> Array:
+    """Return the share of the viscosity that shear takes [-]; NaN where the viscosity is.
+
+    By Cross's law, so that it is never below 0: 1 less the ratio of both viscosities [Pa s] is it but for
+    the residual of the balance.
+    """
+    return _where_known(eta, heat.taken)
 
 
 @units(None, "Pa*s", returns="W", latex=r"\text{{by the heat balance}}")

@@ -8,7 +8,7 @@ marches are enough.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -52,7 +52,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return _balanced(oil, film, np.full(shape, np.exp(x)), lack)
         rounds.append((following(rounds), np.nan))
     none = np.full(shape, np.nan)
-    return CycleHeat(np.full(shape, np.inf), *(none for _ in range(6)))
+    return CycleHeat(np.full(shape, np.inf), *(none for _ in fields(CycleHeat)[1:]))
 
 
 def following(rounds: list[tuple[float, float]]) -> float:
@@ -82,6 +82,7 @@ def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, 
 
 def _balanced(oil: CycleOil, film: FilmState, eta: Array, lack: float) -> CycleHeat:
     unknown = np.full(np.shape(eta), np.nan)
-    values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
+    T = temperature(oil, film)
+    values = (eta, T, oil.taken(T, film.rate), film.rate, film.loss, film.side_flow, unknown)
     residual = np.full(np.shape(eta), np.expm1(lack))
     return CycleHeat(*(np.asarray(value)[()] for value in (*values, residual)))
