@@ -1,4 +1,4 @@
-"""Sentences that compare two numbers, and whether they are true of them."""
+"""Sentences that compare two numbers, and whether they are true."""
 
 import re
 

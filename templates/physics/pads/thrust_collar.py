@@ -62,10 +62,10 @@ class Collar:
 
 @dataclass(frozen=True)
 class CollarFilm:
-    """The results of the film, dimensionless; NaN where no film ratio carries the load."""
+    """The results of the film, dimensionless; NaN where no film ratio carries the load below `HOTTEST`."""
 
     a: Array
-    """Film ratio h_i/h_o."""
+    """Film ratio h_i/h_o; infinite where none does."""
     load: Array
     """Specific load times h_o²/(6 eta omega r_m² angle)."""
     friction: Array
@@ -130,6 +130,8 @@ def _excess(law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) 
 def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     """Return the film that carries the load with the oil's viscosity at the temperature of the film.
 
+    There is none where the heat balance has it hotter than `HOTTEST`.
+
     Parameters
     ----------
     collar
@@ -158,4 +160,9 @@ def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     borne = np.isfinite(a)
     film = collar_film(a[borne], *(parts[names.index(name)][borne] for name in ("angle", "reach")))
     numbers[:, borne] = [getattr(film, field.name) for field in fields(CollarFilm)]
+    whole = Collar(**dict(zip(names, parts, strict=False)))
+    with np.errstate(all="ignore"):
+        hot = collar_temperature(whole, CollarFilm(*numbers)) > HOTTEST
+    numbers[:, hot] = np.nan
+    numbers[0, hot | (usable & ~borne)] = np.inf
     return CollarFilm(*(number[()] for number in numbers))

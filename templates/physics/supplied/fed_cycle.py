@@ -327,13 +327,16 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     """Return the points of a duty, dimensionless; NaN speeds where the level does not support the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
-    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure)
+    fed_points = np.zeros(
+        () if fed.supplies is None else fed.supplies.shape
+    )  # a hole's size may differ where nothing else does
+    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure, fed_points)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
     curves = np.broadcast_arrays(duty.F_x * scale, duty.F_y * scale, *speeds, *flat, duty.angle)
     points = curves[0].shape[:-1]
     x, y, journal, sleeve, frame, *rows, _ = (np.reshape(c, (-1, duty.angle.size)) for c in curves)
-    ratio, share, start, extent, pressure = (row[:, 0] for row in rows)
+    ratio, share, start, extent, pressure, _ = (row[:, 0] for row in rows)
     groove = Groove(np.nan_to_num(share), np.nan_to_num(start), np.nan_to_num(extent))
     turned = turning(duty.angle, period, sleeve - frame)
     taken = _taken(level, ratio, groove, turned.turns)
