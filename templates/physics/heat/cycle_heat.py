@@ -45,10 +45,10 @@ from templates.physics.supplied.fed_cycle import (
 from templates.physics.supplied.supply_geometry import SupplyGeometry
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
-"""Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
+"""Levels of `fed_cycle` that are cheap enough to be solved at many viscosities."""
 _STEPS = 6
 _STEP = float(np.log(4))
-"""Steps, at most so many and of so much in ln, by which the search lowers the viscosity of the supply."""
+"""Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,17 +56,19 @@ class CycleOil(ViscousOil):
     """The oil and its heat capacity, in SI; single values for each point."""
 
     left: Array
-    """Of what shear can take, the share that 1e6 1/s leave at 150 °C; NaN if the oil does not thin [-]."""
+    """Fraction of the shear-dependent viscosity that remains at 150 °C and 1e6 1/s; NaN without shear
+    thinning [-].
+    """
     endless: Array
-    """Share of the viscosity that endless shear leaves [-]."""
+    """Fraction of the viscosity that remains at infinite shear rate [-]."""
     exponent: Array
-    """Of Cross's law [-]."""
+    """Exponent of Cross's law [-]."""
     supply: Array
     """Temperature of the supply [K]."""
     heat_capacity: Array
-    """Per volume [J/(m³ K)]."""
+    """Heat capacity per volume [J/(m³ K)]."""
     share: Array
-    """Share of the loss that the oil carries off [-]."""
+    """Share of the power loss that the oil removes [-]."""
 
     def sheared(self, T: Array, rate: Array) -> Array:
         """Return the viscosity [Pa s] at a temperature [K] and a shear rate [1/s]."""
@@ -89,7 +91,7 @@ class CycleBearing:
 
     level: str
     duty: Duty
-    """Its scale is that of 1 Pa s."""
+    """Loads and speeds; the scale is that for 1 Pa s."""
     feeding: SupplyGeometry
     pressure: Array
     """Supply pressure, NaN without a groove [Pa]."""
@@ -117,11 +119,11 @@ class CycleHeat:
     loss: Array
     """Power loss [W]."""
     side_flow: Array
-    """What the journal's motion displaces from the ends [m³/s]."""
+    """Flow out of the ends displaced by the journal's motion [m³/s]."""
     feed_flow: Array
-    """What the supply pressure drives [m³/s]."""
+    """Flow driven by the supply pressure [m³/s]."""
     residual: Array
-    """Viscosity that belongs to the heat, over that taken, less 1 [-]."""
+    """Viscosity from the heat balance over the assumed viscosity, minus 1 [-]."""
 
 
 @dataclass(frozen=True)

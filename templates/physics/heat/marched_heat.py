@@ -27,7 +27,7 @@ from templates.physics.heat.cycle_heat import (
 
 MARCHED_LEVELS = (*LEVELS, "supplied")
 SETTLED, ROUNDS = 2e-3, 12
-"""What ln(viscosity) may lack, as a march repeats to 1e-3; marches at most."""
+"""Accepted residual of ln(viscosity), since a march repeats to 1e-3; largest number of marches."""
 FARTHEST = float(np.log(4))
 """Largest step of ln(viscosity)."""
 
