@@ -187,15 +187,15 @@ class AssemblyModel(ImportedModel):
         near = nearest(name, list(known))
         meant = f"Did you mean {', '.join(near)}? " if near else ""
         there = listed([part.name for part in parts])
-        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
-        raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
+        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is not a part"
+        raise GeometryError("may_overlap", f"{wrong}. {meant}The parts are {there}")
 
     def _built(self) -> Iterator[Part]:
         from cad.placement import frame_of
 
         drawn = vars(self).get(_DRAWN)
         if drawn is None:
-            raise GeometryError("kernel", f"{self.id} has not been given its fixed parts", self.inputs)
+            raise GeometryError("kernel", f"{self.id} needs its fixed parts before it is built", self.inputs)
         there = dict[str, Part]()
         if self.imported.base:
             for part in super(ImportedModel, self).build():

@@ -37,7 +37,7 @@ def check_bodies(
     if wanted != counted:
         raise GeometryError(
             "not_one_solid",
-            f"{model.id} should have the parts {wanted}; the file has {counted}",
+            f"{model.id} must have the parts {wanted}; the file has {counted}",
             model.inputs,
         )
     by_name = {part.name: part for part in parts}
@@ -187,7 +187,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
         return GeometryError(code, f"{part.name} of {model.id} {detail}", part.shaped_by or model.inputs)
 
     if one.solids != 1:
-        raise refuse("not_one_solid", f"should be one solid; it is {one.solids}")
+        raise refuse("not_one_solid", f"must be one solid, not {one.solids}")
     if not one.valid:
         raise refuse("invalid_solid", "is not a valid solid: its faces do not close or cross each other")
     if not (isfinite(one.volume) and isfinite(part.volume)):
@@ -195,7 +195,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
             "not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)"
         )
     if not isclose(one.volume, part.volume, rel_tol=part.tolerance):
-        raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
+        raise refuse("volume", f"must have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:

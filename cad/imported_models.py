@@ -143,7 +143,7 @@ class ImportedModel(CadModel):
         if _PARTS not in vars(self):
             drawn: ProgramResult | None = vars(self).get(_DRAWN)
             if drawn is None:
-                raise GeometryError("kernel", f"{self.id} has not been drawn by its program", self.inputs)
+                raise GeometryError("kernel", f"{self.id} must be drawn by its program first", self.inputs)
             parts = tuple(parts_of(drawn))
             if not parts:
                 raise GeometryError("not_one_solid", f"{self.id} has no solid", self.inputs)
@@ -170,7 +170,7 @@ class ImportedModel(CadModel):
             per_size = _factor(one)
             offered = [size / per_size for size in sizes[_SIZE[one.role]]]
             if not offered:
-                raise LookupError(f"no {one.role} of the solid can be {one.name}")
+                raise LookupError(f"the solid has no {one.role}, so {one.name} cannot be measured")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
         return read
 
@@ -275,7 +275,7 @@ def _part(name: str, drawn: DrawnPart) -> Part:
     shape = Shape.importBrep(io.BytesIO(drawn.brep))
     solids = shape.Solids()
     if len(solids) != 1:
-        raise GeometryError("not_one_solid", f"{name} should be one solid; it is {len(solids)}")
+        raise GeometryError("not_one_solid", f"{name} must be one solid, not {len(solids)}")
     part = _measured(name, solids[0], STEEL)
     if drawn.volume is not None and not isclose(part.volume, drawn.volume, rel_tol=VOLUME_TOLERANCE):
         detail = f"{name} has {part.volume:.9g} mm³; the program that drew it says {drawn.volume:.9g} mm³"
@@ -291,7 +291,7 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
     volume = measure(Body(name, solid, colour, ())).volume
     if not volume > 0:
         raise GeometryError(
-            "not_finite", f"{name} has a volume of {volume:.6g} mm³; a solid needs a volume above 0"
+            "not_finite", f"{name} has a volume of {volume:.6g} mm³; the volume of a solid must be above 0"
         )
     return Part(name, solid, volume, colour, **more)
 
@@ -306,7 +306,7 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
     """
     measured = sum(part.volume * len(part.places) for part in parts)
     if stated is not None and not isclose(measured, stated, rel_tol=VOLUME_TOLERANCE):
-        detail = f"the STEP file holds {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
+        detail = f"the STEP file contains {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
         raise GeometryError("volume", detail, model.inputs)
 
 

@@ -76,7 +76,7 @@ def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
         one = _triangulated(body, finer / 4**attempt, ANGULAR_TOLERANCE / 2**attempt)
     if is_closed(one):
         return one
-    raise GeometryError("open_mesh", f"the kernel's triangles of {body.name} leave a gap")
+    raise GeometryError("open_mesh", f"the triangle mesh of {body.name} is not closed")
 
 
 def _triangulated(body: Body, linear: float, angular: float) -> Mesh:

@@ -100,7 +100,7 @@ class Part:
         """
         solids = self.shape.Solids()
         if len(solids) != 1:
-            detail = f"{self.name} should be one solid; it is {len(solids)}"
+            detail = f"{self.name} must be one solid, not {len(solids)}"
             raise GeometryError("not_one_solid", detail, self.shaped_by)
         return solids[0]
 
@@ -227,7 +227,7 @@ def arrays_of_points(model: CadModel) -> list[Fault]:
         takes_list = isinstance(declared, Curve)
         if np.ndim(values.get(declared.attribute, 0.0)) > int(takes_list):
             wanted = "one list of numbers" if takes_list else "a single value, not an array"
-            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}"))
+            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words} must be {wanted}"))
     return faults
 
 

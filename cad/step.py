@@ -101,7 +101,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise UnreadableStep("this is not a STEP file")
     if not reader.Transfer(document):
-        raise UnreadableStep("this STEP file holds no shape")
+        raise UnreadableStep("this STEP file contains no shape")
     return tuple(_bodies(document))
 
 

@@ -122,7 +122,7 @@ def alike(values: Iterable[float], what: str) -> float:
     """
     found = [float(value) for value in values]
     if not found or max(found) - min(found) > 2 * _COINCIDENT:
-        raise LookupError(f"all {what} must have one size; the file has {found}")
+        raise LookupError(f"all {what} must have the same size; the file has {found}")
     return sum(found) / len(found)
 
 

@@ -120,13 +120,13 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
         raise _wrong(
             cls,
             name,
-            "a geometric tolerance is a share, above 0 and at most 1, of the dimension's own tolerance",
+            "a geometric tolerance must be a fraction of the dimension's tolerance, above 0 and at most 1",
         )
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
         raise _wrong(
             cls,
             name,
-            "`to`, a datum, is required for perpendicularity and parallelism, and not allowed otherwise",
+            "perpendicularity and parallelism need a datum in `to`; other tolerances must not have one",
         )
     return FormTolerances(name, said.get("datum", ""), forms, said.get("to", ""))
 

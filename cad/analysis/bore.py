@@ -86,7 +86,9 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
         whole = whole + other
     half = _upper_half(list(whole.solids))
     if half is None:
-        raise AnalysisError("no_bore", "the bore's solids are not one body that is symmetric about z = 0")
+        raise AnalysisError(
+            "no_bore", "the solids of the bore must form one body that is symmetric about z = 0"
+        )
     for face in half.faces:
         face.name = _name(face, place)
     for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):

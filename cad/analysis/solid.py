@@ -65,7 +65,9 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
         face.name = _name(face, mirror, ends)
     for name, level in ends.items():
         if not any(face.name == name for face in shape.faces):
-            raise AnalysisError("no_end", f"there is no flat face at z = {level:g} mm to be {name}")
+            raise AnalysisError(
+                "no_end", f"the shaft needs a flat face at z = {level:g} mm, where it is {name}"
+            )
     return Solid(shape, mirror, _radius(shape))
 
 
@@ -81,7 +83,7 @@ def _only_solid(step: bytes) -> Any:
         path.write_bytes(step)
         solids = list(OCCGeometry(str(path)).shape.solids)
     if len(solids) != 1:
-        raise AnalysisError("no_shaft", f"a shaft is one solid; this file has {len(solids)}")
+        raise AnalysisError("no_shaft", f"a shaft must be one solid; the file has {len(solids)}")
     return solids[0]
 
 

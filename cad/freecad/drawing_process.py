@@ -240,7 +240,9 @@ def parameters(app: Any, document: Any) -> list[list[Any]]:
         elif thing.TypeId == "Sketcher::SketchObject":
             listed += [[thing.Name, "constraint", *one, thing.Label] for one in constraints(thing)]
     if len(listed) > MOST_PARAMETERS:
-        raise Refused("too_large", f"it has {len(listed)} parameters; a model has at most {MOST_PARAMETERS}")
+        raise Refused(
+            "too_large", f"it has {len(listed)} parameters; a model may have at most {MOST_PARAMETERS}"
+        )
     return listed
 
 
@@ -261,7 +263,7 @@ def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
                 left.append(one)
         if len(left) == len(waiting):
             names = [f"{one[0]}.{one[2]}" for one in left]
-            raise Refused("not_solved", f"FreeCAD does not take {', '.join(names)}: {failed}", names)
+            raise Refused("not_solved", f"FreeCAD does not accept {', '.join(names)}: {failed}", names)
         waiting = left
 
 
@@ -314,7 +316,7 @@ def solids(document: Any) -> list[tuple[str, float, bytes]]:
         remedy = "make a Body or a Part with a solid visible, and save it"
         raise Refused("no_solid", f"the file contains no visible solid: {remedy}")
     if len(listed) > MOST_SOLIDS:
-        raise Refused("too_large", f"it has {len(listed)} solids; a model has at most {MOST_SOLIDS}")
+        raise Refused("too_large", f"it has {len(listed)} solids; a model may have at most {MOST_SOLIDS}")
     return listed
 
 

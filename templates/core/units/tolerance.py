@@ -267,7 +267,7 @@ def _between(lower: float, upper: float, distribution: Distribution = "normal") 
     if not (math.isfinite(lower) and math.isfinite(upper)):
         raise FaultyText("not_finite", "a tolerance must be finite: not NaN, infinity or above 1.8e308")
     if lower > upper:
-        raise FaultyText("not_a_tolerance", "the lower limit lies above the upper one; swap them")
+        raise FaultyText("not_a_tolerance", "the lower limit is above the upper limit; swap them")
     return Tolerance(lower, upper, distribution)
 
 
@@ -296,7 +296,7 @@ def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
     if not present:
         return None
     if len({one.distribution for one in present}) > 1:
-        raise FaultyText("not_a_tolerance", "the items of a list have one distribution; give all the same")
+        raise FaultyText("not_a_tolerance", "all items of a list must have the same distribution")
     lower, upper = (
         np.array([0.0 if one is None else getattr(one, end) for one in tolerances])
         for end in ("lower", "upper")
