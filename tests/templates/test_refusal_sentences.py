@@ -207,7 +207,7 @@ def beneath(cls, rule):
 
 
 def compared(cls, rule, raw):
-    """The numbers that a rule compares [SI], three of each side at most."""
+    """The numbers that a rule names or compares [SI], three of each side at most."""
     typed, _ = read_inputs(cls, raw)
     intake = admitted(cls, typed)
     template = cls(intake.values, Ledger(typed=typed, missing=intake.missing))
@@ -220,7 +220,10 @@ def compared(cls, rule, raw):
 
     try:
         with np.errstate(all="ignore"):
-            found = [np.ravel(np.asarray(side, dtype=float))[:3] for side in sides(outcome(template, rule))]
+            named = [getattr(template, cls.inputs[name].attribute) for name in rule.names]
+            numbers = [one for one in named if isinstance(one, (float, np.ndarray))]
+            values = [*numbers, *sides(outcome(template, rule))]
+            found = [np.ravel(np.asarray(value, dtype=float))[:3] for value in values]
     except (TemplateError, TypeError, ValueError, ArithmeticError, LookupError):
         return []  # the rule needs what is not there
     return [float(value) for side in found for value in side if np.isfinite(value)]
