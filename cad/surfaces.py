@@ -30,9 +30,11 @@ _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's 
 
 Face = tuple[str, int]
 """The name of a part, and the number of one of its faces in the order of the solid."""
-Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle"]
+Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
+Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
 """What a size is. The faces of a `distance` from an axis are those about it; a `circle` has the diameter of
-that through the axes of its faces, which are holes; a `chamfer` is of 45°."""
+that through the axes of its faces, which are holes; a `chamfer` is of 45°;
+an `edge` is where its faces meet, dimensioned from the axis."""
 
 
 @dataclass(frozen=True)
@@ -146,10 +148,14 @@ class Surface:
         Of a cylinder or cone: where along its axis it begins and ends [mm].
     about_radius
         Of a torus: the radius of the circle on which the middle of its tube runs [mm].
+    half_angle
+        Of a cone: between its axis and its side [rad].
     face
         The part and the number of its face.
     middle
         Of a plane: the centre of area of its face.
+    form
+        What it is.
     """
 
     point: Vector
@@ -157,8 +163,10 @@ class Surface:
     diameter: float = 0.0
     reach: tuple[float, float] = (0.0, 0.0)
     about_radius: float = 0.0
+    half_angle: float = field(default=0.0, compare=False)
     face: Face = field(default=("", -1), compare=False)
     middle: Vector | None = field(default=None, compare=False)
+    form: Form = field(default="plane", compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is that of the axis, either way round."""
@@ -281,17 +289,18 @@ def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:
     surface = _surface(cylinder.Axis())
     start = surface.point.dot(surface.direction)
     reach = start + adaptor.FirstVParameter(), start + adaptor.LastVParameter()
-    return replace(surface, diameter=2 * cylinder.Radius(), reach=reach)
+    return replace(surface, form="cylinder", diameter=2 * cylinder.Radius(), reach=reach)
 
 
 def _sphere(adaptor: BRepAdaptor_Surface) -> Surface:
     sphere = adaptor.Sphere()
-    return Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius())
+    return Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius(), form="sphere")
 
 
 def _torus(adaptor: BRepAdaptor_Surface) -> Surface:
     torus = adaptor.Torus()
-    return replace(_surface(torus.Axis()), diameter=2 * torus.MinorRadius(), about_radius=torus.MajorRadius())
+    tube, about = 2 * torus.MinorRadius(), torus.MajorRadius()
+    return replace(_surface(torus.Axis()), form="torus", diameter=tube, about_radius=about)
 
 
 def _cone(adaptor: BRepAdaptor_Surface) -> Surface:
@@ -300,7 +309,8 @@ def _cone(adaptor: BRepAdaptor_Surface) -> Surface:
     start = surface.point.dot(surface.direction)
     ends = adaptor.FirstVParameter(), adaptor.LastVParameter()
     low, high = sorted(start + v * cos(angle) for v in ends)
-    return replace(surface, diameter=2 * cone.RefRadius() + sum(ends) * sin(angle), reach=(low, high))
+    mean = 2 * cone.RefRadius() + sum(ends) * sin(angle)
+    return replace(surface, form="cone", diameter=mean, reach=(low, high), half_angle=abs(angle))
 
 
 def _surface(axis: Any) -> Surface:

@@ -167,12 +167,12 @@ class DimensionLayout:
     def _take_lines(self, placed: PlacedDimension) -> None:
         """Dimension line and extension lines, which no later words cross."""
         assert placed.ends is not None
-        self.room.add_line(placed.ends)
+        self.room.add_line(placed.ends, is_drawn=True)
         points = sorted(self._on_paper(placed.dimension, placed.right))
         for end in placed.ends:
             along = 1 if placed.ends[0][0] == placed.ends[1][0] else 0
             nearest = min(points, key=lambda point: abs(point[along] - end[along]))
-            self.room.add_line([nearest, end])
+            self.room.add_line([nearest, end], is_drawn=True)
 
     def _local(self, one: Dimension) -> PlacedDimension:
         right = self.plan.beside if one.measure.place == "end" else 0.0
@@ -186,13 +186,15 @@ class DimensionLayout:
                 tries = self._around(one, label, right)
         every = list(tries)
         free = [one for one in every if self.room.is_free(one[0])]
-        clear = (one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0])))
-        if not free and not self.is_last:
+        clear = [one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0]))]
+        apart = (one for one in clear if all(self.room.is_apart(line) for line in one[2]))
+        chosen = next(apart, None)
+        if chosen is None and not self.is_last:
             raise NoRoom
-        box, placed, lines = next(clear, (free or every)[0])
+        box, placed, lines = chosen or (clear or free or every)[0]
         self.room.add(box)
         for line in lines:
-            self.room.add_line(line)
+            self.room.add_line(line, is_drawn=True)
         return placed
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
@@ -263,7 +265,9 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
     """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
-        return (low + high) / 2
+        middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
+        beside = [middle, *(middle + share * spare for share in (0.5, -0.5, 1.0, -1.0))]
+        return next((at for at in beside if not any(at - half < end < at + half for end in others)), middle)
     tail = 1.5
     tries = [high + tail + half, low - tail - half]
     return min(tries, key=lambda at: sum(at - half < end < at + half for end in others))

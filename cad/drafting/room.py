@@ -26,15 +26,18 @@ class Room:
         self.views: list[Rectangle] = []
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
+        self._drawn: list[tuple[float, float, float, float]] = []  # of dimensions, leaders and frames
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
         """Occupy a rectangle; lines to a part's faces cross only that of a view."""
         self.boxes.append(box)
         (self.views if is_view else self.words).append(box)
 
-    def add_line(self, points: Sequence[Point]) -> None:
-        """Occupy a line through points."""
+    def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
+        """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""
         self._lines += [(*a, *b) for a, b in pairwise(points)]
+        if is_drawn:
+            self._drawn += [(*a, *b) for a, b in pairwise(points)]
 
     def holds(self, box: Rectangle) -> bool:
         """Return whether a rectangle is on the sheet's area."""
@@ -54,6 +57,14 @@ class Room:
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
+    def is_apart(self, line: Sequence[Point]) -> bool:
+        """Return whether a line, which starts at what it is about, meets no dimension and no foreign view."""
+        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
+        if self._drawn and any(_meet(piece, np.array(self._drawn)).any() for piece in pieces):
+            return False
+        foreign = [box for box in self.views if not _is_in(line[0], box)]
+        return not any(crossed(pieces, box).any() for box in foreign)
+
     def length_in_views(self, one: Point, other: Point) -> float:
         """Return the length of a straight line within the boxes of views [mm on paper]."""
         return sum(_length_within(one, other, box) for box in self.views)
@@ -70,6 +81,23 @@ class Room:
         if len(self._array) != len(self._lines):
             self._array = np.array(self._lines)
         return bool(len(self._array) and crossed(self._array, box, _APART).any())
+
+
+def _is_in(point: Point, box: Rectangle) -> bool:
+    """Return whether a point is in a rectangle or on its border."""
+    return box[0] - _APART <= point[0] <= box[2] + _APART and box[1] - _APART <= point[1] <= box[3] + _APART
+
+
+def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    """Return which straight pieces (n, 4) a straight piece crosses, not at its own ends."""
+    (x, y), away = piece[:2], piece[2:] - piece[:2]
+    starts, ways = lines[:, :2] - (x, y), lines[:, 2:] - lines[:, :2]
+    across = away[0] * ways[:, 1] - away[1] * ways[:, 0]
+    across = np.where(np.abs(across) < 1e-12, 1e-12, across)
+    own = (starts[:, 0] * ways[:, 1] - starts[:, 1] * ways[:, 0]) / across
+    other = (starts[:, 0] * away[1] - starts[:, 1] * away[0]) / across
+    result: np.ndarray = (own > 0.01) & (own < 0.99) & (other > 0.0) & (other < 1.0)
+    return result
 
 
 def _length_within(one: Point, other: Point, box: Rectangle) -> float:

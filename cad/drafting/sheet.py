@@ -10,24 +10,27 @@ import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import islice
 
 from ezdxf._options import options
 from ezdxf.document import Drawing
 
 from cad.drafting.controls import Controls
 from cad.drafting.declaration import DrawingDeclaration
+from cad.drafting.definition import Definition
 from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
-from cad.drafting.measures import lengths, measures
+from cad.drafting.measures import lengths, measures, surfaces_of
 from cad.drafting.page import Page, document_of
-from cad.drafting.parameter_match import Dimension, matched, references, spans_of
+from cad.drafting.parameter_match import Dimension, matched, spans_of
+from cad.drafting.parts_features import Features
 from cad.drafting.plan import Plan, plans
 from cad.drafting.protrusions import standing
 from cad.drafting.removed_section import RemovedSection, mark, place, removed_sections
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.sheet_border import General, frame, notes, table, title_block
+from cad.drafting.supplement import Supplement
 from cad.drafting.title import general_profile
 from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
@@ -35,8 +38,6 @@ from cad.inspect import bounding_box, look_at
 from cad.step import Body
 from cad.surfaces import PartSurfaces
 
-_MOST_LEVELS, _MOST_REPEATED = 14, 100
-"""Planes along the shaft between which lengths are given; and if those are counted that repeat."""
 _MOST_PLANS = 8  # sheets and scales that are tried
 
 
@@ -72,13 +73,14 @@ def _no_times() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class _Content:
-    """What a drawing shows: views, removed sections, dimensions; and the parameters that none shows."""
+    """What a drawing shows: views, removed sections, dimensions; and what no dimension shows or defines."""
 
     section: View
     end: View
     removed: Sequence[RemovedSection]
     dimensions: Sequence[Dimension]
     unseen: Sequence[str]
+    missing: Sequence[str]
 
     def plans(self) -> list[Plan]:
         """Return the sheets and scales that are tried."""
@@ -124,11 +126,10 @@ def _laid_out(
     """Return the first sheet on which everything has room; if there is none, one without removed sections."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = header.parameters if header else {}
-    repeated = {name: spans for name, size in declared.sizes.items() if (spans := spans_of(size, seen))}
-    most = _MOST_REPEATED if repeated else _MOST_LEVELS
+    repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
     shown = [
         *lengths(declared.sizes.values(), seen, section),
-        *measures(bodies, seen, section, end, most),
+        *measures(bodies, seen, section, end),
         *standing([*seen.values()], section, end),
     ]
     removed = removed_sections(declared, parameters, bodies, seen, end)
@@ -136,8 +137,15 @@ def _laid_out(
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
         matches, unseen = matched(rest, declared.sizes, shown, declared.limits)
-        along = [ends for one in some for ends in one.along] + list(chain.from_iterable(repeated.values()))
-        content = _Content(section, end, some, [*matches, *references(matches, shown, along)], unseen)
+        definition = Definition.of(Features.of([*surfaces_of(bodies, seen)], end.frame))
+        for one in some:
+            one.define(definition)
+        if is_assembly(bodies):
+            dimensions, missing = matches, list[str]()
+        else:
+            dimensions = Supplement(definition, section, end, shown, repeated).complete(matches)
+            missing = [*definition.missing()]
+        content = _Content(section, end, some, dimensions, unseen, missing)
         tried = content.plans()
         for plan in tried:
             is_last = plan is tried[-1] and not some
