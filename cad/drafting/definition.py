@@ -26,8 +26,9 @@ Direction = Literal["along", "across", "up", "round", "turn"]
 """Along the shaft; level and upright in the end view; radii about the shaft [mm]; angles about it [deg]."""
 
 Station = tuple[Direction, float]
-Own = tuple[Literal["diameter", "radius", "chamfer", "angle"], float]
-"""A size that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle."""
+Own = tuple[Literal["diameter", "radius", "chamfer", "angle", "width"], float]
+"""A size that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle, a slot
+and a bar with round ends its width."""
 
 CLEAR = 1e-4  # [mm, deg]: stations that are nearer coincide
 AXIS: Station = ("round", 0.0)
@@ -94,7 +95,7 @@ class Definition:
             self.widths.add(round(measure.value, 4))
         if span is None:
             return self._adds_own(measure)
-        is_new = measure.sort != "diameter" and self._adds_own(measure)
+        is_new = measure.sort not in ("diameter", "width") and self._adds_own(measure)
         if span[0][0] == "turn":
             self.turns[round(measure.value, 4)] = measure.count
         if self.is_symmetric(*span):
@@ -108,12 +109,10 @@ class Definition:
         return is_new or fresh
 
     def _adds_own(self, measure: Measure) -> bool:
-        sort = {"diameter": "diameter", "radius": "radius", "angle": "angle", "chamfer": "chamfer"}.get(
-            measure.sort
-        )
-        if sort is None or (measure.sort == "diameter" and self.is_pitch_circle(measure)):
+        sort = measure.sort
+        if sort not in ("diameter", "radius", "angle", "chamfer", "width") or self.is_pitch_circle(measure):
             return False
-        own: Own = (sort, round(measure.value, 4))  # type: ignore[assignment]
+        own: Own = (sort, round(measure.value, 4))
         faces = {(sort, face) for face in measure.first}
         is_new = not faces or not faces <= self.sized
         self.sized |= faces
@@ -122,7 +121,7 @@ class Definition:
 
     def is_pitch_circle(self, measure: Measure) -> bool:
         """Return whether a diameter is that of a circle about the shaft through the axes of holes."""
-        on = measure.points[0] == (0.0, 0.0) and measure.form == "circle"
+        on = (measure.sort, measure.form, measure.points[0]) == ("diameter", "circle", (0.0, 0.0))
         return on and any(dist(hole.axis, measure.points[1]) < CLEAR for hole in self.features.holes)
 
     def span(self, measure: Measure) -> tuple[Station, Station] | None:
@@ -207,8 +206,17 @@ class Definition:
                 self.join(one, other)
             if given:
                 self._about_located(one, other)
-            if self.joined(one, other) and station("turn", (one[1] + other[1]) / 2) == zero:
-                self.join(one, zero)
+            if self.is_mirrored(one, other):
+                away = min(one[1] % 90, 90 - one[1] % 90)
+                twice = any(abs(away - value) < 1e-3 and count > 1 for value, count in self.turns.items())
+                located = twice and (self.joined(one, zero) or self.joined(other, zero))
+                if located or self.joined(one, other):
+                    self.join(one, zero)
+                    self.join(other, zero)
+
+    def is_mirrored(self, one: Station, other: Station) -> bool:
+        """Return whether two directions are mirrored at a centre line of the end view."""
+        return station("turn", (one[1] + other[1]) / 2) == ("turn", 0.0)
 
     def _about_located(self, one: Station, other: Station) -> None:
         """Locate a pair of directions about one that is located, as the flanks of equal counterweights."""
@@ -262,7 +270,7 @@ class Definition:
 
     def has_own(self, own: Own) -> bool:
         """Return whether a feature's size is given: of a round end also by the width that it closes."""
-        return own in self.given or (own[0] == "diameter" and own[1] in self.widths)
+        return own in self.given or (own[0] == "width" and own[1] in self.widths)
 
     def missing(self) -> Iterator[str]:
         """Yield in words what no dimension gives."""

@@ -80,7 +80,7 @@ class DimensionLayout:
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
             self._take_lines(one)
-        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form != "angle")
+        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form == "angle")
         return placed + [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
@@ -172,7 +172,7 @@ class DimensionLayout:
         for end in placed.ends:
             along = 1 if placed.ends[0][0] == placed.ends[1][0] else 0
             nearest = min(points, key=lambda point: abs(point[along] - end[along]))
-            self.room.add_line([nearest, end], is_drawn=True)
+            self.room.add_line([nearest, end])
 
     def _local(self, one: Dimension) -> PlacedDimension:
         right = self.plan.beside if one.measure.place == "end" else 0.0
@@ -184,18 +184,28 @@ class DimensionLayout:
                 tries = self._across_angle(one, label, right)
             case _:
                 tries = self._around(one, label, right)
-        every = list(tries)
-        free = [one for one in every if self.room.is_free(one[0])]
-        clear = [one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0]))]
-        apart = (one for one in clear if all(self.room.is_apart(line) for line in one[2]))
-        chosen = next(apart, None)
+        about = self._on_paper(one, right)[0]
+        is_arc = one.measure.form == "angle"  # a dimension line, no leader: others may cross it
+        chosen, every = None, []
+        for each in tries:
+            every.append(each)
+            is_apart = self.room.is_at_home if is_arc else self.room.is_apart
+            if self._is_clear(each, is_arc=is_arc) and all(is_apart(line, about) for line in each[2]):
+                chosen = each
+                break
         if chosen is None and not self.is_last:
             raise NoRoom
-        box, placed, lines = chosen or (clear or free or every)[0]
+        box, placed, lines = chosen or next((each for each in every if self.room.is_free(each[0])), every[0])
         self.room.add(box)
         for line in lines:
             self.room.add_line(line, is_drawn=True)
         return placed
+
+    def _is_clear(self, each: Try, *, is_arc: bool) -> bool:
+        """Return whether the words have room, for an angle also within its view; no line crosses others."""
+        box, _, lines = each
+        has_room = self.room.is_free(box) or (is_arc and self.room.is_free_within(box))
+        return has_room and all(self.room.passes(piece) for piece in pairwise(lines[0]))
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Yield the words at the end of a leader along a radius, of any arc that shows the parameter."""

@@ -122,7 +122,7 @@ class _Reader:
         turn = degrees(atan2(foot[1], foot[0])) if hypot(*foot) > _CLEAR else degrees(atan2(-u, v))
         self.found.rays[round(turn % 360, 4)] = f"{words} at {turn % 360:.6g}°"
         if abs(away) > _CLEAR:
-            self.found.own["diameter", 2 * abs(away)] = f"width between planes of {_name(plane)}"
+            self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
 
     def _is_tangent(self, plane: Surface) -> bool:
         """Whether a plane touches the round ends of a bar: two of them, or one and runs along its radius."""
@@ -165,7 +165,8 @@ class _Reader:
             return
         if self._is_relief(cylinder):
             return
-        self.found.own["diameter", cylinder.diameter] = f"Ø{cylinder.diameter:.6g} of {name}"
+        sort = "width" if self._is_round_end(cylinder) else "diameter"
+        self.found.own[sort, cylinder.diameter] = f"Ø{cylinder.diameter:.6g} of {name}"
         if cylinder.along(Z):
             x, y = self.frame.flat(cylinder.point)
             self.found.holes.append(
@@ -173,6 +174,14 @@ class _Reader:
             )
         elif abs(cylinder.direction.dot(Z)) < _FLAT:
             self._cross_hole(cylinder, name)
+
+    def _is_round_end(self, cylinder: Surface) -> bool:
+        """Whether planes along the shaft touch a cylinder on two sides, the largest about its axis."""
+        if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
+            return False
+        beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
+        away = [(cylinder.point - p.point).dot(p.direction) for p in beside if p.face[0] == cylinder.face[0]]
+        return sum(abs(abs(one) - cylinder.diameter / 2) < _CLEAR for one in away) > 1
 
     def _cross_hole(self, hole: Surface, name: str) -> None:
         right, up = self.frame.flat(hole.direction)

@@ -19,7 +19,7 @@ _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
     """Return all such sizes that the views show."""
-    kinds = (of_circles, of_levels, of_arms, of_uprights)
+    kinds = (of_circles, of_levels, of_arms, of_uprights, of_slots)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
@@ -31,6 +31,18 @@ def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
             right, up = end.frame.flat(cylinder.point)
             points = ((0.0, 0.0), (right, up))
             yield Measure("diameter", 2 * hypot(right, up), "end", "circle", points, 1, on(cylinder))
+
+
+def of_slots(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the widths of slots and bars along the shaft that stand askew in the end view."""
+    sides = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and p.middle is not None]
+    askew = [p for p in sides if not (p.along(X) or p.along(Y))]
+    for one, other in combinations(askew, 2):
+        if one.along(other.direction) and one.middle and other.middle:
+            way = one.direction * (other.middle - one.middle).dot(one.direction)
+            if _CLEAR < way.Length and (other.middle - one.middle - way).Length < way.Length:
+                points = end.frame.flat(one.middle), end.frame.flat(one.middle + way)
+                yield Measure("width", way.Length, "end", "aligned", points, 1, on(one), on(other))
 
 
 def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:

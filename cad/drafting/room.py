@@ -27,6 +27,9 @@ class Room:
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
         self._drawn: list[tuple[float, float, float, float]] = []  # of dimensions, leaders and frames
+        self._meeting = np.zeros((0, 4))
+        self._outlines: list[tuple[float, float, float, float]] = []
+        self._edges = np.zeros((0, 4))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
         """Occupy a rectangle; lines to a part's faces cross only that of a view."""
@@ -38,6 +41,19 @@ class Room:
         self._lines += [(*a, *b) for a, b in pairwise(points)]
         if is_drawn:
             self._drawn += [(*a, *b) for a, b in pairwise(points)]
+
+    def add_outline(self, points: Sequence[Point]) -> None:
+        """Keep a line of a view, which words within that view avoid."""
+        self._outlines += [(*a, *b) for a, b in pairwise(points)]
+
+    def is_free_within(self, box: Rectangle) -> bool:
+        """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
+        if not self.holds(box) or any(overlap(box, other, _APART) for other in self.words):
+            return False
+        if len(self._edges) != len(self._outlines):
+            self._edges = np.array(self._outlines)
+        is_blank = not len(self._edges) or not crossed(self._edges, box, _APART).any()
+        return is_blank and not self._is_crossed(box)
 
     def holds(self, box: Rectangle) -> bool:
         """Return whether a rectangle is on the sheet's area."""
@@ -57,12 +73,19 @@ class Room:
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
-    def is_apart(self, line: Sequence[Point]) -> bool:
-        """Return whether a line, which starts at what it is about, meets no dimension and no foreign view."""
+    def is_apart(self, line: Sequence[Point], about: Point | None = None) -> bool:
+        """Return whether a line meets no dimension, and no view but that of what it is about, its start."""
         pieces = np.array([(*a, *b) for a, b in pairwise(line)])
-        if self._drawn and any(_meet(piece, np.array(self._drawn)).any() for piece in pieces):
+        if len(self._drawn) != len(self._meeting):
+            self._meeting = np.array(self._drawn)
+        if len(self._meeting) and any(_meet(piece, self._meeting).any() for piece in pieces):
             return False
-        foreign = [box for box in self.views if not _is_in(line[0], box)]
+        return self.is_at_home(line, about or line[0])
+
+    def is_at_home(self, line: Sequence[Point], about: Point) -> bool:
+        """Return whether a line crosses no view but that of the point that it is about."""
+        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
+        foreign = [box for box in self.views if not _is_in(about, box)]
         return not any(crossed(pieces, box).any() for box in foreign)
 
     def length_in_views(self, one: Point, other: Point) -> float:

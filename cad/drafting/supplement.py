@@ -31,7 +31,7 @@ class Supplement:
 
     def complete(self, taken: Sequence[Dimension]) -> list[Dimension]:
         """Return the dimensions, those that others give already for reference, and what was missing."""
-        every = [self._judged(one) for one in taken]
+        every = [self.judged(one) for one in taken]
         for measure in self._missing():
             if len(every) >= len(taken) + _MOST:
                 break
@@ -39,7 +39,8 @@ class Supplement:
                 every.append(Dimension(measure, None))
         return [*every, *self._overall(every)]
 
-    def _judged(self, one: Dimension) -> Dimension:
+    def judged(self, one: Dimension) -> Dimension:
+        """Add a dimension; return it, in brackets if others give it already and it has no tolerance."""
         is_new = self.definition.add(one.measure)
         joined_spans(self.definition, self.repeated.get(one.name or "", ()))
         return one if is_new or one.limits else replace(one, is_reference=True)
@@ -167,27 +168,28 @@ class Supplement:
             yield Measure("offset", abs(x), "end", "across", ((min(x, 0.0), y), (max(x, 0.0), y)))
 
     def _turns(self) -> Iterator[Measure]:
-        """Yield angles at the shaft: of neighbours in a pattern, of pairs about a centre line, of others."""
+        """Yield angles at the shaft: the step of a pattern, and from centre lines to what is mirrored."""
         for _ in range(_MOST):
             loose = [one for group in self.definition.components("turn")[1:] for one in group]
             if not loose:
                 return
-            pairs = (pair for pair in combinations(loose, 2) if self.definition.is_symmetric(*pair))
-            pair = min(pairs, key=lambda two: abs(_apart(*two)), default=None)
-            if pair is None:
-                yield self._turn(loose[0])
+            pairs = sorted(combinations(loose, 2), key=lambda pair: abs(_apart(*pair)))
+            step = [pair for pair in pairs if abs(abs(_apart(*pair)) - abs(_apart(*pairs[0]))) < _CLEAR]
+            if len(step) > 1:
+                off = (pair for pair in step if not self.definition.is_symmetric(*pair))
+                yield self._angle(*next(off, step[0]), count=len(step))
                 continue
-            apart = abs(_apart(*pair))
-            steps = sum(abs(abs(_apart(*two)) - apart) < _CLEAR for two in combinations(loose, 2))
-            yield self._angle(*pair, count=steps)
+            mirrored = any(self.definition.is_mirrored(loose[0], other) for other in loose[1:])
+            yield self._turn(loose[0], count=2 if mirrored else 1)
 
-    def _turn(self, one: Station) -> Measure:
+    def _turn(self, one: Station, count: int = 1) -> Measure:
         """Return the angle of a direction from the nearest one that is located."""
         known: list[Station] = [("turn", at) for at in (0.0, 90.0, 180.0, 270.0)]
         others = self.definition.optional if one in self.definition.optional else self.definition.needed
-        known += [o for o in others if o[0] == "turn" and self.definition.joined(o, ("turn", 0.0))]
+        if count == 1:
+            known += [o for o in others if o[0] == "turn" and self.definition.joined(o, ("turn", 0.0))]
         apart = [(abs(_apart(one, other)), other) for other in known if abs(_apart(one, other)) > _CLEAR]
-        return self._angle(min(apart)[1], one)
+        return self._angle(min(apart)[1], one, count)
 
     def _angle(self, one: Station, other: Station, count: int = 1) -> Measure:
         reach = max(abs(value) for corner in self.end.box for value in corner) / 2
