@@ -19,16 +19,14 @@ from math import atan2, degrees, dist, hypot
 from typing import Literal
 
 from cad.drafting.measures import Measure
-from cad.drafting.parts_features import Features, Hole
+from cad.drafting.parts_features import Features, Hole, Sort, Words
 from cad.surfaces import Face
 
 Direction = Literal["along", "across", "up", "round", "turn"]
 """Along the shaft; level and upright in the end view; radii about the shaft [mm]; angles about it [deg]."""
 
 Station = tuple[Direction, float]
-Own = tuple[Literal["diameter", "radius", "chamfer", "angle", "width"], float]
-"""A size that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle, a slot
-and a bar with round ends its width."""
+Own = tuple[Sort, float]
 
 CLEAR = 1e-4  # [mm, deg]: stations that are nearer coincide
 AXIS: Station = ("round", 0.0)
@@ -72,10 +70,14 @@ class Definition:
     def of(features: Features) -> Definition:
         """Return what the faces of parts need, with no dimension yet."""
         made = Definition(features)
-        for direction, levels in (
-            ("along", features.along), ("across", features.across), ("up", features.up),
-            ("round", features.round), ("turn", features.rays),
-        ):  # fmt: skip
+        every: dict[Direction, Words] = {
+            "along": features.along,
+            "across": features.across,
+            "up": features.up,
+            "round": features.round,
+            "turn": features.rays,
+        }
+        for direction, levels in every.items():
             made.needed |= {station(direction, at): words for at, words in levels.items()}
         made.needed.pop(AXIS, None)
         made.needed.pop(("turn", 0.0), None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, hypot, isclose, pi, tan
+from typing import Literal
 
 from cadquery import Vector
 
@@ -16,6 +17,9 @@ _CLEAR = 1e-4  # [mm]
 _FLAT = 1e-6  # as the sine of an angle
 
 Words = dict[float, str]
+Sort = Literal["diameter", "radius", "chamfer", "angle", "width"]
+"""Sizes that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle, a slot
+and a bar with round ends their width."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class Features:
     up: Words = field(default_factory=dict)
     round: Words = field(default_factory=dict)
     rays: Words = field(default_factory=dict)
-    own: dict[tuple[str, float], str] = field(default_factory=dict)
+    own: dict[tuple[Sort, float], str] = field(default_factory=dict)
     holes: list[Hole] = field(default_factory=list)
     centres: list[float] = field(default_factory=list)
     round_at: dict[float, float] = field(default_factory=dict)
@@ -151,10 +155,11 @@ class _Reader:
         reach = plane.middle.dot(out)
         out, reach = (out, reach) if reach > 0 else (-out, -reach)
         fall = -normal.dot(out) / normal.z  # of the plane along the shaft, for each millimetre outwards
-        before = [z for z in self.levels if (z - plane.middle.z) * fall < 0]
+        middle = plane.middle.z
+        before = [z for z in self.levels if (z - middle) * fall < 0]
         if before:
-            level = min(before, key=lambda z: abs(z - plane.middle.z))
-            start = reach + (level - plane.middle.z) / fall
+            level = min(before, key=lambda z: abs(z - middle))
+            start = reach + (level - middle) / fall
             self.found.round[start] = f"the start of a slope at {start:.6g} mm"
             self.found.round_at[start] = level
 
@@ -165,7 +170,7 @@ class _Reader:
             return
         if self._is_relief(cylinder):
             return
-        sort = "width" if self._is_round_end(cylinder) else "diameter"
+        sort: Sort = "width" if self._is_round_end(cylinder) else "diameter"
         self.found.own[sort, cylinder.diameter] = f"Ø{cylinder.diameter:.6g} of {name}"
         if cylinder.along(Z):
             x, y = self.frame.flat(cylinder.point)
