@@ -1,1 +1,1 @@
-"""The service. No other package knows HTTP, SQL or processes."""
+"""The Crankwright service. No other package uses HTTP, SQL or processes."""

@@ -12,7 +12,7 @@ def main() -> None:
         from app.cli.start import begin_serving
 
         begin_serving()
-    from app.cli.main import main as run_command  # commands import NumPy, which reads the environment once
+    from app.cli.main import main as run_command  # after the setting above: NumPy reads the environment once
 
     run_command()
 

@@ -117,8 +117,8 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     sealer.start()
     stack.callback(sealer.stop)
     registry = ImportedModelRegistry(database, catalogues, is_shared=database.is_shared)
-    registry.start()
-    stack.callback(registry.stop)
+    registry.follower.start()
+    stack.callback(registry.follower.stop)
     published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, NETWORK, SHEETS)
     calculation_cache = CalculationCache()
@@ -201,7 +201,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
 def data_checks(
     database: Database, store: Artifacts, folder: DataFolder, settings: Settings
 ) -> dict[str, readiness.Check]:
-    """Return the conditions on the data under which the service is ready."""
+    """Return the checks of the data that must pass before the service reports that it is ready."""
     checks: dict[str, readiness.Check] = {
         "database": readiness.WriterProbe(database),
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
@@ -210,10 +210,10 @@ def data_checks(
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
-    """Return the catalogues. A process of the worker checks every file of a team before the server loads it.
+    """Return the catalogues. A worker process checks every file of a team before the server loads it.
 
-    At the start a light process checks the files that do not import the kernel, so that no request waits for
-    it.
+    At the start, a light process checks the files that do not import the kernel, so that no request waits for
+    that check.
     """
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
@@ -221,7 +221,7 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     check = CheckInProcess(worker, limits)
     if settings.engine != LOCAL:
         return TeamCatalogues(settings.template_folders, check)
-    with closing(LocalProcesses(CHECKS)) as light:  # it is ready long before a process that loads the kernel
+    with closing(LocalProcesses(CHECKS)) as light:  # ready long before a process that loads the kernel
         return TeamCatalogues(settings.template_folders, check, CheckInProcess(worker, limits, light))
 
 
@@ -230,11 +230,11 @@ def published_worksheets(
 ) -> WorksheetPublication:
     """Return the released worksheets among the templates.
 
-    A SQLite database has a single server, which releases them all.
+    A SQLite database has a single server, so that server makes all releases.
     """
     published = WorksheetPublication(database, catalogues, is_shared=database.is_shared)
-    published.start()
-    stack.callback(published.stop)
+    published.follower.start()
+    stack.callback(published.follower.stop)
     return published
 
 
@@ -264,7 +264,7 @@ def register_jobs(
 
 
 def assemble_studies(services: StudyServices, designs: Designs) -> Studies:
-    """Return the service of studies, its handler registered."""
+    """Return the service for studies, with its job handler registered."""
     conclude = StudyConclusion(DesignFactory(services, designs))
     repair = ChunkRepair(services, conclude)
     handler = StudyRunner(services, conclude, repair.heal)

@@ -1,4 +1,4 @@
-"""The application: `create_app(settings)`. `lifespan` creates everything that it holds, and closes it."""
+"""The application: `create_app(settings)`. `lifespan` creates and closes all its parts."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
             if traces is not None:
-                stack.callback(traces.close)  # the last: all else has ended its spans
+                stack.callback(traces.close)  # closed last, when all other parts have ended their spans
             services = assemble(chosen, stack, traces)
             app.state.services, app.state.pace = services, Pace()
             stack.enter_context(on_stop_signal(services.jobs.drain))
@@ -140,10 +140,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         version=version("crankwright"),
         description=DESCRIPTION,
         lifespan=lifespan,
-        docs_url=None,  # ours has a policy
+        docs_url=None,  # our page has a content security policy
         redoc_url=None,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics counts
-        swagger_ui_parameters={"validatorUrl": None},  # the default one asks an outside address
+        swagger_ui_parameters={"validatorUrl": None},  # the default validator is an outside service
         responses={"4XX": {"description": "a problem", "content": PROBLEM_CONTENT}},
         generate_unique_id_function=operation_id,
     )
@@ -161,15 +161,15 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         from app.http import request_spans
 
         request_spans.install(app, traces)
-    request_log.install(app)  # the outermost: it sees what the others refuse
+    request_log.install(app)  # outermost, so that it also sees refused requests
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
 
 
 def opened_traces(settings: Settings) -> Traces | None:
-    """Return the sender of traces, if the settings name a collector.
+    """Return the object that sends traces, if the settings name a collector.
 
-    The packages belong to the extra `traces`.
+    It needs the packages of the extra `traces`.
     """
     if settings.traces_url is None:
         return None
@@ -182,12 +182,12 @@ def opened_traces(settings: Settings) -> Traces | None:
 def spared_by_collections() -> Iterator[None]:
     """Exclude loaded objects from Python's full garbage collections, during which all threads wait.
 
-    With half a million permanent objects, every collection takes a tenth of a second.
+    With half a million permanent objects, each full collection takes a tenth of a second.
     """
     if gc.isenabled():
         gc.collect()
-    gc.freeze()  # what `serve` has imported without collections holds hardly any garbage
-    gc.enable()  # `app.cli.start` has switched it off
+    gc.freeze()  # the imports of `serve`, made without collections, contain hardly any garbage
+    gc.enable()  # `app.cli.start` disabled it
     try:
         yield
     finally:

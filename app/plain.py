@@ -1,7 +1,7 @@
-"""Types of plain JSON values whose structure only their readers know; used by every layer.
+"""Types of plain JSON values that only their readers check; every layer uses them.
 
-`Json` is `Any` because Pydantic's `JsonValue` would require a check at every index into a value that a model,
-a migration or the language checks as a whole.
+`Json` is `Any` because Pydantic's `JsonValue` would require a type check at every index into a value that a
+model, a migration or the language already checks as a whole.
 """
 
 from __future__ import annotations

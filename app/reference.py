@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Reference(NamedTuple):  # millions are hashed
-    """A value of a design: a parameter, or an input, output or measure of a block, or of an analysis of it.
+class Reference(NamedTuple):  # a tuple, because millions are hashed
+    """The name of a value in a design.
 
-    A parameter stands for itself, so its name is the `block`, and there is no `output`.
+    A value is a parameter, or an input, output or measure of a block or of an analysis of the block. For a
+    parameter, `block` is the name of the parameter, and there is no `output`.
     """
 
     block: str
@@ -17,9 +18,9 @@ class Reference(NamedTuple):  # millions are hashed
 
     @classmethod
     def parse(cls, name: str) -> Reference:
-        """Return the reference that a name in a relation means.
+        """Return the reference for a name in a relation.
 
-        The network checks whether it exists.
+        The network checks whether the value exists.
         """
         block, *inside = name.split(".", 2)
         if not inside:
@@ -36,8 +37,5 @@ class Reference(NamedTuple):  # millions are hashed
 
     @property
     def own_name(self) -> str:
-        """Return the name alone, without the block and the analysis that it belongs to.
-
-        `stiffness`, `scale`.
-        """
+        """Return the name without its block and analysis, such as `stiffness` or `scale`."""
         return self.block if self.output is None else self.output

@@ -1,7 +1,7 @@
 """Draw every model at three sizes, for `docs/drawings`: `python -m benchmarks.drawings [MODEL_vN ...]`.
 
-A size is the example of a model with all its lengths multiplied; a model whose sizes are standardised, and
-that refuses the product, is drawn at the nearest size of its own.
+A size is the example of a model with all its lengths multiplied by a factor. If a model has standardised
+sizes and refuses the multiplied one, its nearest standard size is drawn.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ from templates.core.units.units import unit
 FOLDER = Path("docs/drawings")
 PAGE = Path("docs/drawings.md")
 _GALLERY = (
-    "All lengths of the example times 0.25, 1 and 4, drawn by `python -m benchmarks.drawings`; "
-    "of `deep_groove_bearing` 6000, 6210 and 6330.\n"
+    "`python -m benchmarks.drawings` draws each model's example with all lengths multiplied by 0.25, "
+    "1 and 4; for\n"
+    "`deep_groove_bearing` it draws 6000, 6210 and 6330.\n"
 )
 SIZES = (0.25, 1.0, 4.0)
 """Factors of all lengths of a model's example."""
@@ -60,7 +61,7 @@ def sized(model: type[CadModel], factor: float) -> Build:
 
 
 def main(names: list[str]) -> None:
-    """Write the drawings, and the page that shows them."""
+    """Write the drawings and the list of pictures on their page."""
     FOLDER.mkdir(exist_ok=True)
     for model in latest():
         if names and f"{model.id}_v{model.version}" not in names:
@@ -79,7 +80,7 @@ def main(names: list[str]) -> None:
 
 
 def _write_gallery() -> None:
-    """The pictures at the end of the page."""
+    """Replace the list of pictures at the end of the page."""
     head, mark, _ = PAGE.read_text(encoding="utf-8").partition(_GALLERY)
     lines = [f"![{picture.stem}](drawings/{picture.name})\n" for picture in sorted(FOLDER.glob("*.svg"))]
     PAGE.write_text(head + mark + "\n" + "\n".join(lines), encoding="utf-8")

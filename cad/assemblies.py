@@ -1,10 +1,10 @@
-"""Assemblies that a team defines: a model of this program with fixed parts beside it, or fixed parts alone.
+"""Assemblies that a team defines: a model of this program with added fixed parts, or fixed parts alone.
 
 The class of an assembly is the class of its model with six more parameters for each fixed part: its position
 on its datum. The model's own parts pass the usual checks. A fixed part is the shape of a STEP file, and its
 volume is measured. No fixed part may interfere with another part, unless its description allows that.
 
-This module imports the kernel only to draw.
+This module imports the kernel only when it builds a shape.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _WITHIN = ":"  # between the name of a fixed part and that of one of its solids
 
 @dataclass(frozen=True)
 class Component:
-    """A fixed part: which STEP file, and where its place is measured from."""
+    """A fixed part: its STEP file, and the datum of its position."""
 
     name: str
     file: str  # SHA-256 of its STEP file
@@ -51,7 +51,7 @@ class Component:
     holds: tuple[str, ...] = ()  # ids of the models that it is made of
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
-        """Return its position as parameters of the assembly, with their default values."""
+        """Return the position of the part as parameters of the assembly, with default values."""
         for key in (*SHIFTS, *TURNS):
             unit, bound = ("mm", FARTHEST) if key in SHIFTS else ("deg", 360.0)
             words = f"{self.name} {key.replace('_', ' about ')}".replace("_", " ")
@@ -62,22 +62,22 @@ class Component:
 
 @dataclass(frozen=True)
 class AssemblyDescription(Description):
-    """The whole of an assembly, from which its class is made."""
+    """Complete description of an assembly, from which its class is created."""
 
     base: tuple[str, int] | None = None  # id and version of a model of this program
     components: tuple[Component, ...] = ()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """Return the assembly, and the class of its model."""
+        """Return the base classes: that of assemblies, and that of the base model."""
         return (AssemblyModel, *([base_of(self.base)] if self.base else []))
 
     def example(self) -> Mapping[str, Any]:
-        """Return the example of its model; places are as in the description."""
+        """Return the example of the base model; positions are as in the description."""
         return base_of(self.base).example if self.base else super().example()
 
     @property
     def trust(self) -> str:
-        """Return the limits of the checks on its solids, in plain words."""
+        """Return the limits of the checks on the solids, in plain words."""
         names = ", ".join(one.name for one in self.components)
         own = f"{self.base[0]} is checked as ever. " if self.base else ""
         return (
@@ -87,12 +87,12 @@ class AssemblyDescription(Description):
 
 
 class AssemblyModel(ImportedModel):
-    """Base of the assemblies that a team makes."""
+    """Base class of the assemblies that a team defines."""
 
     imported: ClassVar[AssemblyDescription]
 
     def build(self) -> tuple[Part, ...]:
-        """Return the parts of its model, and its fixed parts at their positions."""
+        """Return the parts of the base model, and the fixed parts at their positions."""
         if _PARTS not in vars(self):
             built = tuple(self._built())
             self._require_known(built)
@@ -101,7 +101,7 @@ class AssemblyModel(ImportedModel):
         return parts
 
     def bounding_box(self) -> Box:
-        """Return the bounding box of its model and of its fixed parts."""
+        """Return the bounding box of the base model and the fixed parts together."""
         from cad.inspect import bounding_box
         from cad.step import Body
 
@@ -116,14 +116,14 @@ class AssemblyModel(ImportedModel):
         )
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
-        """Return the parameters of its model, as its own parts show them."""
+        """Return the parameters of the base model, as read back from its own parts."""
         if not self.imported.base:
             return {}
         own = {name: part for name, part in seen.items() if not self.component_of(name)}
         return dict(super(ImportedModel, self).dimensions(own))
 
     def component_of(self, part: str) -> str | None:
-        """Return the fixed part to which a solid of this name belongs; None of a solid of its model."""
+        """Return the fixed part to which a solid of this name belongs; None for a solid of the base model."""
         name = part.partition(_WITHIN)[0]
         return name if any(name == one.name for one in self.imported.components) else None
 
@@ -136,24 +136,24 @@ class AssemblyModel(ImportedModel):
         return {name: unit for name, unit in measures.items() if name not in {*cls.inputs, *cls.formulas}}
 
     def may_overlap(self, one: str, other: str) -> bool:
-        """Return whether the description allows two of its solids to take the same space."""
+        """Return whether the description allows two of its solids to overlap."""
         return self._allows(one, other) or self._allows(other, one)
 
     def shaft(self) -> Shaft | None:
-        """Return None: the finite elements need one solid, not an assembly."""
+        """Return None, because the finite elements need one solid, not an assembly."""
         return None
 
     @classmethod
     def is_throw(cls) -> bool:
-        """No: finite elements take one solid."""
+        """Return False, because the finite elements need one solid."""
         return False
 
     def throw_sizes(self) -> Crank | None:
-        """No sizes: finite elements take one solid."""
+        """Return None, because the finite elements need one solid."""
         return None
 
     def _allows(self, one: str, other: str) -> bool:
-        """Return whether the fixed part of one solid may interfere with the other, by part or by solid."""
+        """Return whether the fixed part of one solid may overlap the other solid or the part of it."""
         name = self.component_of(one)
         component = next((c for c in self.imported.components if c.name == name), None)
         if component is None:
@@ -162,7 +162,9 @@ class AssemblyModel(ImportedModel):
         return not {other, self.component_of(other), *parts}.isdisjoint(component.may_overlap)
 
     def _require_known(self, parts: Sequence[Part]) -> None:
-        """Refuse a `may_overlap` that names no part, except parts that the model has with other parameters.
+        """Refuse a `may_overlap` with an unknown part.
+
+        Parts that other parameters of the model create are known.
 
         Raises
         ------
@@ -251,7 +253,7 @@ def base_of(base: tuple[str, int]) -> type[CadModel]:
 
 
 def assembly_of(read: Mapping[str, Any]) -> AssemblyDescription:
-    """Return the description from its JSON, whose parameters are already read."""
+    """Return the description parsed from its JSON; the parameters are already parsed."""
     components = tuple(_component(one) for one in read["components"])
     base = read["base"]
     return AssemblyDescription(
@@ -271,7 +273,7 @@ def described(
     base: tuple[str, int] | None,
     components: Mapping[Component, Mapping[str, float]],
 ) -> AssemblyDescription:
-    """Return the description of an assembly; `components` with the numbers of their places, in mm and deg."""
+    """Return the description of an assembly; the positions of `components` are numbers in mm and deg."""
     return AssemblyDescription(
         program="assembly",
         file=file,

@@ -1,4 +1,4 @@
-"""Group: the two rings and the row of balls of a deep groove ball bearing, which its models share.
+"""Rings and balls of a deep groove ball bearing: a group that its models share.
 
 References
 ----------
@@ -25,7 +25,7 @@ INWARDS, OUTWARDS = -1, 1
 
 @dataclass(frozen=True)
 class Ring:
-    """Cross-section of a ring [mm]: `s` counts from the pitch circle towards its back, `z` from mid-width."""
+    """Cross-section of a ring [mm]: `s` runs from the pitch circle to the back, `z` from mid-width."""
 
     shoulder: float  # s of the shoulder
     back: float  # s of the bore or the outside
@@ -46,12 +46,12 @@ class Ring:
         return self.groove_radius**2 * (half - sin(half) * cos(half))
 
     def solid(self, pitch_radius: float, side: int) -> Shape:
-        """Return the section turned about z as one profile: a cut by a torus would vary between runs."""
+        """Return the section revolved about z as one profile; a cut with a torus would vary between runs."""
         section = self._outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
         return Solid.revolve(section, 360, Vector(0, 0, 0), Vector(0, 0, 1))
 
     def volume(self, pitch_radius: float, side: int) -> float:
-        """Return the area times the path of its centroid [mm³] (Pappus)."""
+        """Return the volume [mm³]: the area times the path of its centroid (Pappus)."""
         area = (self.back - self.shoulder) * self.width - self.chamfer**2 - self._segment
         rectangle = (self.back**2 - self.shoulder**2) / 2 * self.width
         chamfers = self.chamfer**2 * (self.back - self.chamfer / 3)
@@ -78,7 +78,7 @@ class Ring:
 
 
 class BallRow(CadModel):
-    """Two rings and the balls between them; a model gives their sizes."""
+    """Two rings and the balls between them; the model sets their sizes."""
 
     d: Array
     D: Array
@@ -88,17 +88,17 @@ class BallRow(CadModel):
 
     @formula("mm", "pitch diameter", symbol="D_{pw}")
     def D_pw(self) -> Array:
-        """Midway between bore and outside."""
+        """Return the mean of bore and outer diameter."""
         return (self.d + self.D) / 2
 
     @formula("mm", "ring section", symbol="h")
     def h(self) -> Array:
-        """Height from bore to outside."""
+        """Return the radial height from bore to outer diameter."""
         return (self.D - self.d) / 2
 
     @formula("mm", "groove radius", symbol="r_g", source="conformity 0.52, Harris and Kotzalas 2006")
     def r_g(self) -> Array:
-        """A little more than half the ball's diameter."""
+        """Return slightly more than half the ball diameter."""
         return 0.52 * self.D_w
 
     @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or leave it out")
@@ -109,22 +109,22 @@ class BallRow(CadModel):
     @require("ball_diameter", "outer_diameter", "inner_diameter",
              remedy="take smaller balls or a larger outer diameter")  # fmt: skip
     def balls_fit_between_rings(self) -> Truth:
-        """A ball takes at most 90 % of the height from bore to outside, so that no groove cuts a ring."""
+        """A ball is at most 90 % of the height from bore to outside, so that no groove cuts a ring."""
         return self.D_w <= 0.9 * self.h
 
     @require("ball_diameter", "width", remedy="take smaller balls or a wider bearing")
     def balls_fit_in_width(self) -> Truth:
-        """A ball is not wider than the bearing, so that the rings hold the whole groove."""
+        """The ball diameter is at most the bearing width, so that the rings contain the whole groove."""
         return self.D_w <= self.B
 
     @require("balls", "ball_diameter", "outer_diameter", "inner_diameter",
              remedy="take fewer or smaller balls")  # fmt: skip
     def balls_do_not_touch(self) -> Truth:
-        """Between neighbouring balls on the pitch circle there is at least 1 % of a ball's diameter."""
+        """The gap between neighbouring balls on the pitch circle is at least 1 % of the ball diameter."""
         return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 
     def ring(self, shoulder: float, chamfer: float) -> Ring:
-        """Return the cross-section that both rings share; one is turned inwards, one outwards."""
+        """Return the cross-section that both rings share; one faces inwards, the other outwards."""
         return Ring(
             shoulder=shoulder,
             back=mm(self.h) / 2,
@@ -135,7 +135,7 @@ class BallRow(CadModel):
         )
 
     def rings_and_balls(self, ring: Ring) -> tuple[Part, Part, Part]:
-        """Return two rings and the balls."""
+        """Return the two rings and the balls as parts."""
         radius, balls = mm(self.D_pw) / 2, round(float(self.n))
         angles = (2 * pi * i / balls for i in range(balls))
         places = tuple(Location(Vector(radius * cos(a), radius * sin(a), 0)) for a in angles)

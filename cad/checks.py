@@ -25,7 +25,7 @@ _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENS
 def check_bodies(
     model: CadModel, parts: Sequence[Part], bodies: Sequence[Body], measured: Sequence[BodyMeasures]
 ) -> None:
-    """Check that each part occurs as often as drawn, as one valid solid with its closed-form volume.
+    """Check that each part occurs as often as specified, as one valid solid with its closed-form volume.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def check_bodies(
 
 
 def check_box(model: CadModel, measured: Box) -> None:
-    """Check that the parts together fill their declared box.
+    """Check that all parts together fill the declared bounding box.
 
     Raises
     ------
@@ -105,9 +105,9 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
 
 
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
-    """Return each fixed part's least distance [mm] from all other parts, and the shared space [mm³].
+    """Return the smallest distance [mm] of each fixed part from all other parts, and the shared volume [mm³].
 
-    The distance is 0 if it touches or overlaps a part. A part without comparisons has neither value.
+    The distance is 0 if the part touches or overlaps another. A part without comparisons has neither value.
     """
     measures: dict[str, float] = {}
     for one in between:
@@ -148,7 +148,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
 def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
     """Compare every parameter that the solid shows with the requested value; return them by API name.
 
-    For a list each item is compared; a single number applies to all items.
+    Each item of a list is compared; a single number applies to all items.
 
     Raises
     ------
@@ -199,9 +199,9 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:
-    """Return whether a list is the one requested.
+    """Return whether a list read from the solid equals the requested one.
 
-    One number may request all its items, one item shows no list.
+    A single requested number applies to all items.
     """
     if not isinstance(measured, list):
         return False

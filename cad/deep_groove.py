@@ -1,4 +1,4 @@
-"""Deep groove ball bearings: sizes by designation, the cage, load ratings.
+"""Deep groove ball bearings: sizes by designation, the cage, and load ratings.
 
 References
 ----------
@@ -56,25 +56,28 @@ LARGE_BALL = 25.4  # [mm] from which capacity grows with the power 1.4 instead o
 
 @units(None, returns="m")
 def bore_by_designation(designation: str) -> Array:
-    """Return the bore [m], ISO 15."""
+    """Return the bore [m] of a designation by ISO 15."""
     return np.asarray(SIZES[designation][0] / 1e3)
 
 
 @units(None, returns="m")
 def outside_by_designation(designation: str) -> Array:
-    """Return the outer diameter [m], ISO 15."""
+    """Return the outer diameter [m] of a designation by ISO 15."""
     return np.asarray(SIZES[designation][1] / 1e3)
 
 
 @units(None, returns="m")
 def width_by_designation(designation: str) -> Array:
-    """Return the width [m], ISO 15."""
+    """Return the width [m] of a designation by ISO 15."""
     return np.asarray(SIZES[designation][2] / 1e3)
 
 
 @units("m", "m", "1", returns="N")
 def dynamic_capacity_ISO_281_2007(D_w: Array, D_pw: Array, Z: Array) -> Array:
-    """C = b_m f_c Z^(2/3) D_w^1.8 [N], D_w in mm; from 25.4 mm on b_m f_c Z^(2/3) 3.647 D_w^1.4."""
+    """Return the dynamic load rating C = b_m f_c Z^(2/3) D_w^1.8 [N], D_w in mm.
+
+    Above 25.4 mm C = b_m f_c Z^(2/3) 3.647 D_w^1.4.
+    """
     ball = np.asarray(D_w) * 1e3
     size = np.where(ball <= LARGE_BALL, ball**1.8, 3.647 * ball**1.4)
     factor: Array = np.interp(D_w / D_pw, RATIOS, DYNAMIC)
@@ -83,14 +86,14 @@ def dynamic_capacity_ISO_281_2007(D_w: Array, D_pw: Array, Z: Array) -> Array:
 
 @units("m", "m", returns="1")
 def static_factor_ISO_76_2006(D_w: Array, D_pw: Array) -> Array:
-    """f_0 [1], linear between the rows of the table."""
+    """Return the factor f_0 [1], interpolated linearly between the rows of the table."""
     factor: Array = np.interp(D_w / D_pw, RATIOS, STATIC)
     return factor
 
 
 @units("1", "1", "m", returns="N")
 def static_capacity_ISO_76_2006(f_0: Array, Z: Array, D_w: Array) -> Array:
-    """C0 = f_0 Z D_w² [N], D_w in mm."""
+    """Return the static load rating C0 = f_0 Z D_w² [N], D_w in mm."""
     return f_0 * Z * (np.asarray(D_w) * 1e3) ** 2
 
 
@@ -106,16 +109,16 @@ class Cage:
 
     @property
     def inside(self) -> float:
-        """Return the radius of its bore."""
+        """Return the inner radius of the cage."""
         return self.pitch_radius - self.thickness / 2
 
     @property
     def outside(self) -> float:
-        """Return the radius of its outside."""
+        """Return the outer radius of the cage."""
         return self.pitch_radius + self.thickness / 2
 
     def solid(self) -> Shape:
-        """Return the ring, its seam between two pockets, less the pockets."""
+        """Return the ring minus its pockets; the seam of the ring lies between two pockets."""
         b, half_pitch = self.width / 2, degrees(pi / self.balls)
         section = outline((self.inside, -b), (self.outside, -b), (self.outside, b), (self.inside, b))
         ring = turned(section, half_pitch)
@@ -128,6 +131,6 @@ class Cage:
         return Solid.makeCylinder(self.pocket, 1.1 * self.outside - start, along * start, along)
 
     def volume(self) -> float:
-        """Return the ring minus the volume of its pockets [mm³]."""
+        """Return the volume of the ring minus that of its pockets [mm³]."""
         ring = pi * (self.outside**2 - self.inside**2) * self.width
         return ring - self.balls * drilled_volume(self.pocket, self.outside, self.inside)

@@ -1,6 +1,6 @@
-"""SVG: the visible edges of the bodies as lines, true to scale (1 mm is 1 mm), hidden edges dashed.
+"""SVG views: the visible edges of the bodies as lines to scale (1 mm is 1 mm), with hidden edges dashed.
 
-Where two faces meet smoothly, as at a fillet, the line is thin.
+An edge where two faces meet tangentially, as at a fillet, is a thin line.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
 from cad.step import Body
-from cad.view import RIGHT, TOWARDS
+from cad.view import view_of
 
 _TURN = 0.1  # [rad] between two pieces of a curve
 _SMOOTH = 1e-3  # of the drawing's size: the greatest distance of a piece from its curve
@@ -29,7 +29,7 @@ Line = list[tuple[float, float]]
 
 
 def write_svg(bodies: Sequence[Body]) -> bytes:
-    """Return a parallel projection of the bodies, with hidden lines."""
+    """Return a parallel projection of the bodies with hidden lines, as SVG."""
     shapes = [body.shape.moved(place) for body in bodies for place in body.places]
     hidden_line = _projected(Compound.makeCompound(shapes))
     visible = (hidden_line.VCompound(), hidden_line.OutLineVCompound())
@@ -39,7 +39,9 @@ def write_svg(bodies: Sequence[Body]) -> bytes:
 
 
 def _projected(shape: Shape) -> HLRBRep_HLRToShape:
-    eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*TOWARDS), gp_Dir(*RIGHT))
+    box = shape.BoundingBox()
+    right, _, towards = view_of(np.array([box.xlen, box.ylen, box.zlen])).T
+    eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*towards), gp_Dir(*right))
     algorithm = HLRBRep_Algo()
     algorithm.Add(shape.wrapped)
     algorithm.Projector(HLRAlgo_Projector(eye))
@@ -49,7 +51,7 @@ def _projected(shape: Shape) -> HLRBRep_HLRToShape:
 
 
 def lines_of(compounds: Sequence[Any]) -> Iterator[Line]:
-    """Yield the edges of projections as lines of points; y points downwards, as in SVG."""
+    """Yield the edges of projections as polylines; y points downwards, as in SVG."""
     for compound in compounds:
         if compound is None or compound.IsNull():
             continue

@@ -1,4 +1,4 @@
-"""Errors that occur while a shape is built, after its parameters have passed their checks.
+"""Errors raised while a shape is built, after its parameters have passed their checks.
 
 Wrong parameters are refused earlier, as `templates.core.errors.InvalidInputs`.
 """
@@ -9,11 +9,11 @@ from collections.abc import Iterable
 
 
 class GeometryError(Exception):
-    """The kernel made no solid, or not the one that was requested.
+    """The kernel built no solid, or not the requested one.
 
     `code` is one of `not_finite`, `not_one_solid`, `invalid_solid`, `bounding_box`, `volume`, `dimension`,
-    `tolerance`, `interference`, `open_mesh`, `kernel`; `parameters` are the API names of the parameters
-    concerned. It survives pickling, because it is raised in a worker process.
+    `tolerance`, `interference`, `open_mesh`, `kernel`; `parameters` are the API names of the affected
+    parameters. The exception can be pickled, because worker processes raise it.
     """
 
     def __init__(self, code: str, detail: str, parameters: Iterable[str] = ()) -> None:
@@ -25,11 +25,11 @@ class GeometryError(Exception):
 
 
 class UnreadableStep(ValueError):
-    """Bytes that are not a STEP file, or one without a shape."""
+    """The bytes are not a STEP file, or the file contains no shape."""
 
 
 class UnreadableModel(Exception):
-    """A file of a model that is not opened; `code` says why. It survives pickling."""
+    """The file of a model cannot be opened; `code` gives the reason. The exception can be pickled."""
 
     def __init__(self, code: str, detail: str) -> None:
         self.code, self.detail = code, detail
@@ -40,14 +40,14 @@ class UnreadableModel(Exception):
 
 
 class ProgramMissing(GeometryError):
-    """A program that draws is not installed here, or not reachable; the detail says how to have it."""
+    """An external CAD program is not installed here or not reachable; the detail states how to install it."""
 
 
 class AnalysisError(Exception):
-    """A solid that cannot be analysed as requested.
+    """The solid cannot be analysed as requested.
 
-    `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`, `solver`; `name` is what was analysed. It
-    survives pickling.
+    `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`, `solver`; `name` is the analysed solid.
+    The exception can be pickled.
     """
 
     def __init__(self, code: str, detail: str, name: str = "model") -> None:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Sequence
 
-from cad.deflection import MESHES, deflection_of, plain_kind
+from cadquery import Compound
+
 from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
+from cad.file_kinds import BY_PART, bodies_of, deflection_of, plain_kind
 from cad.gltf import write_glb
 from cad.header import Header, read_header
 from cad.mesh import Mesh, closed_mesh, mesh
 from cad.picture import write_png
 from cad.step import Body, read_step
 from cad.stl import write_stl
+from cad.threemf import write_3mf
 from cad.validation import with_validation
 
 VALIDATED = "validated.step"
@@ -25,6 +29,8 @@ MEDIA_TYPES = {
     "step": "model/step",
     "glb": "model/gltf-binary",
     "stl": "model/stl",
+    "3mf": "model/3mf",
+    "brep": "application/x-brep",
     "drawing.svg": "image/svg+xml",
     "svg": "image/svg+xml",
     "png": "image/png",
@@ -38,24 +44,24 @@ DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
 
 
 def derive(step: bytes, kind: str) -> bytes:
-    """Return the file of that kind for a STEP file; equal STEP bytes give equal bytes.
+    """Return the file of a kind, derived from a STEP file; equal STEP bytes give equal bytes.
 
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape, or validation properties match no part.
+        If the bytes are not a STEP file or contain no shape, or validation properties match no part.
     KeyError
         If no such kind can be derived.
     InvalidInputs
-        If the deflection of a mesh does not suit the size of the bodies.
+        If the deflection of a mesh does not suit the size of the bodies, or no body has the part's name.
     GeometryError
         If a mesh has a gap.
     """
     if kind == VALIDATED:
         return with_validation(step)
-    bodies, header = read_step(step), read_header(step)
+    bodies, header = bodies_of(kind, read_step(step)), read_header(step)
     if (deflection := deflection_of(kind, bodies)) is None:
-        return _WRITERS[kind](bodies, header)
+        return _WRITERS[plain_kind(kind)](bodies, header)
     return _MESH_WRITERS[plain_kind(kind)](bodies, header, deflection)
 
 
@@ -71,14 +77,28 @@ def _write_stl(bodies: Sequence[Body], _header: Header | None, deflection: float
     return write_stl(_meshes(bodies, deflection))
 
 
+def _write_3mf(bodies: Sequence[Body], header: Header | None, deflection: float | None = None) -> bytes:
+    return write_3mf(_meshes(bodies, deflection), header.model if header else "model")
+
+
+def _write_brep(bodies: Sequence[Body], _header: Header | None) -> bytes:
+    """Return the shapes in OpenCASCADE's own text format: one alone as it is, several as a compound."""
+    shapes = [body.shape.moved(place) for body in bodies for place in body.places]
+    stream = io.BytesIO()
+    (shapes[0] if len(shapes) == 1 else Compound.makeCompound(shapes)).exportBrep(stream)
+    return stream.getvalue()
+
+
 def _meshes(bodies: Sequence[Body], deflection: float | None = None) -> list[Mesh]:
     return [closed_mesh(body, deflection) for body in bodies]
 
 
-_MESH_WRITERS: dict[str, MeshWriter] = {"glb": _write_glb, "stl": _write_stl}
+_MESH_WRITERS: dict[str, MeshWriter] = {"glb": _write_glb, "stl": _write_stl, "3mf": _write_3mf}
 _WRITERS: dict[str, Writer] = {
     "glb": _write_glb,
     "stl": _write_stl,
+    "3mf": _write_3mf,
+    "brep": _write_brep,
     "drawing.svg": write_drawing,
     "svg": lambda bodies, _header: write_svg(bodies),
     "png": lambda bodies, _header: write_png([mesh(body) for body in bodies]),
@@ -91,5 +111,5 @@ DERIVED = (VALIDATED, *_WRITERS)
 
 
 def is_derived(kind: str) -> bool:
-    """Return whether a kind, perhaps with a deflection, is derived from the STEP file."""
-    return kind in DERIVED or plain_kind(kind) in MESHES
+    """Return whether a kind, perhaps with options, is derived from the STEP file."""
+    return kind in DERIVED or plain_kind(kind) in BY_PART

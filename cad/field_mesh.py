@@ -1,7 +1,7 @@
-"""A field painted on a solid: its GLB file with a colour at each vertex, and a shaded picture of it.
+"""A field shown on a solid: its GLB file with a colour at each vertex, and a shaded picture.
 
-The file comes from `cad.gltf`, for a model that is one body at one position. Its triangles are kept; glTF's
-COLOR_0 and a white material are added. Colours run from violet (lowest value) through green to yellow
+`cad.gltf` writes the GLB file of a model that is one body at one position. This module keeps its triangles
+and adds glTF's COLOR_0 and a white material. Colours range from violet (lowest value) through green to yellow
 (highest); the part is grey where the field has no value.
 """
 
@@ -34,7 +34,7 @@ _MATT = {"baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughn
 
 @dataclass(frozen=True)
 class Field:
-    """A value at every corner of a surface; NaN where there is none."""
+    """A field: a value at every vertex of a surface, NaN where there is none."""
 
     title: str
     unit: str
@@ -43,7 +43,7 @@ class Field:
     high: float
 
     def colours(self) -> Array:
-        """Return the colour of every corner, as on a screen (sRGB), 0 to 1."""
+        """Return the colour of every vertex in sRGB, from 0 to 1."""
         span = self.high - self.low
         share = (self.values - self.low) / span if span > 0 else np.zeros_like(self.values)
         there = np.isfinite(share)
@@ -54,7 +54,7 @@ class Field:
 
 
 class Glb:
-    """A GLB file of one body in one place, as arrays in millimetres."""
+    """The GLB file of one body at one position, as arrays in millimetres."""
 
     def __init__(self, data: bytes) -> None:
         length = int.from_bytes(data[12:16], "little")
@@ -67,26 +67,26 @@ class Glb:
 
     @cached_property
     def points(self) -> Array:
-        """Return the corners (n, 3) [mm] in the axes of the model."""
+        """Return the vertices (n, 3) [mm] in the axes of the model."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
         own = self._read(self.drawn["attributes"]["POSITION"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T + matrix[:3, 3])
 
     @cached_property
     def normals(self) -> Array:
-        """Return the normals of the corners, outwards (n, 3)."""
+        """Return the outward normals of the vertices (n, 3)."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
         own = self._read(self.drawn["attributes"]["NORMAL"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T)
 
     @cached_property
     def triangles(self) -> Integers:
-        """Return the numbers of corners (m, 3)."""
+        """Return the vertex numbers of the triangles (m, 3)."""
         return self._read(self.drawn["indices"], np.uint32, 3).astype(np.intp)
 
     @cached_property
     def faces(self) -> Integers:
-        """Return the face of every corner (n,): faces of the solid share no corners."""
+        """Return the face number of every vertex (n,); faces of the solid share no vertices."""
         a, b, c = self.triangles.T
         one, other = np.concatenate([a, b]), np.concatenate([b, c])
         joined = coo_array((np.ones(len(one), dtype=np.int8), (one, other)), shape=(len(self.points),) * 2)
@@ -99,7 +99,7 @@ class Glb:
         return np.asarray(values.reshape(-1, columns))
 
     def painted(self, field: Field) -> bytes:
-        """Return the same file with the colours of a field; its root node says what they mean."""
+        """Return the GLB file with the colours of a field; its root node states their meaning."""
         linear = (field.colours() ** 2.2).astype(np.float32)  # glTF wants linear light
         about = json.loads(json.dumps(self.about))
         data = linear.tobytes()

@@ -1,4 +1,4 @@
-"""Names of a design's files: `{design}_{model}_r{revision}`, in ASCII and in the user's letters."""
+"""File names of a design: `{design}_{model}_r{revision}`, in ASCII and in the user's spelling."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ _OTHER = re.compile(r"[^A-Za-z0-9.-]+")
 
 
 def plain_name(text: str) -> str:
-    """Return a text as part of a file's name in ASCII: accents are left out, other signs become `_`."""
+    """Return a text as part of a file name in ASCII: accents are removed, other characters become `_`."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     return _ends(_OTHER.sub("_", letters))
 
 
 def name(text: str) -> str:
-    """A text as part of a file's name: letters and digits of any alphabet stay, other signs become `_`."""
+    """Return a text as part of a file name: letters and digits of any alphabet stay, others become `_`."""
     signs = (sign if _stays(sign) else "_" for sign in unicodedata.normalize("NFC", text))
     return _ends(re.sub("_+", "_", "".join(signs)))
 
@@ -31,10 +31,10 @@ def _ends(text: str) -> str:
 
 
 def stem(design: str, model: str, revision: int) -> str:
-    """Return the name of a model's file without its ending, in ASCII."""
+    """Return the file name of a model without its extension, in ASCII."""
     return f"{plain_name(design)}_{model}_r{revision}"
 
 
 def wide_stem(design: str, model: str, revision: int) -> str:
-    """Return the name of a model's file without its ending, in the letters of its user."""
+    """Return the file name of a model without its extension, in the user's spelling."""
     return f"{name(design)}_{model}_r{revision}"

@@ -1,6 +1,7 @@
-"""The plain sizes of a throw, and the positions of its pin and fillets.
+"""The main sizes of a throw, and the positions of its pin and fillets.
 
-This module needs no kernel: finite elements bring their own kernel, and one process must not load both.
+This module does not import the geometry kernel: finite elements load their own, and one process must not load
+both.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ _SECTORS = 24
 
 @dataclass(frozen=True)
 class Ring:
-    """A fillet round a cylinder beside a web: between two radii about an axis and two levels of z [mm]."""
+    """The region of a fillet at a web: between two radii about an axis and two levels of z [mm]."""
 
     axis: float  # x of the axis
     inner: float
@@ -27,20 +28,20 @@ class Ring:
     high: float
 
     def holds(self, points: Array) -> Array:
-        """Return whether points [n, 3] lie in it."""
+        """Return whether points [n, 3] lie in the region."""
         away = np.hypot(points[:, 0] - self.axis, points[:, 1])
         inside = (away >= self.inner) & (away <= self.outer)
         return np.asarray(inside & (points[:, 2] >= self.low) & (points[:, 2] <= self.high))
 
     def sectors(self, points: Array) -> Integers:
-        """In which of the sectors round the axis points [n, 3] lie."""
+        """Return the numbers of the sectors round the axis in which points [n, 3] lie."""
         angle = np.arctan2(points[:, 1], points[:, 0] - self.axis) % (2 * pi)
         return np.asarray(np.minimum(angle * _SECTORS / (2 * pi), _SECTORS - 1).astype(int))
 
 
 @dataclass(frozen=True)
 class Crank:
-    """The plain sizes of a throw that tell where its pin and its fillets are [mm]; z = 0 is mid-pin."""
+    """The sizes of a throw that determine the positions of its pin and fillets [mm]; z = 0 is mid-pin."""
 
     throw: float
     pin_radius: float
@@ -51,11 +52,11 @@ class Crank:
 
     @property
     def plain(self) -> float:
-        """Return the length of the pin between its fillets."""
+        """Return the length of the cylindrical part of the pin between its fillets."""
         return self.pin_length - 2 * self.fillet
 
     def rings(self) -> tuple[Ring, ...]:
-        """Return the four fillets: of the pin and of the journals, at the lower and the upper web."""
+        """Return the regions of the four fillets: of pin and journals, at the lower and the upper web."""
         margin = _MARGIN * self.fillet
         half, outer = self.pin_length / 2, self.pin_length / 2 + self.web_thickness
         spans = ((self.throw, self.pin_radius, half - self.fillet), (0.0, self.journal_radius, outer))

@@ -21,7 +21,7 @@ _Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # column 
 
 
 def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
-    """Return meshes as one GLB file; its root node has the title, every other the name of its body there."""
+    """Return meshes as one GLB file; its root node has the title, every other node the name of its body."""
     buffers = _Buffers()
     nodes = [
         _node(i, place, name)
@@ -45,7 +45,7 @@ def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
 
 
 class _Buffers:
-    """The binary chunk as it grows, with its views and accessors."""
+    """The binary chunk under construction, with its views and accessors."""
 
     def __init__(self) -> None:
         self.chunks: list[bytes] = []
@@ -53,7 +53,7 @@ class _Buffers:
         self.accessors: list[dict[str, Any]] = []
 
     def add(self, values: NDArray[Any], target: int, kind: str, **more: Any) -> int:
-        """Append an array; returns the number of its accessor."""
+        """Append an array and return the number of its accessor."""
         data = values.tobytes()
         start = sum(map(len, self.chunks))
         self.views.append({"buffer": 0, "byteOffset": start, "byteLength": len(data), "target": target})
@@ -64,7 +64,7 @@ class _Buffers:
         return len(self.accessors) - 1
 
     def described(self) -> dict[str, Any]:
-        """Return the buffers, views and accessors as glTF names them."""
+        """Return the buffers, views and accessors as glTF's JSON describes them."""
         length = sum(map(len, self.chunks))
         return {
             "buffers": [{"byteLength": length}],
@@ -100,7 +100,7 @@ def _material(one: Mesh) -> dict[str, Any]:
 
 
 def framed(text: bytes, binary: bytes) -> bytes:
-    """Return the 12-byte header and both chunks, padded to four bytes."""
+    """Return the GLB file: the 12-byte header and both chunks, padded to four bytes."""
     text += b" " * (-len(text) % 4)
     binary += b"\0" * (-len(binary) % 4)
     chunks = [(text, b"JSON"), (binary, b"BIN\0")]

@@ -1,9 +1,9 @@
 r"""The header of a STEP file, which identifies the model: its id, version, parameters and build.
 
-It is written and read as ISO 10303-21 prescribes: quotes and backslashes are doubled, characters outside
-ASCII are written as \X2\…\X0\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each
-parameter has its own string, and a long list has several. The time is constant, because the same parameters
-must give the same bytes.
+The header follows ISO 10303-21: quotes and backslashes are doubled, characters outside ASCII are written as
+\X2\…\X0\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each parameter has its own
+string, and a long list has several. The time stamp is constant, because the same parameters must give the
+same bytes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ _TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8
 
 @dataclass(frozen=True)
 class Header:
-    """The header of a STEP file of ours; parameters as text, such as `{"inner_diameter": "50 mm"}`."""
+    """The header of a STEP file from this program.
+
+    Parameters are text, such as `{"inner_diameter": "50 mm"}`.
+    """
 
     model: str
     version: int
@@ -33,7 +36,7 @@ class Header:
 
     @property
     def title(self) -> str:
-        """Return one line for people."""
+        """Return a title of one line for readers."""
         return f"Crankwright {self.model} version {self.version}"
 
 
@@ -54,7 +57,7 @@ def write_header(header: Header, schema: str, kernel: str) -> str:
 
 
 def read_header(step: bytes) -> Header | None:
-    """Read the header of a STEP file, or None if it is not one of ours."""
+    """Return the header of a STEP file; None if the file does not come from this program."""
     strings = [plain(string) for string in description(step[:LONGEST_HEADER].decode("latin-1"))]
     title = _TITLE.fullmatch(strings[0]) if strings else None
     pairs = _joined(strings[1:])
@@ -65,13 +68,13 @@ def read_header(step: bytes) -> Header | None:
 
 
 def _continued(name: str, value: str) -> list[str]:
-    """Return the further strings of a long value: each repeats the parameter's name with a plus."""
+    """Return the further strings of a long value; each repeats the parameter name with a plus sign."""
     places = range(_LONGEST_PART, len(value), _LONGEST_PART)
     return [f"{name}+: {value[at : at + _LONGEST_PART]}" for at in places]
 
 
 def _joined(strings: list[str]) -> dict[str, str]:
-    """Return the parameters from their strings."""
+    """Return the parameters, joined from their strings."""
     parts: dict[str, list[str]] = {}
     for string in strings:
         name, _, value = string.partition(": ")

@@ -1,14 +1,16 @@
-"""Models that a team imports: drawn by another program, or the fixed shape of a STEP file.
+"""Models that a team imports: built by another CAD program, or the fixed shape of a STEP file.
 
-Such a model is a description: which program draws it from which file, and its parameters. The description
-makes a class that stands beside the built-in models. `take` passes the drawn shape to a model; from then on
-it is treated like any model: a STEP file is written, read again, checked and measured.
+A description defines such a model: the program that builds it, its file, and its parameters. From the
+description a class is created, which is used like a built-in model. `take` passes the finished shape to the
+model; from then on the model is treated like any other: a STEP file is written, read back, checked and
+measured.
 
-Its volume has no closed form, so the volume of the drawn shape replaces it: this verifies the file against
-the drawing, but not that the program drew the right shape. A parameter is read back if a trial at the import
-showed that it is a diameter, a radius or a distance between parallel planes of the solid.
+There is no closed form of the volume, so the volume of the shape from the program replaces it. This verifies
+the STEP file against that shape, but not that the program built the right shape. A parameter is read back if
+a trial at the import showed that it is a diameter, a radius or a distance between parallel planes of the
+solid.
 
-This module imports the kernel only to draw; a calculation only reads descriptions.
+This module imports the kernel only when it builds a shape; a calculation only reads descriptions.
 """
 
 from __future__ import annotations
@@ -49,7 +51,7 @@ _DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of an imported model; numbers are in its unit."""
+    """A parameter of an imported model; its numbers are in its own unit."""
 
     name: str
     words: str
@@ -63,7 +65,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Description:
-    """The whole of an imported model, from which its class is made."""
+    """Complete description of an imported model, from which its class is created."""
 
     program: Program
     file: str  # SHA-256 of the file that the program opens, or of the manifest
@@ -78,20 +80,20 @@ class Description:
         return json.dumps(asdict(self), sort_keys=True, ensure_ascii=False)
 
     def digest(self) -> str:
-        """Return SHA-256 of the description, which names the file by its own hash."""
+        """Return the SHA-256 of the description; the description contains the hash of the file."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """Return the classes of which its own is made."""
+        """Return the base classes of the class to be created."""
         return (ImportedModel,)
 
     def example(self) -> Mapping[str, Any]:
-        """Return a valid set of parameters: as in the file."""
+        """Return a valid set of parameters, with the values of the file."""
         return {one.name: {"value": _plain(one.value), "unit": one.unit} for one in self.parameters[:1]}
 
     @property
     def trust(self) -> str:
-        """Return the limits of the checks on its solids, in plain words."""
+        """Return the limits of the checks on the solids, in plain words."""
         if self.program == "step":
             return (
                 "lower: the shape is that of the STEP file as it was sent. It is checked to be valid solids, "
@@ -110,7 +112,7 @@ class Description:
 
 @dataclass(frozen=True)
 class DrawnPart:
-    """One solid as a program drew it: in the kernel's own format, with the volume that the program states."""
+    """One solid from a program, in the kernel's own format, with the volume that the program states."""
 
     name: str
     brep: bytes
@@ -119,7 +121,7 @@ class DrawnPart:
 
 @dataclass(frozen=True)
 class ProgramResult:
-    """The answer of a program: its solids, or a STEP file."""
+    """The result of a program: its solids, or a STEP file."""
 
     parts: tuple[DrawnPart, ...] = ()
     step: bytes = field(default=b"", repr=False)
@@ -128,16 +130,16 @@ class ProgramResult:
 
 
 class ImportedModel(CadModel):
-    """Base of the models that a team imports."""
+    """Base class of the models that a team imports."""
 
     imported: ClassVar[Description]
 
     def take(self, drawn: ProgramResult) -> None:
-        """Be what a program drew for these parameters."""
+        """Store the shape that the program built for these parameters."""
         vars(self)[_DRAWN] = drawn
 
     def build(self) -> tuple[Part, ...]:
-        """Return the solids that the program drew."""
+        """Return the solids that the program built."""
         if _PARTS not in vars(self):
             drawn: ProgramResult | None = vars(self).get(_DRAWN)
             if drawn is None:
@@ -151,14 +153,14 @@ class ImportedModel(CadModel):
         return parts_as_drawn
 
     def bounding_box(self) -> Box:
-        """Return the box of the solids as drawn."""
+        """Return the bounding box of the solids from the program."""
         from cad.inspect import bounding_box
         from cad.step import Body
 
         return bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in self.build())
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
-        """Return the parameters that show, each as the measure of its kind that comes closest to it."""
+        """Return each readable parameter as the measured size of its kind that is closest to it."""
         sizes = sizes_of(seen.values())
         read: dict[str, Dimension] = {}
         for one in self.imported.parameters:
@@ -174,12 +176,12 @@ class ImportedModel(CadModel):
 
 
 def imported_description(cls: type[CadModel]) -> Description | None:
-    """Return the description of a model that a team imported; None of others."""
+    """Return the description of an imported model; None for other models."""
     return cls.imported if issubclass(cls, ImportedModel) else None
 
 
 def sizes_of(seen: Iterable[Any]) -> dict[str, list[float]]:
-    """Return the diameters of cylinders, and distances of parallel planes [mm], of some parts."""
+    """Return the diameters of cylinders and the distances between parallel planes [mm] of some parts."""
     diameters, distances = set[float](), set[float]()
     for part in seen:
         diameters.update(round(cylinder.diameter, 9) for cylinder in part.cylinders)
@@ -199,22 +201,22 @@ def _distances(planes: Any) -> Iterator[float]:
 
 
 def _factor(one: Parameter) -> float:
-    """Return the ratio of a size on the solid [mm] to the parameter's number."""
+    """Return the ratio of a size on the solid [mm] to the number of the parameter."""
     return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
 
 
 def shows(one: Parameter, sizes: Sizes) -> bool:
-    """Return whether the solid has the size that a parameter is said to be."""
+    """Return whether the solid has the size that a parameter stands for."""
     return bool(one.role) and _has(sizes[_SIZE[one.role]], _factor(one) * one.value)
 
 
 def role_of(
     old: float, new: float, before: Mapping[str, list[float]], after: Mapping[str, list[float]]
 ) -> Role:
-    """Return how a length is measured, from the solid's sizes before and after a change of it alone.
+    """Return how to measure a parameter, from the solid's sizes before and after a change of it alone.
 
-    It is a size of a kind if that size was there before with the old value, is there after with the new one,
-    and was not there before with the new one.
+    A parameter is a size of a kind if the solid has the old value before the change, the new value after it,
+    and did not have the new value before.
     """
     roles: tuple[tuple[Role, float], ...] = (("diameter", 1), ("radius", 2), ("distance", 1))
     for role, factor in roles:
@@ -233,14 +235,14 @@ def _has(sizes: Iterable[float], wanted: float) -> bool:
 
 
 def trial_sizes(drawn: ProgramResult) -> dict[str, list[float]]:
-    """Return the sizes of what a program drew; runs in a process with the kernel."""
+    """Return the sizes of the shape from a program; this runs in a process with the kernel."""
     from cad.surfaces import look
 
     return sizes_of(look(part.solid) for part in parts_of(drawn))
 
 
 def parts_of(drawn: ProgramResult) -> Iterator[Part]:
-    """Yield what a program drew, as parts with names of their own; raises as `parts_of_step` does."""
+    """Yield the shape from a program as parts with unique names; raises as `parts_of_step` does."""
     if drawn.step:
         yield from parts_of_step(drawn.step)
         return
@@ -250,14 +252,14 @@ def parts_of(drawn: ProgramResult) -> Iterator[Part]:
 
 
 def parts_of_step(step: bytes) -> Iterator[Part]:
-    """Yield the solids of a STEP file as parts: those of equal names get numbers.
+    """Yield the solids of a STEP file as parts; solids with equal names get numbers.
 
     Raises
     ------
     UnreadableStep
-        If it is not a STEP file, or holds no shape.
+        If the bytes are not a STEP file, or the file contains no shape.
     GeometryError
-        If it holds no solid.
+        If the file contains no solid.
     """
     from cad.step import read_step
 
@@ -282,7 +284,7 @@ def _part(name: str, drawn: DrawnPart) -> Part:
 
 
 def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
-    """Return a part whose volume is measured, because no formula states it."""
+    """Return a part with its measured volume, because no formula states it."""
     from cad.inspect import measure
     from cad.step import Body
 
@@ -295,7 +297,7 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
 
 
 def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float | None) -> None:
-    """Compare the volume of all parts with the one that the program states, if it does.
+    """Check the volume of all parts against the volume that the program states, if there is one.
 
     Raises
     ------
@@ -309,23 +311,26 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
 
 
 def _plain(value: float) -> float:
-    """Return a whole number as one, so that a form shows `50 mm`, not `50.0 mm`."""
+    """Return a whole number as an integer, so that a form shows `50 mm`, not `50.0 mm`."""
     return int(value) if float(value).is_integer() else value
 
 
 def attribute_of(name: str) -> str:
-    """Return the attribute of a parameter: the language reserves many a plain word, such as `build`."""
+    """Return the attribute name of a parameter; the language reserves many plain words, such as `build`."""
     return f"of_{name}"
 
 
 class PartNames:
-    """Names of parts as STEP files keep them, each once: printable, without quotes, not empty, not long."""
+    """Names of parts as STEP files store them: unique, printable, without quotes, not empty, not long."""
 
     def __init__(self) -> None:
         self._taken, self._numbers = set[str](), dict[str, int]()
 
     def unique(self, name: str) -> str:
-        """Return the name that is closest to this one, with a number behind it if another part has that."""
+        """Return a name as close as possible to the given one.
+
+        A number is added if another part has that name.
+        """
         signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
         plain = unique = " ".join("".join(signs).split()) or "part"
         number = self._numbers.get(plain, 1)

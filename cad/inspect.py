@@ -1,4 +1,4 @@
-"""Measure a finished STEP file: the bytes that a user gets are read again and measured.
+"""Measure a finished STEP file: read back the bytes that a user gets, and measure them.
 
 This module does not use the built shape. A part at several positions is measured once.
 """
@@ -41,7 +41,7 @@ _PRECISION = 1e-6  # [mm]
 
 @dataclass(frozen=True)
 class BodyMeasures:
-    """One body: mass properties at density 1."""
+    """Mass properties of one body at density 1."""
 
     solids: int
     valid: bool
@@ -51,7 +51,7 @@ class BodyMeasures:
 
 
 def measure(body: Body) -> BodyMeasures:
-    """Measure one body in its own coordinates."""
+    """Return the mass properties of one body in its own coordinates."""
     shape = body.shape.wrapped
     properties = GProp_GProps()
     # Shape.Volume() integrates to no stated accuracy and is off by 5e-5 on a half shell. The accuracy here is
@@ -68,14 +68,17 @@ def measure(body: Body) -> BodyMeasures:
 
 
 def look_at(bodies: Iterable[Body]) -> dict[str, PartSurfaces]:
-    """Return the surfaces of every body, by its name."""
+    """Return the surfaces of every body by its name."""
     return {body.name: look(body.shape, len(body.places), body.name) for body in bodies}
 
 
 def summarise(
     bodies: Sequence[Body], measured: Sequence[BodyMeasures], densities: Mapping[str, float], box: Box
 ) -> dict[str, float]:
-    """Return measures of the whole, in the units of `MEASURES`; densities [kg/m³] by the name of the body."""
+    """Return the measures of all bodies together, in the units of `MEASURES`.
+
+    Densities [kg/m³] are by body name.
+    """
     standing = [
         _stand(one, place, densities[body.name] * 1e-9)
         for body, one in zip(bodies, measured, strict=True)
@@ -96,7 +99,7 @@ def summarise(
 
 
 def bounding_box(bodies: Iterable[Body]) -> Box:
-    """Return the box of all bodies where they stand [mm], as close as the kernel finds it."""
+    """Return the bounding box of all bodies at their positions [mm], as tight as the kernel computes it."""
     faces = [
         face.wrapped.Moved(place.wrapped)  # the kernel's own, for CadQuery's asks the types of its arguments
         for body in bodies
@@ -119,24 +122,27 @@ def bounding_box(bodies: Iterable[Body]) -> Box:
 
 
 def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return a point without the margin of 1e-7 that the kernel adds to the boxes of cut faces."""
+    """Return a corner without the margin of 1e-7 that the kernel adds to the boxes of cut faces."""
     x, y, z = (round(value, 6) + 0.0 for value in corner)
     return x, y, z
 
 
 def _stand(one: BodyMeasures, place: Location, density: float) -> tuple[float, Array, Array]:
-    """Return mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
+    """Return mass [kg], centre [mm] and inertia about the centre [kg·mm²] of a body at a position.
+
+    Density in kg/mm³.
+    """
     turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T
 
 
 def _steiner(mass: float, arm: Array) -> Array:
-    """Return the inertia that a mass at the end of an arm adds (parallel axes)."""
+    """Return the inertia that a mass at the end of an arm adds (parallel axis theorem)."""
     return mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
 
 def _widened(box: Bnd_Box) -> Bnd_Box:
-    """Return a box larger by the kernel's precision, by which it widens loose boxes."""
+    """Return a box enlarged by the kernel's tolerance, as the kernel enlarges its loose boxes."""
     room = Bnd_Box(box.CornerMin(), box.CornerMax())
     room.Enlarge(_PRECISION)
     return room

@@ -14,18 +14,18 @@ _NOISE = 12  # decimals of an item in its unit; a sine's rounding error stays be
 
 
 def written(values: Iterable[float], unit: str) -> str:
-    """Return a list as text: twelve digits, and no noise of the last digits about zero."""
+    """Return a list as text with twelve digits; rounding noise about zero is removed."""
     inside = ", ".join(f"{number:.12g}" for number in rounded(values))
     return f"[{inside}]" if unit == "1" else f"[{inside}] {unit}"
 
 
 def rounded(values: Iterable[float]) -> list[float]:
-    """Return the items as they are written, as numbers."""
+    """Return the items as numbers, rounded as in their text."""
     return [float(f"{round(float(value), _NOISE) + 0.0:.12g}") for value in values]
 
 
 def listed(raw: Any) -> Any:
-    """Return a text that is a list as the quantity that it means; anything else as it is."""
+    """Return a text that contains a list as a quantity; return anything else unchanged."""
     if not isinstance(raw, str) or len(raw) > LONGEST_TEXT or not (match := _LIST.fullmatch(raw)):
         return raw
     try:

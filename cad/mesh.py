@@ -1,4 +1,4 @@
-"""Triangles of the bodies in a STEP file as arrays, from which STL, GLB and pictures are written.
+"""Triangle meshes of the bodies in a STEP file as arrays, from which STL, GLB and pictures are written.
 
 A closed mesh has no gap: once points that are equal in single precision are merged, each edge belongs to
 exactly one other triangle, in the opposite direction. No triangle has two corners that are equal in single
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from cadquery import Location, Shape
+from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_Orientation
@@ -31,7 +32,10 @@ _SAFETY = 0.5  # the kernel's facets lay off by up to 1.73 times of what it was 
 
 @dataclass(frozen=True)
 class Mesh:
-    """One body, in its own coordinates [mm]; its normals are smooth within a face, sharp between faces."""
+    """The mesh of one body in its own coordinates [mm].
+
+    Normals are smooth within a face and sharp between faces.
+    """
 
     name: str
     colour: Colour
@@ -43,12 +47,12 @@ class Mesh:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the name of the body at each of its places, as those of `cad.model.Part`."""
+        """Return the name of the body at each of its positions, as `cad.model.Part` does."""
         return names_at(self.name, len(self.places))
 
 
 def mesh(body: Body, deflection: float | None = None) -> Mesh:
-    """Triangulate one body; `deflection` [mm] is how far a facet may lie from the true surface."""
+    """Triangulate one body; `deflection` [mm] is the largest distance of a facet from the true surface."""
     if deflection is None:
         size = body.shape.BoundingBox().DiagonalLength
         return _triangulated(body, RELATIVE_TOLERANCE * size, ANGULAR_TOLERANCE)
@@ -56,7 +60,7 @@ def mesh(body: Body, deflection: float | None = None) -> Mesh:
 
 
 def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
-    """Triangulate one body without a gap, more finely than asked for where that takes it.
+    """Triangulate one body without a gap; the mesh is finer than requested if that is necessary.
 
     Raises
     ------
@@ -76,30 +80,30 @@ def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
 
 
 def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
-    """Return the kernel's triangles [mm, rad], without those that are none."""
+    """Return the kernel's triangles [mm, rad], without degenerate ones."""
     BRepMesh_IncrementalMesh(body.shape.wrapped, linear, False, angular, False)
     return _without_collapsed(_joined(body, list(_face_meshes(body.shape))))
 
 
 def is_closed(one: Mesh) -> bool:
-    """Return whether each edge of a triangle is that of exactly one other, the other way round."""
-    corners = _welded(one)
+    """Return whether each edge of a triangle belongs to exactly one other triangle, in reverse."""
+    corners = welded(one)[1]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     count = int(corners.max()) + 1
     there, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
     return bool(np.array_equal(np.unique(there), np.sort(back)))
 
 
-def _welded(one: Mesh) -> Integers:
-    """Return the corners of the triangles (m, 3), where points that are equal in single precision are one."""
+def welded(one: Mesh) -> tuple[NDArray[np.float32], Integers]:
+    """Return points (p, 3) [mm] and corners of triangles (m, 3); points equal in single precision are one."""
     single = np.ascontiguousarray(one.points.astype(np.float32) + np.float32(0.0))  # without negative zeros
-    _, numbers = np.unique(single.view("V12").ravel(), return_inverse=True)
-    return numbers[one.triangles].astype(np.int64)
+    _, first, numbers = np.unique(single.view("V12").ravel(), return_index=True, return_inverse=True)
+    return single[first], numbers[one.triangles].astype(np.int64)
 
 
 def _without_collapsed(one: Mesh) -> Mesh:
-    """Return a mesh without the triangles of which corners coincide, as at the poles of a sphere."""
-    a, b, c = _welded(one).T
+    """Return a mesh without triangles whose vertices coincide, as at the poles of a sphere."""
+    a, b, c = welded(one)[1].T
     kept = (a != b) & (b != c) & (c != a)
     return one if kept.all() else replace(one, triangles=one.triangles[kept], faces=one.faces[kept])
 
@@ -118,7 +122,7 @@ def _joined(body: Body, pieces: Sequence[tuple[Array, Array, Integers]]) -> Mesh
 
 
 def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Array, Array]]:
-    """Yield each mesh at each of its places: the mesh, its points and its normals there."""
+    """Yield each mesh at each of its positions: the mesh, with its points and normals there."""
     for one in meshes:
         for place in one.places:
             turn, shift = rigid(place)

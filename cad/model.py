@@ -1,22 +1,23 @@
 """CadModel: a template with a shape.
 
-A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template. It
-also has the four members below, of which only the first draws. A fifth, `toleranced`, names the dimensions
-that may have limits in the STEP file, with their geometric tolerances (`cad.tolerances`). The members:
+A model is one file, `<id>_v<version>.py`, with one class. It declares its parameters like any template. It
+also has the four members below; only the first one builds a shape. A fifth member, `toleranced`, names the
+dimensions that may have limits in the STEP file, with their geometric tolerances (`cad.tolerances`).
 
-- `build()`: its parts, each one solid with its required volume, from a closed form that is independent of the
-  kernel. OpenCASCADE may return a wrong solid as valid (a drilling 10 nm wider than its groove removed 12 %
-  of a bearing shell); the volume reveals it.
-- `bounding_box()`: the box that the parts together must fill.
-- `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file. The
-  faces from which a `cad.surfaces.Size` is read carry that parameter, in the STEP file and on the drawing.
-- `example`: a valid set of parameters.
+- `build()` returns the parts. Each is one solid with its required volume, from a closed form that is
+  independent of the kernel. OpenCASCADE may return a wrong solid as valid (a drilling 10 nm wider than its
+  groove removed 12 % of a bearing shell); the volume reveals it.
+- `bounding_box()` returns the box that the parts together must fill.
+- `dimensions(seen)` returns the parameters, read back from the surfaces of the finished STEP file. The faces
+  from which a `cad.surfaces.Size` is read belong to that parameter in the STEP file and on the drawing.
+- `example` is a valid set of parameters.
 
-A parameter is one number, or a list where it is declared as a `curve`; never an array of points.
+A parameter is one number, or a list if it is declared as a `curve`, but never an array of points.
 
-Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
+Shapes are built in millimetres, with z along the shaft and +y towards the crown.
 
-This module does not import the kernel: a calculation asks whether a template is a model, but never draws one.
+This module does not import the kernel, because a calculation checks whether a template is a model but never
+builds its shape.
 """
 
 from __future__ import annotations
@@ -54,16 +55,16 @@ BRONZE: Colour = (0.80, 0.62, 0.36)
 
 
 def material_named(name: str, density: float) -> str:
-    """Return a material by its name and density [kg/m³].
+    """Return the text for a material: its name and density [kg/m³].
 
-    One of no name that is as dense as steel is steel.
+    A material without a name that has the density of steel is steel.
     """
     name = name or ("steel" if isclose(density, STEEL_DENSITY, rel_tol=1e-6) else "")
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
 def names_at(name: str, places: int) -> tuple[str, ...]:
-    """Return the name of a part at each of its places; the name alone if there is only one."""
+    """Return the name of a part at each of its positions; the plain name if there is only one position."""
     return (name,) if places == 1 else tuple(f"{name}_{i}" for i in range(1, places + 1))
 
 
@@ -76,7 +77,7 @@ def _at_origin() -> tuple[Location, ...]:
 
 @dataclass(frozen=True)
 class Part:
-    """One solid of a model, at one or several places."""
+    """One solid of a model, at one or several positions."""
 
     name: str
     shape: Shape
@@ -90,7 +91,7 @@ class Part:
 
     @property
     def solid(self) -> Shape:
-        """Return the one solid of the shape, which some operations of the kernel wrap in a compound.
+        """Return the single solid of the shape, which some kernel operations wrap in a compound.
 
         Raises
         ------
@@ -105,18 +106,18 @@ class Part:
 
     @property
     def made_of(self) -> str:
-        """Return the material as drawings name it, with the density by which the mass is computed."""
+        """Return the material as drawings name it, with the density from which the mass is computed."""
         return material_named(self.material, self.density)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the name of the part at each of its places, as `ball_1` and `ball_2`."""
+        """Return the name of the part at each of its positions, such as `ball_1` and `ball_2`."""
         return names_at(self.name, len(self.places))
 
 
 @dataclass(frozen=True)
 class Box:
-    """A box along the axes [mm]."""
+    """A box whose sides are parallel to the axes [mm]."""
 
     low: tuple[float, float, float]
     high: tuple[float, float, float]
@@ -127,7 +128,7 @@ BETWEEN = {"clearance": "mm", "overlap": "mm**3"}
 
 
 class CadModel(TolerancedTemplate):
-    """Base of all models."""
+    """Base class of all models."""
 
     film_bore: ClassVar[str | None] = None
     """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
@@ -143,7 +144,7 @@ class CadModel(TolerancedTemplate):
     """Whether its parts are mated as in a machine, so that no two may overlap."""
 
     def build(self) -> tuple[Part, ...]:
-        """Return the parts, drawn from the parameters alone."""
+        """Return the parts, built from the parameters alone."""
         raise NotImplementedError
 
     def bounding_box(self) -> Box:
@@ -153,26 +154,26 @@ class CadModel(TolerancedTemplate):
     def component_of(self, part: str) -> str | None:
         """Return the fixed part of an assembly to which a solid belongs.
 
-        None of the solids of the model itself.
+        None for the solids of the model itself.
         """
         return None
 
     @classmethod
     def further_measures(cls) -> Mapping[str, str]:
-        """What is measured beside that of every model, with units: `seal_clearance` of an assembly's seal."""
+        """Return additional measures with their units, such as `seal_clearance` of a seal in an assembly."""
         return {}
 
     def may_overlap(self, one: str, other: str) -> bool:
-        """Return whether two solids, of which one is of a fixed part, may take the same space."""
+        """Return whether two solids may overlap; at least one of them belongs to a fixed part."""
         return False
 
     def shaft(self) -> Shaft | None:
-        """Return the places at which an analysis holds and loads the solid; None if it is not a shaft."""
+        """Return the positions at which an analysis holds and loads the solid; None if it is not a shaft."""
         return None
 
     @classmethod
     def is_throw(cls) -> bool:
-        """True if it is one throw of a crank, from mid-journal to mid-journal, which has `throw_sizes`."""
+        """Return whether the model is one throw of a crank, from mid-journal to mid-journal."""
         return False
 
     def throw_sizes(self) -> Crank | None:
@@ -180,17 +181,20 @@ class CadModel(TolerancedTemplate):
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
-        """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
+        """Return the parameters by API name [mm.
+
+        A count as 1] that can be read from the parts of the file.
+        """
         raise NotImplementedError
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a model from typed inputs; of a list also its text, `[0, 180] deg`.
+        """Return a model from typed inputs; a list may be given as text, `[0, 180] deg`.
 
         Raises
         ------
         InvalidInputs
-            Naming all that is wrong at once.
+            Naming all wrong inputs at once.
         """
         read, wrong = dict(raw), []
         for name, value in raw.items():
@@ -206,7 +210,7 @@ class CadModel(TolerancedTemplate):
 
 
 def _no_list(name: str, text: str, unit: str) -> Fault:
-    """Return the fault of a text that begins as a list and is none, with what a list looks like."""
+    """Return the fault of a text that begins as a list but is not one, with an example of a list."""
     form = "[1.5, 2]" if unit == "1" else f"[1.5, 2] {unit}"
     if len(text) > LONGEST_TEXT:
         detail = (
@@ -217,7 +221,7 @@ def _no_list(name: str, text: str, unit: str) -> Fault:
 
 
 def arrays_of_points(model: CadModel) -> list[Fault]:
-    """Return the faults of a model as one solid: arrays of points, which only the language takes."""
+    """Return the faults of inputs that are arrays of points, because a model describes one solid."""
     values, faults = vars(model), []
     for name, declared in model.inputs.items():
         takes_list = isinstance(declared, Curve)
@@ -228,5 +232,5 @@ def arrays_of_points(model: CadModel) -> list[Fault]:
 
 
 def mm(length: Array | float) -> float:
-    """Return a length [m] as the millimetres in which CadQuery draws, free of the noise of the conversion."""
+    """Return a length [m] in millimetres, the unit of CadQuery, without rounding noise."""
     return round(float(length) * 1e3, 9)

@@ -1,6 +1,7 @@
-"""Classes of the models that a team imports, created from the text of their descriptions.
+"""Create the classes of imported models from the text of their descriptions.
 
-Each process creates a class once. The class pickles as its text, from which another process creates it again.
+Each process creates a class once. A class is pickled as its text, from which another process creates it
+again.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from templates.core.paper.mathml import named_symbol
 
 
 def description_of(text: str) -> Description:
-    """Return the description that `Description.text` wrote."""
+    """Return the description parsed from the text of `Description.text`."""
     read = json.loads(text)
     read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
     if read["program"] == "assembly":
@@ -28,12 +29,12 @@ def description_of(text: str) -> Description:
 
 
 class ImportedClass(type):
-    """The type of classes made from descriptions, by which pickle recognises them."""
+    """The metaclass of classes created from descriptions, by which pickle recognises them."""
 
 
 @lru_cache(maxsize=256)
 def class_of(text: str, id: str, version: int) -> type[ImportedModel]:
-    """Return the class of a description in this process, one for each text, id and version."""
+    """Return the class of a description in this process: one class for each text, id and version."""
     description = description_of(text)
     declared = {
         attribute_of(one.name): given(

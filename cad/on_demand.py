@@ -1,9 +1,9 @@
-"""Import the kernel on demand: a process that draws nothing, such as the server, never imports it.
+"""Import the kernel on demand, so that a process that builds no shape, such as the server, never imports it.
 
 CadQuery, OpenCASCADE and the drawing libraries take seconds to import, and more memory than the rest of the
 server, which needs only the parameters of a model. After `postpone`, modules import placeholders instead. The
-first use of a placeholder (a call, an attribute) imports the kernel and replaces every placeholder that a
-module holds by the real object. So every use works; only the import happens later.
+first use of a placeholder (a call, an attribute) imports the kernel and replaces all placeholders in all
+modules by the real objects. So all code works as usual, but the import happens later.
 
 Modules that need the kernel during their own import use `constant` and `once_loaded`.
 
@@ -32,7 +32,10 @@ DISPLAY = frozenset({"vtkmodules", "OCP.IVtk", "OCP.IVtkOCC", "OCP.IVtkVTK"})
 
 
 def postpone() -> None:
-    """Have modules that are imported from now on get stand-ins; nothing changes if the kernel is there."""
+    """Give placeholders to modules that are imported from now on.
+
+    Do nothing if the kernel is already loaded.
+    """
     if not is_loaded() and not is_postponed():
         sys.meta_path.insert(0, _finder)
 
@@ -43,17 +46,17 @@ def is_loaded() -> bool:
 
 
 def is_postponed() -> bool:
-    """Return whether modules get stand-ins."""
+    """Return whether modules get placeholders."""
     return _finder in sys.meta_path
 
 
 def constant(make: Callable[[], T]) -> T:
-    """Return a value that the kernel makes: at once, or a stand-in for it where the kernel is postponed."""
+    """Return a value that the kernel creates, or a placeholder for it if the kernel is postponed."""
     return cast(T, StandIn(make)) if is_postponed() else make()
 
 
 def once_loaded(act: Callable[[], object]) -> None:
-    """Call a function that sets up the kernel: at once, or when the kernel is loaded."""
+    """Call a function that sets up the kernel: now, or when the kernel is loaded."""
     if is_postponed():
         _following.append(act)
     else:
@@ -61,7 +64,7 @@ def once_loaded(act: Callable[[], object]) -> None:
 
 
 def load() -> None:
-    """Import the kernel and replace the stand-ins; a second call does nothing."""
+    """Import the kernel and replace the placeholders; a second call does nothing."""
     with _loading:
         if not is_postponed():
             return
@@ -77,7 +80,7 @@ def load() -> None:
 
 
 def _load_display() -> None:
-    """Import VTK for good; a second call does nothing."""
+    """Import VTK itself; a second call does nothing."""
     with _loading:
         if _display in sys.meta_path:
             sys.meta_path.remove(_display)
@@ -88,16 +91,16 @@ def _load_display() -> None:
 
 
 def _forget(kind: type[ModuleType]) -> None:
-    """Have the real modules imported in place of those of a kind."""
+    """Remove the placeholder modules of a kind, so that the real modules are imported."""
     for name in [name for name, module in sys.modules.items() if type(module) is kind]:
         del sys.modules[name]
 
 
 def _may_hold(name: str) -> bool:
-    """Return whether a module may hold stand-ins: not one of Python or of a package that has asked for none.
+    """Return whether a module may contain placeholders; modules of Python, for example, cannot.
 
-    To look through a namespace writes the reference counts of all that is in it. A forked process would copy
-    the memory of everything that its server has imported.
+    Looking through a namespace changes the reference counts of all its objects. A forked process would then
+    copy the memory of everything that its server has imported.
     """
     if name in sys.builtin_module_names:
         return False
@@ -107,7 +110,7 @@ def _may_hold(name: str) -> bool:
 
 
 def _complete(module: ModuleType, kind: type[StandIn]) -> None:
-    """Put the real things in place of the stand-ins of a kind in the namespace of a module."""
+    """Replace the placeholders of a kind in the namespace of a module by the real objects."""
     names = getattr(module, "__dict__", {})
     for name, value in list(names.items()):
         if type(value) is kind:
@@ -115,7 +118,10 @@ def _complete(module: ModuleType, kind: type[StandIn]) -> None:
 
 
 class StandIn:
-    """Something of the kernel that is not imported yet; it forwards what it is asked."""
+    """A placeholder for an object of the kernel that is not imported yet.
+
+    It forwards every use to the object.
+    """
 
     def __init__(self, make: Callable[[], object]) -> None:
         self.__dict__["_make"] = make
@@ -123,7 +129,7 @@ class StandIn:
     _load: Callable[[], None] = staticmethod(load)
 
     def real(self) -> object:
-        """Return the thing itself."""
+        """Return the real object."""
         self._load()
         if "_real" not in self.__dict__:
             make: Callable[[], object] = self.__dict__["_make"]
@@ -131,51 +137,57 @@ class StandIn:
         return self.__dict__["_real"]
 
     def __getattr__(self, name: str) -> object:
-        """Return an attribute of the thing itself."""
+        """Return an attribute of the real object."""
         return getattr(self.real(), name)
 
     def __call__(self, *args: object, **options: object) -> object:
-        """Call the thing itself, with the things themselves as arguments."""
+        """Call the real object; placeholders among the arguments are replaced by their real objects."""
         named = {name: _real(value) for name, value in options.items()}
         return cast(Callable[..., object], self.real())(*map(_real, args), **named)
 
     def __getitem__(self, key: object) -> object:
-        """Return an item of the thing itself, such as the value of a table."""
+        """Return an item of the real object, such as the value of a table."""
         return cast(Mapping[object, object], self.real())[key]
 
     def __iter__(self) -> Iterator[object]:
-        """Yield the items of the thing itself."""
+        """Yield the items of the real object."""
         return iter(cast(Iterable[object], self.real()))
 
     def __neg__(self) -> object:
-        """Return the opposite of the thing itself, such as of a direction."""
+        """Return the negative of the real object, such as the opposite of a direction."""
         return -cast(float, self.real())
 
     def __instancecheck__(self, instance: object) -> bool:
         """Return whether something is an instance of the class.
 
-        A kernel that is not loaded has no instances.
+        While the kernel is not loaded, there are no instances.
         """
         return not is_postponed() and isinstance(instance, cast(type, self.real()))
 
     def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[object, ...]:
-        """Return the class itself, where one inherits from it."""
+        """Return the real class if a class inherits from the placeholder."""
         return (self.real(),)
 
 
 class _DisplayStandIn(StandIn):
-    """Something of VTK, in a module of the kernel or of a team."""
+    """A placeholder for an object of VTK, in a module of the kernel or of a team."""
 
     _load = staticmethod(_load_display)
 
     def __getattr__(self, name: str) -> object:
-        """Return an attribute of the thing itself; none by which `typing` tells annotations apart."""
+        """Return an attribute of the real object.
+
+        Refuse the attributes by which `typing` recognises annotations.
+        """
         if name.startswith("__"):
             raise AttributeError(name)
         return super().__getattr__(name)
 
     def __instancecheck__(self, instance: object) -> bool:
-        """Return whether something is an instance of the class; before VTK is loaded there is none."""
+        """Return whether something is an instance of the class.
+
+        Before VTK is loaded there are no instances.
+        """
         return _display not in sys.meta_path and isinstance(instance, cast(type, self.real()))
 
 
@@ -184,7 +196,7 @@ def _real(value: object) -> object:
 
 
 class _Module(ModuleType):
-    """Stands in for a module of the kernel while others import names from it."""
+    """A placeholder for a module of the kernel while others import names from it."""
 
     def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
@@ -195,7 +207,7 @@ class _Module(ModuleType):
 
 
 class _DisplayModule(ModuleType):
-    """Stands in for a module of VTK, or of the kernel's part for it."""
+    """A placeholder for a module of VTK, or for the kernel's part that uses it."""
 
     def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
@@ -205,13 +217,13 @@ class _DisplayModule(ModuleType):
 
 
 def _imported(place: str, name: str) -> object:
-    """Return the object of `from place import name`: an attribute, else a module."""
+    """Return the object of `from place import name`, which is an attribute or a module."""
     module = import_module(place)
     return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
 
 
 class _Finder(MetaPathFinder, Loader):
-    """Finds a stand-in for each module of some packages."""
+    """Import hook that finds a placeholder for each module of some packages."""
 
     def __init__(self, packages: frozenset[str], kind: type[ModuleType]) -> None:
         self._packages, self._kind = packages, kind
@@ -219,7 +231,7 @@ class _Finder(MetaPathFinder, Loader):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the stand-in, if the module is one of these packages."""
+        """Return the spec of a placeholder if the module belongs to one of these packages."""
         is_ours = not self._packages.isdisjoint((fullname, fullname.partition(".")[0]))
         return ModuleSpec(fullname, self, is_package=True) if is_ours else None
 
@@ -228,7 +240,7 @@ class _Finder(MetaPathFinder, Loader):
         return self._kind(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Do nothing: there is nothing to run."""
+        """Do nothing, because there is no code to run."""
 
 
 _PYTHON = os.path.dirname(os.__file__)

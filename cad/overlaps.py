@@ -38,7 +38,7 @@ _SPECK = 1e-6  # [mm³]; touching faces have less in common
 
 @dataclass(frozen=True)
 class Overlap:
-    """Two parts that take the same space, and how much of it [mm³]."""
+    """Two overlapping parts and their shared volume [mm³]."""
 
     one: str
     other: str
@@ -49,7 +49,7 @@ class Overlap:
 
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
-    """Yield every two bodies that overlap where they stand; those that touch do not."""
+    """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap."""
     standing = [(body.name, body.shape.moved(place)) for body in bodies for place in body.places]
     for (one, shape), (other, beside) in combinations(standing, 2):
         properties = GProp_GProps()
@@ -61,7 +61,7 @@ def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
 
 @dataclass(frozen=True)
 class Clearance:
-    """What lies between two parts: a distance [mm]; or none, and the space [mm³] that both take."""
+    """The distance [mm] between two parts, or 0 and their shared volume [mm³]."""
 
     one: str
     other: str
@@ -79,17 +79,16 @@ Group = Callable[[str], str | None]
 
 
 def clearances(bodies: Sequence[Body], group: Group, report: Report | None = None) -> Iterator[Clearance]:
-    """Yield what lies between each fixed part and every other part; `group` says to which one a body belongs.
+    """Yield the clearance between each fixed part and every other part.
 
-    Solids of one fixed part are not compared with each other, nor are those of none. All parts of which the
-    boxes meet are compared; of the others those whose boxes are closest, and those that may be closer to a
-    fixed part than what was compared with it. `report` hears how far it is.
+    `group` returns the fixed part of a body.
 
-    Raises
-    ------
-    GeometryError
-        `too_large`, if more than `MOST_MEETING` boxes meet; `kernel`, if two parts cannot be compared. They
-        are named.
+    Solids of the same fixed part are not compared with each other, nor are solids that belong to no fixed
+    part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
+    may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
+
+    Raises ------ GeometryError `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two
+    parts cannot be compared. The message names the parts.
     """
     standing = _standing(bodies, group)
     pairs = _pairs(standing)
@@ -113,7 +112,7 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
 
 
 def require_few_meeting(bodies: Sequence[Body], group: Group) -> None:
-    """Refuse an assembly in which too many boxes meet, before anything slow is done with it.
+    """Refuse an assembly in which too many pairs of boxes meet, before any slow operation.
 
     Raises
     ------
@@ -127,7 +126,7 @@ def require_few_meeting(bodies: Sequence[Body], group: Group) -> None:
 
 @dataclass(frozen=True)
 class _PlacedSolid:
-    """A solid where it stands, and the fixed part to which it belongs."""
+    """A solid at its position, and the fixed part to which it belongs."""
 
     name: str
     group: str | None
@@ -136,7 +135,7 @@ class _PlacedSolid:
 
 @dataclass(frozen=True, order=True)
 class _Pair:
-    """Two solids by their numbers, and the distance of their boxes [mm]."""
+    """The numbers of two solids, and the distance of their boxes [mm]."""
 
     between: float
     i: int
@@ -152,7 +151,7 @@ def _standing(bodies: Sequence[Body], group: Group) -> list[_PlacedSolid]:
 
 
 def _pairs(standing: Sequence[_PlacedSolid]) -> list[_Pair]:
-    """Return all pairs that are to be compared, those with the closest boxes first."""
+    """Return all pairs to compare, those with the closest boxes first."""
     boxes = [_box(one.shape) for one in standing]
     return sorted(
         _Pair(boxes[i].Distance(boxes[j]), i, j)
@@ -162,7 +161,7 @@ def _pairs(standing: Sequence[_PlacedSolid]) -> list[_Pair]:
 
 
 def _require_few(standing: Sequence[_PlacedSolid], pairs: Sequence[_Pair]) -> None:
-    """Raise if more boxes meet than are compared; see `clearances`."""
+    """Raise an error if more pairs of boxes meet than can be compared; see `clearances`."""
     meeting = [pair for pair in pairs if pair.between <= _TOUCHING]
     if len(meeting) <= MOST_MEETING:
         return
@@ -198,7 +197,7 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
 
 
 def _has_corner_inside(shape: Shape, other: Shape) -> bool:
-    """Return whether a corner of a shape lies within another, well off its faces."""
+    """Return whether a vertex of a shape lies inside another shape, clearly away from its faces."""
     inside = [BRepClass3d_SolidClassifier(solid.wrapped) for solid in other.Solids()]
     for corner in shape.Vertices()[:_MOST_CORNERS]:
         point = BRep_Tool.Pnt_s(corner.wrapped)
@@ -210,13 +209,13 @@ def _has_corner_inside(shape: Shape, other: Shape) -> bool:
 
 
 def _box(shape: Shape) -> Bnd_Box:
-    """Return a box that holds a shape, perhaps with some room."""
+    """Return a box that contains a shape, with an optional margin."""
     around = Bnd_Box()
     BRepBndLib.Add_s(shape.wrapped, around, False)
     return around
 
 
 def gap(one: Body, other: Body) -> float:
-    """Return the smallest distance between two bodies where they stand [mm]."""
+    """Return the smallest distance between two bodies at their positions [mm]."""
     shapes = (body.shape.moved(body.places[0]).wrapped for body in (one, other))
     return float(BRepExtrema_DistShapeShape(*shapes).Value())

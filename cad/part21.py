@@ -1,7 +1,7 @@
-"""Strings and tokens of ISO 10303-21, the clear text of STEP files: write, scan and parse them.
+"""Write, scan and parse the strings and tokens of ISO 10303-21, the clear text encoding of STEP files.
 
-A client may send any bytes as a STEP file. The scan passes over its text once and never goes back, so its
-time is linear in the length of the text, whatever the text holds.
+A client may send any bytes as a STEP file. The scan reads the text once and never goes back, so its time is
+linear in the length of the text, whatever the text contains.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ _NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+"
 
 
 def quoted(text: str) -> str:
-    r"""Return a text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`.
+    r"""Return a text as a string of Part 21: quotes and backslashes doubled, non-ASCII as `\X2\…\X0\`.
 
-    What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`. Open CASCADE takes
-    a quote before a comma or bracket for the end of the string, even a doubled one: its number is written.
+    Characters outside the basic multilingual plane, such as emoji, become `\X4\…\X0\`. Open CASCADE reads a
+    quote before a comma or bracket as the end of the string, even a doubled quote, so its character code is
+    written instead.
     """
     escaped = _QUOTE.join(_ENDING.split(text.replace("\\", "\\\\")))
     return "'" + _NOT_PLAIN.sub(_escaped, escaped.replace("'", "''")) + "'"
@@ -33,14 +34,17 @@ def _escaped(signs: re.Match[str]) -> str:
 
 
 def in_ascii(text: str) -> str:
-    r"""Return a text of Open CASCADE, whose letters are bytes of UTF-8: what is not ASCII as `\X2\…\X0\`."""
+    r"""Return a text from Open CASCADE, which contains bytes of UTF-8, with non-ASCII as `\X2\…\X0\`."""
     return _BEYOND_ASCII.sub(
         lambda run: _NOT_PLAIN.sub(_escaped, run[0].encode("latin-1").decode("utf-8", "replace")), text
     )
 
 
 def plain(string: str) -> str:
-    """Return the text of a string of Part 21, given with its quotes; line breaks within it are layout."""
+    """Return the text of a string of Part 21, given with its quotes.
+
+    Line breaks in it do not belong to the text.
+    """
     return _ESCAPED.sub(_unescaped, string[1:-1].replace("\n", "").replace("\r", ""))
 
 
@@ -52,9 +56,11 @@ def _unescaped(escape: re.Match[str]) -> str:
 
 
 def description(text: str) -> list[str]:
-    """Return strings of FILE_DESCRIPTION's first list, each with its quotes; none if there is no such list.
+    """Return the strings of the first list of FILE_DESCRIPTION, each with its quotes.
 
-    The search ends with the header's section.
+    None if there is no such list.
+
+    The search stops at the end of the header section.
     """
     scan = tokens(text)
     for token in scan:
@@ -66,7 +72,10 @@ def description(text: str) -> list[str]:
 
 
 def _strings(scan: Iterator[str]) -> list[str]:
-    """Return strings up to the closing bracket; none if anything but strings and commas comes before it."""
+    """Return the strings up to the closing bracket.
+
+    None if anything but strings and commas precedes the bracket.
+    """
     strings: list[str] = []
     for token in scan:
         if token == ")":
@@ -79,9 +88,9 @@ def _strings(scan: Iterator[str]) -> list[str]:
 
 
 def tokens(text: str) -> Iterator[str]:
-    """Yield the words, single signs, and strings with their quotes; blanks and comments are skipped.
+    """Yield the words, single characters, and strings with their quotes; skip blanks and comments.
 
-    A string or comment that does not end takes the rest of the text with it.
+    A string or comment that does not end extends to the end of the text.
     """
     place = 0
     while place < len(text):
@@ -101,7 +110,7 @@ def _end(text: str, start: int) -> int:
 
 
 def end_of_string(text: str, start: int) -> int:
-    """Return the place behind the quote that closes a string; two quotes are one of the text."""
+    """Return the position after the quote that closes a string; two quotes are one quote of the text."""
     place = _behind(text, "'", start + 1)
     while text.startswith("'", place):
         place = _behind(text, "'", place + 1)
@@ -109,6 +118,6 @@ def end_of_string(text: str, start: int) -> int:
 
 
 def _behind(text: str, mark: str, start: int) -> int:
-    """Behind the next `mark`; the end of the text if there is none."""
+    """Return the position after the next `mark`; the end of the text if there is none."""
     place = text.find(mark, start)
     return len(text) if place < 0 else place + len(mark)

@@ -1,8 +1,8 @@
-"""PNG: a shaded picture of the meshes, drawn with NumPy alone, as OpenGL may be missing or crash.
+"""PNG pictures: a shaded view of the meshes, rendered with NumPy alone; OpenGL may be missing or crash.
 
-Triangles are split into the rows of samples that they cover, and rows into samples; the nearest sample at
-each pixel wins (a depth buffer). Normals are interpolated, so balls look round. A line is drawn where two
-faces meet.
+Triangles are split into the rows of samples that they cover, and rows into samples; a depth buffer keeps the
+nearest sample at each pixel. Normals are interpolated, so balls look round. Lines mark the borders between
+faces.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 from cad.mesh import Mesh, placed
-from cad.view import RIGHT, TOWARDS, UP
+from cad.view import view_of
 from templates.core.arrays import Array, Integers, Mask
 
 SIZE = (640, 480)  # [pixels]
@@ -33,7 +33,7 @@ _SHININESS = 40
 
 @dataclass(frozen=True)
 class Scene:
-    """Triangles in the axes of a model [mm]; as drawn, in samples, y downwards, z towards the eye."""
+    """Triangles in model axes [mm], and as projected in samples: y downwards, z towards the viewer."""
 
     corners: Array  # (t, 3, 3)
     normals: Array  # (t, 3, 3)
@@ -42,7 +42,7 @@ class Scene:
 
 
 def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
-    """Return a picture of the meshes on white."""
+    """Return a picture of the meshes on a white background."""
     bodies = list(placed(meshes))
     corners = np.concatenate([points[one.triangles] for one, points, _ in bodies])
     normals = np.concatenate([normals[one.triangles] for one, _, normals in bodies])
@@ -53,7 +53,7 @@ def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
 
 
 def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
-    """Return a picture of triangles [mm] in the axes of their model, on white."""
+    """Return a picture of triangles [mm], given in the axes of their model, on a white background."""
     width, height = size[0] * _SAMPLES, size[1] * _SAMPLES
     scene = _scene(triangles, width, height)
     light, faces = _draw(scene, width, height)
@@ -65,8 +65,8 @@ def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
 
 
 def _scene(triangles: Scene, width: int, height: int) -> Scene:
-    """Return the triangles that face the eye, in the frame of the picture."""
-    frame = np.stack([RIGHT, UP, TOWARDS], axis=1)
+    """Return the triangles that face the viewer, in the frame of the picture."""
+    frame = view_of(np.ptp(triangles.corners, axis=(0, 1)))
     corners = _fitted(triangles.corners @ frame, width, height)
     # y points downwards in a picture: a triangle that faces the eye runs clockwise there.
     seen = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < -1e-9
@@ -76,7 +76,7 @@ def _scene(triangles: Scene, width: int, height: int) -> Scene:
 
 
 def _fitted(corners: Array, width: int, height: int) -> Array:
-    """Return the corners [mm; y upwards] as they fill the picture [samples; y downwards]."""
+    """Return the corners [mm; y upwards] scaled to fill the picture [samples; y downwards]."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     room = (1 - 2 * _MARGIN) * np.array([width, height])
     scale = (room / (high - low)[:2]).min()
@@ -86,7 +86,10 @@ def _fitted(corners: Array, width: int, height: int) -> Array:
 
 
 def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
-    """Return the light (height, width, 3) and the face seen (height, width; -1 for none) at every sample."""
+    """Return the light (height, width, 3) and the visible face (height, width.
+
+    -1 for none) at every sample.
+    """
     triangle, column, row = _fragments(scene.corners)
     weights = _barycentric(scene.corners[triangle], column + 0.5, row + 0.5)
     depth = np.einsum("fc,fc->f", weights, scene.corners[triangle][:, :, 2])
@@ -107,7 +110,10 @@ def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
 
 
 def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
-    """Return samples that triangles cover: which triangle, column and row; a sample counts by its middle."""
+    """Return the samples that triangles cover: triangle, column and row.
+
+    A sample is covered if its centre is.
+    """
     x, y = corners[:, :, 0], corners[:, :, 1]
     triangle, row = _expand(y.min(axis=1), y.max(axis=1))
     middle = (row + 0.5)[:, None]
@@ -124,7 +130,7 @@ def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
 
 
 def _expand(low: Array, high: Array) -> tuple[Integers, Integers]:
-    """For intervals, the whole numbers n with low ≤ n + 1/2 ≤ high: which interval, and n."""
+    """Return, for intervals, the interval number and each whole number n with low ≤ n + 1/2 ≤ high."""
     first = np.ceil(np.where(np.isfinite(low), low, 0) - 0.5).astype(np.int64)
     last = np.floor(np.where(np.isfinite(high), high, -1) - 0.5).astype(np.int64)
     counts = np.maximum(last - first + 1, 0)
@@ -144,7 +150,7 @@ def _barycentric(corners: Array, x: Any, y: Any) -> Array:
 
 
 def _lit(normals: Array, colours: Array) -> Array:
-    """Return the colours under two lights, with a highlight of the first (Blinn–Phong)."""
+    """Return the colours under two lights, with a highlight from the first (Blinn–Phong)."""
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     key, fill = (light / np.linalg.norm(light) for light in (_KEY, _FILL))
     between = key + np.array([0.0, 0.0, 1.0])
@@ -157,7 +163,7 @@ def _lit(normals: Array, colours: Array) -> Array:
 
 
 def _borders(faces: Integers) -> Mask:
-    """Return the samples beside which another face begins."""
+    """Return the samples at which another face begins."""
     differs = np.zeros(faces.shape, dtype=bool)
     differs[:, :-1] |= faces[:, :-1] != faces[:, 1:]
     differs[:-1, :] |= faces[:-1, :] != faces[1:, :]

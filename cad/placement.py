@@ -1,4 +1,4 @@
-"""The position of a fixed part in an assembly: on a datum of another part, moved along and rotated about it.
+"""The position of a fixed part in an assembly: relative to a datum, shifted along and rotated about its axes.
 
 A datum is `origin`, the axes of the assembly, or a part and a place on it, such as `cap.low_y`:
 
@@ -7,8 +7,8 @@ A datum is `origin`, the axes of the assembly, or a part and a place on it, such
 - `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of their
   point nearest to the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; the
-first of several such axes.
+The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; if
+several are, the first.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _DIGITS = 6  # [mm], to which points of axes are compared
 
 @dataclass(frozen=True)
 class Place:
-    """Shifts [mm] along the axes of a datum, after turns [deg] about them: about x first, then y, then z."""
+    """Shifts [mm] along the axes of a datum, applied after rotations [deg] about x first, then y, then z."""
 
     x: float = 0.0
     y: float = 0.0
@@ -44,7 +44,7 @@ class Place:
 
     @property
     def motion(self) -> Location:
-        """Return the place as a motion."""
+        """Return the position as a CadQuery location."""
         moved = Location(Vector(self.x, self.y, self.z))
         for axis, angle in ((Z, self.turn_z), (Y, self.turn_y), (X, self.turn_x)):
             if angle:
@@ -53,12 +53,12 @@ class Place:
 
 
 def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
-    """Return the frame of a datum, for a component of this name, among the parts that stand already.
+    """Return the frame of a datum for the component of this name, among the parts that are already placed.
 
     Raises
     ------
     GeometryError
-        `datum`, with what there is.
+        `datum`, naming the available parts or places.
     """
     if datum == ORIGIN:
         return Location()
@@ -84,7 +84,7 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
 
 
 def box_of(solids: Sequence[object]) -> Box:
-    """Return the box of solids where they stand [mm]."""
+    """Return the bounding box of solids at their positions [mm]."""
     return bounding_box(Body("", solid, (0.0, 0.0, 0.0), (Location(),)) for solid in solids)  # type: ignore[arg-type]
 
 
@@ -100,7 +100,7 @@ def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
 
 
 def _forward(direction: Vector) -> Vector:
-    """Return a direction or its opposite, so that its largest component is positive."""
+    """Return a direction or its opposite, whichever has a positive largest component."""
     components = direction.toTuple()
     largest = max(components, key=lambda number: round(abs(number), _DIGITS))
     return direction if largest > 0 else -direction

@@ -1,21 +1,22 @@
-"""Semantic PMI of AP242: dimensions with their limits, datums, geometric tolerances, on the faces of parts.
+"""Semantic PMI of AP242: dimensions with limits, datums and geometric tolerances on the faces of parts.
 
 Known faults of Open CASCADE 7.9, each found by experiment: the writer crashes unless the schema is AP242; a
 dimension must have limits and never a class of fit, because the writer numbers the grades differently from
 ISO 286; the writer expects a lower deviation with the opposite sign, and writes deviations without their type
-(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn: these
-annotations are for programs, drawings are for people.
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Each dimension and each
+geometric tolerance is also drawn as lines beside the solid (`cad.pmi_presentation`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cadquery import Shape
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopoDS import TopoDS_Compound
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DatumObject as DatumObject
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionObject as DimensionObject
 from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionType as DimensionType
@@ -24,8 +25,9 @@ from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as Toleran
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
 from cad.errors import GeometryError
+from cad.pmi_presentation import Sheet
 from cad.surfaces import Face, Kind, Place, Size
-from cad.tolerances import Form, FormTolerances, Limits
+from cad.tolerances import Form, FormTolerances, Limits, deviations, number_of
 
 _TYPES: Mapping[Kind, str] = {
     "diameter": "XCAFDimTolObjects_DimensionType_Size_Diameter",
@@ -34,6 +36,8 @@ _TYPES: Mapping[Kind, str] = {
     "distance": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
     "chamfer": "XCAFDimTolObjects_DimensionType_Size_Thickness",
 }
+SIGNS: Mapping[Kind, str] = {"diameter": "Ø", "sphere": "SØ", "radius": "R"}
+FORM_SIGNS: Mapping[Form, str] = {"cylindricity": "⌭", "perpendicularity": "⊥", "parallelism": "∥"}
 _FORMS: Mapping[Form, str] = {
     "cylindricity": "XCAFDimTolObjects_GeomToleranceType_Cylindricity",
     "perpendicularity": "XCAFDimTolObjects_GeomToleranceType_Perpendicularity",
@@ -41,10 +45,14 @@ _FORMS: Mapping[Form, str] = {
 }
 """Names of the kernel's types, which is asked for them when it writes."""
 
+_ASCII = str.maketrans(
+    {"Ø": "diameter ", "±": "+/-", "⌭": "cylindricity", "⊥": "perpendicularity", "∥": "parallelism"}
+)
+
 
 @dataclass(frozen=True)
 class Product:
-    """A part in a document: its label there, and the solid that is written."""
+    """A part in a document: its label, and the solid that is written."""
 
     label: TDF_Label
     solid: Shape
@@ -52,7 +60,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Annotations:
-    """What is written beside the shape, by parameter: limits, sizes on faces, geometric tolerances."""
+    """The annotations to write, by parameter: limits, sizes on faces, geometric tolerances."""
 
     declared: Mapping[str, FormTolerances] = field(default_factory=dict)
     limits: Mapping[str, Limits] = field(default_factory=dict)
@@ -62,12 +70,12 @@ class Annotations:
     def of(
         declared: Mapping[str, FormTolerances], limits: Mapping[str, Limits], dimensions: Mapping[str, object]
     ) -> Annotations:
-        """Return what is written of a solid with these dimensions.
+        """Return the annotations of a solid with these dimensions.
 
         Raises
         ------
         GeometryError
-            `tolerance`, where no faces carry a dimension that has limits.
+            `tolerance`, if a dimension with limits has no faces.
         """
         sizes = {
             name: size for name, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES
@@ -81,17 +89,17 @@ class Annotations:
 
     @property
     def dimensions(self) -> list[str]:
-        """Return the parameter of every dimension that is written, in the order of the file."""
+        """Return the parameter of every written dimension, in the order of the file."""
         return [n for n in self.limits for _ in self.sizes[n].places]
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the kind of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
     def names(self) -> list[str]:
-        """Return the parameters by which dimensions, and then geometric tolerances, are named."""
+        """Return the parameters of all dimensions, followed by those of all geometric tolerances."""
         return [*self.dimensions, *(name for name, _ in self.forms)]
 
 
@@ -111,6 +119,7 @@ class _Writer:
         self._products, self._annotations = products, annotations
         self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
+        self._sheets: dict[str, Sheet] = {}
 
     def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
@@ -122,7 +131,7 @@ class _Writer:
             one = self._annotations.declared[name]
             for form, share in one.forms.items():
                 faces = [face for place in sizes[name].places for face in (*place.first, *place.second)]
-                self._form(form, within.share(share), self._labels(dict.fromkeys(faces)), one.to)
+                self._form(form, within.share(share), list(dict.fromkeys(faces)), one.to)
 
     def _dimension(self, kind: Kind, place: Place, within: Limits) -> None:
         size = DimensionObject()
@@ -130,22 +139,28 @@ class _Writer:
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
         size.SetLowerTolValue(-within.lower)  # which the writer turns round
+        ends = "/".join(filter(None, deviations(within)))
+        text = f"{SIGNS.get(kind, '')}{number_of(within.nominal, 6)} {ends}"
+        size.SetPresentation(self._drawn(text, [*place.first[:1], *place.second[:1]]), _name(text))
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
         self._tool.SetDimension(self._labels(place.first), self._labels(place.second), label)
 
-    def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
+    def _form(self, form: Form, width: float, faces: Sequence[Face], to: str) -> None:
         tolerance = ToleranceObject()
         tolerance.SetType(getattr(ToleranceType, _FORMS[form]))
         tolerance.SetValue(width)
+        datum = "" if form == "cylindricity" else f" {to}"
+        text = f"{FORM_SIGNS[form]} {number_of(width, 6)}{datum}"
+        tolerance.SetPresentation(self._drawn(text, faces[:1]), _name(text))
         label = self._tool.AddGeomTolerance()
         XCAFDoc_GeomTolerance.Set_s(label).SetObject(tolerance)
-        self._tool.SetGeomTolerance(faces, label)
+        self._tool.SetGeomTolerance(self._labels(faces), label)
         if form != "cylindricity":
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """Return the datum of a letter, which is written once."""
+        """Return the datum of a letter; write it at the first call."""
         if letter not in self._letters:
             declared = self._annotations.declared
             name = next(name for name, one in declared.items() if one.datum == letter)
@@ -161,8 +176,16 @@ class _Writer:
             self._letters[letter] = label
         return self._letters[letter]
 
+    def _drawn(self, text: str, faces: Sequence[Face]) -> TopoDS_Compound:
+        """Return the lines of a text beside its part, and leaders to the middles of faces."""
+        part = faces[0][0]
+        if part not in self._sheets:
+            self._sheets[part] = Sheet(self._products[part].solid)
+        middles = [self._products[name].solid.Faces()[number].Center() for name, number in faces]
+        return self._sheets[part].drawn(text, middles)
+
     def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
-        """Return the labels of faces; each is made once."""
+        """Return the labels of faces; create each label once."""
         labels = TDF_LabelSequence()
         for part, number in faces:
             if (part, number) not in self._faces:
@@ -171,3 +194,8 @@ class _Writer:
                 self._faces[part, number] = self._shapes.AddSubShape(product.label, face)
             labels.Append(self._faces[part, number])
         return labels
+
+
+def _name(text: str) -> TCollection_HAsciiString:
+    """Return the text as the name of its lines, in the letters of a STEP file."""
+    return TCollection_HAsciiString(text.translate(_ASCII))

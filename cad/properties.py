@@ -37,7 +37,7 @@ _SHAPE = re.compile(  # the kernel breaks lines between any two tokens
 
 @dataclass(frozen=True)
 class PartProperties:
-    """What a file says of a part: volume [mm³], area [mm²], centroid [mm], density [kg/m³]."""
+    """Stated properties of a part: volume [mm³], area [mm²], centroid [mm], density [kg/m³]."""
 
     part: str
     volume: float
@@ -49,7 +49,7 @@ class PartProperties:
 
 @dataclass(frozen=True)
 class Measures:
-    """What is measured of a solid: volume [mm³], area [mm²], centroid [mm]."""
+    """The measures of a solid: volume [mm³], area [mm²], centroid [mm]."""
 
     volume: float
     area: float
@@ -57,7 +57,7 @@ class Measures:
 
 
 def properties_of(part: Part, solid: Shape) -> PartProperties:
-    """Return the properties of a part on its solid, integrated as `cad.inspect.measure` does."""
+    """Return the properties of a part, integrated over its solid as `cad.inspect.measure` does."""
     material = part.made_of.rpartition(" (")[0] or part.made_of  # without its density
     one = measured(solid)
     return PartProperties(part.name, one.volume, one.area, one.centroid, material, _digits(part.density))
@@ -91,7 +91,7 @@ def entities(
 ) -> Iterator[str]:
     """Yield the entities, numbered from `first`, that state properties of the products in a data section.
 
-    The product called `title`, or the only one, has the attributes.
+    The product called `title`, or the only product, gets the attributes.
     """
     products = _products(data)
     numbers = iter(range(first, first + 10**6))
@@ -107,12 +107,12 @@ def entities(
 
 
 def validations(data: str, first: int, measures: Mapping[str, Measures]) -> Iterator[str]:
-    """Yield the entities, numbered from `first`, of the validation properties of products by name.
+    """Yield the entities, numbered from `first`, of the validation properties of the named products.
 
     Raises
     ------
     KeyError
-        If the data section has no product of such a name.
+        If the data section has no product of one of these names.
     """
     products = _products(data)
     numbers = iter(range(first, first + 10**6))
@@ -148,7 +148,7 @@ def _products(data: str) -> dict[str, _Product]:
 
 @dataclass(frozen=True)
 class _Units:
-    """The numbers of the entities of the units: mm², mm³ and kg/m³."""
+    """The entity numbers of the units mm², mm³ and kg/m³."""
 
     millimetre: int
     metre: int
@@ -162,7 +162,7 @@ class _Units:
     density: int
 
     def entities(self) -> Iterator[str]:
-        """Yield the units and their elements."""
+        """Yield the entities of the units and their elements."""
         yield f"#{self.millimetre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));"
         yield f"#{self.metre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
         yield f"#{self.kilogram} = (MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));"
@@ -176,7 +176,7 @@ class _Units:
 
 
 def _attributes(numbers: Iterator[int], root: _Product, attributes: Mapping[str, str]) -> Iterator[str]:
-    """Yield a set of attributes, each a name and a text."""
+    """Yield the entities of a set of attributes, each a name and a text."""
     if not attributes:
         return
     general, link, items = next(numbers), next(numbers), []
@@ -216,7 +216,7 @@ def _material(
 def _stated(
     numbers: Iterator[int], name: str, what: str, of: str, items: Sequence[str], context: str
 ) -> Generator[str, None, str]:
-    """Yield a property of something, with its representation; returns the property."""
+    """Yield the entities of a property with its representation; return the property."""
     definition, representation, link = next(numbers), next(numbers), next(numbers)
     yield f"#{definition} = PROPERTY_DEFINITION({quoted(name)},{quoted(what)},{of});"
     yield f"#{representation} = REPRESENTATION({quoted(what or name)},({','.join(items)}),{context});"
@@ -225,7 +225,7 @@ def _stated(
 
 
 def _real(value: float) -> str:
-    """Return a number as Part 21 writes it, which always has a point: `1.5E-05`."""
+    """Return a number as Part 21 writes it, always with a decimal point: `1.5E-05`."""
     text = f"{value:.15g}".upper()
     mantissa, exponent, power = text.partition("E")
     return f"{mantissa}{'' if '.' in mantissa else '.'}{exponent}{power}"

@@ -1,9 +1,8 @@
-"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function.
+"""Regenerate a model as a pure function: parameters → model → solid → STEP → STEP read back → checks → build.
 
-A build is accepted only after its checks, which examine the bytes that a user will get: each part is one
-valid solid with the volume of its closed form, the parts fill the bounding box, and every parameter is read
-back from the surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and
-in any other.
+A build is accepted only after checks of the bytes that a user will get: each part is one valid solid with the
+volume of its closed form, the parts fill the bounding box, and every parameter read back from the surfaces
+agrees to a millionth of a millimetre. Equal parameters give equal bytes, in this process and in any other.
 """
 
 from __future__ import annotations
@@ -55,7 +54,7 @@ __all__ = [
 Value = float | str | list[float]
 """A parameter: a number, a word, or a list; beside it its limit deviations and their zone."""
 
-RECIPE = 3
+RECIPE = 4
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -63,16 +62,16 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 
 
 def made_by(cls: type[CadModel]) -> str:
-    """Return the part of a build's key beside model and parameters, for people.
+    """Return a readable form of the part of a build's key that does not depend on model and parameters.
 
-    For a team's model, include its code.
+    For a team's model it includes the digest of the code.
     """
     return ", code ".join([MADE_BY, *(code[:12] for code in _code(cls))])
 
 
 @dataclass(frozen=True)
 class Build:
-    """A checked solid: the STEP file and what was measured on it."""
+    """A checked solid: its STEP file and the measurements of that file."""
 
     key: str
     model: str
@@ -86,14 +85,14 @@ class Build:
 
 
 def ignore(done: float, what: str) -> None:
-    """Ignore reports of progress."""
+    """Ignore progress reports."""
 
 
 def as_text(model: CadModel) -> dict[str, str]:
-    """Return each parameter, defaults included, as the STEP file has it: `{"inner_diameter": "50 mm", …}`.
+    """Return each parameter, including defaults, as in the STEP file: `{"inner_diameter": "50 mm", …}`.
 
-    Twelve digits: what differs less is the same model, and gets the same bytes. A tolerance that the faces of
-    the model carry is part of it: `48 mm H7`.
+    Values have twelve digits; parameters that differ less are the same model and give the same bytes. The
+    text includes a tolerance if the model has faces for it: `48 mm H7`.
     """
     return dict(_canonical(model).texts)
 
@@ -101,7 +100,7 @@ def as_text(model: CadModel) -> dict[str, str]:
 def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
     """Return every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`.
 
-    Beside a toleranced one stand `upper` and `lower`, its limit deviations in that unit, and its `zone`.
+    A toleranced parameter also has `upper` and `lower`, its limit deviations in that unit, and its `zone`.
     """
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
 
@@ -114,7 +113,7 @@ def build_key(model: CadModel) -> str:
 
 @dataclass(frozen=True)
 class _Canonical:
-    """The parameters of a model in the form that its key is made of."""
+    """The parameters of a model in the form from which its key is computed."""
 
     texts: dict[str, str]
     quantities: dict[str, dict[str, Value]]
@@ -122,12 +121,12 @@ class _Canonical:
 
 
 def _canonical(model: CadModel) -> _Canonical:
-    """Return the canonical form of a model, made once and kept with the values that the model has computed.
+    """Return the canonical form of a model, computed once and stored with the other values of the model.
 
     Raises
     ------
     InvalidInputs
-        If the model stands for several points.
+        If the parameters describe several points.
     """
     kept: _Canonical | None = vars(model).get(_KEPT)
     if kept is None:
@@ -154,16 +153,16 @@ def regenerate(
     folders: Sequence[Path] = (),
     report: Report = ignore,
 ) -> Build:
-    """Build a model from its parameters (SI), export it, and accept it if all checks on the file hold.
+    """Build a model from its parameters (SI), export it, and accept it if the file passes all checks.
 
     Raises
     ------
     UnknownTemplate
         If there is no such model or version, in the built-in folder or in `folders`.
     InvalidInputs
-        If parameters are out of range or against a rule; nothing was drawn then.
+        If parameters are out of range or break a rule; in that case nothing was built.
     GeometryError
-        If the kernel fails, or makes anything but what was requested.
+        If the kernel fails, or builds anything but the requested solid.
     """
     texts = as_text(models(*folders).get(model_id, version).from_si(parameters))
     return regenerate_from_text(model_id, version, texts, folders=folders, report=report)
@@ -187,7 +186,10 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
 
 
 def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Report = ignore) -> Build:
-    """Build a model, of which these are the parameters as `as_text` writes them; raises as `regenerate`."""
+    """Build a model instance; `texts` are its parameters as `as_text` writes them.
+
+    Raises as `regenerate` does.
+    """
     cls = type(model)
     key = _key(cls, texts)
     with _kernel(model):
@@ -222,7 +224,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return the file's statements beside the shape; none if no dimension has a tolerance."""
+    """Return the annotations of the file; None if no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
     seen = {part.name: look(part.solid, len(part.places), part.name) for part in parts}
@@ -230,12 +232,12 @@ def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
 
 
 def _plain(model: CadModel) -> dict[str, Value]:
-    """Return every parameter in SI, as plain numbers, words and lists."""
+    """Return every parameter in SI units, as plain numbers, words and lists."""
     return {n: v if isinstance(v, str) else np.asarray(v).tolist() for n, v in model.inputs_si().items()}
 
 
 def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]]:
-    """Return a parameter as text and as quantity, rounded to twelve digits."""
+    """Return a parameter as text and as a quantity, rounded to twelve digits."""
     if isinstance(si, str):
         return si, {"value": si}
     meaning = model.inputs[name].meaning
@@ -248,7 +250,7 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
-    """Return the text of a parameter with its limits, and what stands beside it as a quantity."""
+    """Return the text of a parameter with its limits, and the additional fields of its quantity."""
     lower, upper = in_unit(within, unit)
     zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
     return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
@@ -262,9 +264,9 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
 
 
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
-    """Return the digest of a team's file, which may change while the service runs.
+    """Return the digest of a team's file, because the file may change while the service runs.
 
-    Nothing of a built-in model.
+    Built-in models have none.
     """
     if cls not in _codes:
         _codes[cls] = (digest(cls),) if is_outside(cls) else ()
@@ -276,7 +278,7 @@ _codes: dict[type[CadModel], tuple[str, ...]] = {}
 
 @contextmanager
 def _kernel(model: CadModel) -> Iterator[None]:
-    """Whatever the kernel raises is a failure of this model's geometry."""
+    """Convert every exception of the kernel into a geometry error of this model."""
     try:
         yield
     except GeometryError as error:

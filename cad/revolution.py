@@ -1,4 +1,4 @@
-"""Solids turned from a polygon, holes drilled through their walls, and both volumes in closed form."""
+"""Solids revolved from a polygon, holes drilled through their walls, and the closed forms of both volumes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 def outline(*corners: Point) -> list[Point]:
-    """Return the closed line through corners (r, z) [mm]; corners that fall together count once."""
+    """Return the closed line through corners (r, z) [mm]; coincident corners count once."""
     points: list[Point] = []
     for corner in corners:
         if not points or corner != points[-1]:
@@ -23,9 +23,9 @@ def outline(*corners: Point) -> list[Point]:
 
 
 def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -> Shape:
-    """Return a closed line through (r, z) turned about z, from an angle [deg] against +x on by a turn [deg].
+    """Return a closed line (r, z) revolved about z over a turn [deg], starting at an angle [deg] from +x.
 
-    A full turn begins at -y, so that its seam is off a hole at the crown.
+    A full turn begins at -y, so that its seam is away from a hole at the crown.
     """
     across, up = cos(radians(start)), sin(radians(start))
     if start % 90 == 0:
@@ -35,25 +35,25 @@ def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -
 
 
 def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
-    """Return the volume [mm³] of a closed line (r, z) turned about z by an angle [deg]: ∮ r²/2 dz."""
+    """Return the volume [mm³] of a closed line (r, z) revolved about z by an angle [deg]: ∮ r²/2 dz."""
     sides = ((a[0] ** 2 + a[0] * b[0] + b[0] ** 2) * (b[1] - a[1]) for a, b in pairwise(points))
     return abs(sum(sides)) / 6 * radians(turn)
 
 
 def area(points: Sequence[Point]) -> float:
-    """Return the area [mm²] within a closed line."""
+    """Return the area [mm²] enclosed by a closed line."""
     return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points))) / 2
 
 
 def drill(radius: float, reach: float, z: float = 0.0) -> Solid:
-    """What a hole takes away: a cylinder along +y, from the axis to beyond a reach [mm], at a level z."""
+    """Return the solid that a hole removes: a cylinder along +y, from the axis to beyond a reach [mm]."""
     return Solid.makeCylinder(radius, 1.1 * reach, Vector(0, 0, z), Vector(0, 1, 0))
 
 
 def drilled_volume(
     hole: float, outside: float, inside: float, groove: float = 0.0, half_groove: float = 0.0
 ) -> float:
-    """What a radial hole takes out of a cylindrical wall [mm³]: its chords, summed over the hole's circle.
+    """Return the volume that a radial hole removes from a cylindrical wall [mm³], from its chords.
 
     With x = a sin t and z = a cos t on the circle of radius a the integrand is smooth; it has one kink, where
     the circle crosses the edge of a groove round the inside.
@@ -63,7 +63,7 @@ def drilled_volume(
     hole, outside, inside, groove
         Radii [mm] of the hole, of the wall and of the groove's bottom.
     half_groove
-        Half the width of the groove [mm], whose middle is the hole's; 0 for none.
+        Half the width of the groove [mm], which is centred on the hole; 0 for no groove.
     """
     if hole == 0:
         return 0.0
@@ -86,12 +86,12 @@ def sheet_under_arc(radius: float, half_width: float) -> float:
 
 
 def nearest(values: Iterable[float], wanted: float) -> float:
-    """Return the one of some values that is nearest to the one wanted.
+    """Return the value that is nearest to the wanted one.
 
     Raises
     ------
     LookupError
-        If there is none.
+        If there are no values.
     """
     listed = list(values)
     if not listed:

@@ -1,6 +1,7 @@
 """The data of a solid that an analysis needs besides its shape: material, supports and loads.
 
-This module needs no kernel: finite elements bring their own kernel, and one process must not load both.
+This module does not import the geometry kernel: finite elements load their own, and one process must not load
+both.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ STEEL_MATERIAL = Material(210e9, 0.3, STEEL_DENSITY)  # EN 1993-1-1, 3.2.6
 
 @dataclass(frozen=True)
 class Shaft:
-    """Supports and load of one solid: its faces at two levels of z, about the z axis."""
+    """Supports and load of one solid: its end faces at two levels of z; the axis is z."""
 
     held: float  # [mm]
     loaded: float  # [mm]
@@ -33,7 +34,7 @@ class Shaft:
 
 @dataclass(frozen=True)
 class PinPlace:
-    """Place of the pin of a throw [mm], of split pins the front one: its axis at (throw, 0)."""
+    """Position of the pin of a throw [mm]: its axis is at (throw, 0). For split pins it is the front pin."""
 
     throw: float
     radius: float
@@ -43,7 +44,7 @@ class PinPlace:
 
 @dataclass(frozen=True)
 class ThrowSolid:
-    """One throw of a shaft as a STEP file of its own, from mid-main to mid-main; z = 0 is half way."""
+    """One throw of a shaft as its own STEP file, from mid-main to mid-main; z = 0 is half way."""
 
     step: bytes
     shaft: Shaft
@@ -52,7 +53,7 @@ class ThrowSolid:
 
 @dataclass(frozen=True)
 class PlacedThrow:
-    """Which solid a throw of a shaft is, and how it stands there."""
+    """A throw of a shaft: the number of its solid, and its position."""
 
     solid: int  # its number among the solids, from 0
     angle: float  # of its pin about z [rad]
@@ -60,7 +61,7 @@ class PlacedThrow:
 
 @dataclass(frozen=True)
 class ThrowsApart:
-    """The throws of a shaft, one after the other; throws alike share a solid."""
+    """The throws of a shaft in order; equal throws share a solid."""
 
     solids: tuple[ThrowSolid, ...]
     places: tuple[PlacedThrow, ...]
@@ -71,10 +72,10 @@ CAST_IRON_MATERIAL = Material(110e9, 0.26, 7200.0)  # EN-GJL-250: EN 1561:2011, 
 
 @dataclass(frozen=True)
 class BorePlace:
-    """A split bore [mm] about z, its middle at z = 0, and by which face its solid is held.
+    """A split bore [mm] about z with its middle at z = 0, and the face that holds its solid.
 
-    Held is the flat face at y = `held_at`, or, where `held_radius` is given, the cylinder along z about
-    (0, `held_at`).
+    The held face is the plane y = `held_at` or, if `held_radius` is given, the cylinder along z about (0,
+    `held_at`).
     """
 
     radius: float

@@ -1,8 +1,8 @@
 """The stamp on a downloaded STEP file or drawing, which identifies the design.
 
-All designs with equal parameters share a build, so its files name no design. The stamp is written into a copy
-at the download: into the product names and the time of a STEP file, or into the title block of a drawing. The
-result is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
+All designs with equal parameters share a build, so the files of a build name no design. At the download the
+stamp is written into a copy: into the product names and the time of a STEP file, or into the title block of a
+drawing. The result is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp.
 """
 
 from __future__ import annotations
@@ -33,11 +33,13 @@ _SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)[^<]*')
 
 @dataclass(frozen=True)
 class Stamp:
-    """Owner of a file; `model` is its name in the design, `date` when the revision was made (ISO 8601).
+    """The design to which a file belongs.
 
-    `materials` are those of the parts by name, empty where they are not known. A file of a variant is named
-    after that, and after the model only where the design has several (`is_only` is false). Title, number and
-    mark of the revision replace those of the design in a title block, where they are given.
+    `model` is the name of the model in the design, `date` the date of the revision (ISO 8601).
+
+    `materials` are the materials of the parts by name, empty if unknown. The file name of a variant contains
+    the variant, and the model only if the design has several (`is_only` is false). If title, number or
+    revision mark are given, they replace those of the design in a title block.
     """
 
     design: str
@@ -59,37 +61,37 @@ class Stamp:
 
     @property
     def called(self) -> str:
-        """Return the name of the model in names of files."""
+        """Return the name of the model for file names."""
         if self.variant is None:
             return self.model
         return self.variant if self.is_only else f"{self.variant}_{self.model}"
 
     @property
     def stem(self) -> str:
-        """Return the file's name without its ending, in ASCII."""
+        """Return the file name without its extension, in ASCII."""
         return stem(self.design, self.called, self.revision)
 
     @property
     def wide_stem(self) -> str:
-        """Return the file's name without its ending, in the letters of its user."""
+        """Return the file name without its extension, in the user's spelling."""
         return wide_stem(self.design, self.called, self.revision)
 
     @property
     def part_number(self) -> str:
-        """Return the id of the product in ASCII: the number given, else design, variant and model.
+        """Return the product id in ASCII: the given number, or else design, variant and model.
 
-        The revision is not in it, so that a product-data system sees one part with its revisions.
+        The id does not contain the revision, so that a PDM system sees one part with several revisions.
         """
         return self.number or f"{plain_name(self.design)}_{self.called}"
 
     @property
     def named(self) -> str:
-        """Return the model, and the variant that it is of."""
+        """Return the model with its variant."""
         return ", ".join(filter(None, (self.variant, self.model)))
 
     @property
     def block(self) -> dict[str, str]:
-        """Return the lines of an older drawing's title block."""
+        """Return the lines for the title block of an older drawing."""
         part = f"{self.named}, revision {self.revision}, {self.date[:10]}"
         return {"design": self.design, "part": part, "material": self.material}
 
@@ -113,7 +115,7 @@ class Stamp:
 
     @property
     def _short_material(self) -> str:
-        """Return the materials for the title block: without the names of parts where these have no room."""
+        """Return the materials for the title block, without part names if there is no room for them."""
         field_ = STAMPED_FIELDS["iso-material"]
         if width_of(self.material, field_.letters) <= field_.room:
             return self.material
@@ -121,7 +123,7 @@ class Stamp:
 
     @property
     def material(self) -> str:
-        """Return the materials of all parts, each once; of several, with the names of their parts."""
+        """Return the materials of all parts, each once; several materials have the names of their parts."""
         parts: dict[str, list[str]] = {}
         for part, material in self.materials.items():
             parts.setdefault(material, []).append(part)
@@ -131,18 +133,21 @@ class Stamp:
 
 
 def stamped(file: bytes, kind: str, stamp: Stamp) -> bytes:
-    """Return the file of that kind with its stamp; as it is if the kind carries none."""
+    """Return the file of that kind with its stamp; unchanged if the kind has no stamp."""
     write = _WRITERS.get(kind)
     return write(file.decode(_ENCODING[kind]), stamp).encode(_ENCODING[kind]) if write else file
 
 
 def takes_stamp(file: bytes, kind: str) -> bool:
-    """Return whether a file has the lines that its stamp fills in; drawings of older programs have none."""
+    """Return whether a file has the lines that a stamp fills in; drawings from older programs have none."""
     return kind not in _MARKS or _MARKS[kind] in file
 
 
 def is_copy(file: bytes, original: bytes) -> bool:
-    """Return whether a STEP file is another one but for its stamp; linear in the length of both."""
+    """Return whether a STEP file equals another one except for its stamp.
+
+    The time is linear in both lengths.
+    """
     text, source = file.decode("latin-1"), original.decode("latin-1")
     place, done = 0, 0
     for hole in _holes(source):
@@ -154,7 +159,7 @@ def is_copy(file: bytes, original: bytes) -> bool:
 
 @dataclass(frozen=True)
 class _Hole:
-    """A place of a finished STEP file that a stamp replaces, and how many strings stand there."""
+    """A position in a finished STEP file that a stamp replaces, and the number of strings there."""
 
     start: int
     end: int
@@ -163,7 +168,7 @@ class _Hole:
 
 
 def _holes(text: str) -> list[_Hole]:
-    """Return every such place in the order of the text: file and time, products, their versions."""
+    """Return all such positions in the order of the text: file and time, products, their versions."""
     file = _FILE.search(text)
     holes = [_Hole(*file.span(1), 2, _file)] if file else []
     for number, product in enumerate(_PRODUCT.finditer(text)):
@@ -178,7 +183,7 @@ def _file(stamp: Stamp) -> tuple[str, ...]:
 
 
 def _root(stamp: Stamp) -> tuple[str, ...]:
-    """Return the id, name and description of the product that is the file."""
+    """Return the id, name and description of the product that stands for the whole file."""
     described = (
         f"design {stamp.design}",
         f"variant {stamp.variant}" if stamp.variant else "",
@@ -207,7 +212,7 @@ def _stamped_step(text: str, stamp: Stamp) -> str:
 
 
 def _behind_strings(text: str, place: int, count: int) -> int:
-    """Return the place behind so many strings with commas between them, as far as they stand at a place."""
+    """Return the position after at most this number of strings with commas between them."""
     for number in range(count):
         if number:
             place = _behind_comma(text, place)
@@ -227,7 +232,10 @@ def _stamped_svg(text: str, stamp: Stamp) -> str:
 
 
 def _stamped_dxf(text: str, stamp: Stamp) -> str:
-    """DXF is pairs of lines, a code and its value; the mark of a text stands behind the text."""
+    """Return the DXF with its stamp. DXF is pairs of lines, a code and its value.
+
+    The mark of a text follows the text.
+    """
     lines, written = text.split("\n"), _lines(stamp)
     last = 0
     for place in range(0, len(lines) - 1, 2):
@@ -240,7 +248,7 @@ def _stamped_dxf(text: str, stamp: Stamp) -> str:
 
 
 def _lines(stamp: Stamp) -> dict[str, str]:
-    """Return lines of a title block as they are drawn, those of older drawings among them, by their marks."""
+    """Return the lines of a title block by their marks, including those of older drawings."""
     older = {name: _clipped(f"{name}: {value}") for name, value in stamp.block.items()}
     fields = stamp.fields
     return older | {

@@ -1,4 +1,4 @@
-"""Check the statements of a finished STEP file besides its shape: requested limits, measured properties."""
+"""Check the statements of a finished STEP file about limits and measured properties."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ MEASURED = ("volume", "surface area", "centroid")
 def check_statements(
     parts: Sequence[Part], bodies: Sequence[Body], annotations: Annotations, stated: Sequence[Statement]
 ) -> None:
-    """Check that the file states every limit, every material and the measures of its bodies exactly.
+    """Check that the file states exactly the requested limits and materials, and the measures of its bodies.
 
     Raises
     ------
     GeometryError
-        `tolerance`, naming what is not as it should be.
+        `tolerance`, naming the statements that differ.
     """
     expected = [*_dimensions(annotations), *_properties(parts, bodies)]
     kinds = {one.kind for one in expected}
@@ -83,7 +83,7 @@ def _values(one: PartProperties, kind: str) -> tuple[Value, ...]:
 
 
 def _is_close(kind: str, expected: tuple[Value, ...] | None, stated: tuple[Value, ...] | None) -> bool:
-    """Return whether measures are equal but for the precision of the kernel."""
+    """Return whether measures are equal within the precision of the kernel."""
     if expected is None or stated is None or len(expected) != len(stated):
         return False
     relative, absolute = (0.0, _CLOSE) if kind == "centroid" else (_RELATIVE, 0.0)

@@ -1,4 +1,4 @@
-"""Read the statements of a STEP file besides its shape: dimensions, datums, tolerances, properties.
+"""Read the statements of a STEP file other than its shape: dimensions, datums, tolerances, properties.
 
 This module does not use the kernel, because a client may send any bytes. It scans the text once, statement by
 statement, and parses only the few kinds of statements that it needs, so its time is linear in the length of
@@ -73,7 +73,7 @@ class Statement:
 
 @dataclass(frozen=True)
 class StatementDifference:
-    """A statement that a file should make beside the one that it makes; None where it makes none."""
+    """An expected statement and the statement in the file; None where one is missing."""
 
     kind: str
     name: str
@@ -82,13 +82,13 @@ class StatementDifference:
 
     @property
     def agrees(self) -> bool:
-        """Return whether both are there and equal."""
+        """Return whether both statements exist and are equal."""
         return self.expected is not None and self.expected == self.stated
 
 
 @dataclass(frozen=True)
 class _Entity:
-    """An entity taken apart: its words in their order, whatever brackets stand between them."""
+    """The words of an entity in order, without its brackets."""
 
     sorts: tuple[str, ...]
     refs: tuple[int, ...]
@@ -102,12 +102,15 @@ def is_validated(step: bytes) -> bool:
 
 
 def read_statements(step: bytes) -> list[Statement]:
-    """Return every statement of a STEP file, in the order of the file, each kind by itself."""
+    """Return all statements of a STEP file, grouped by kind, in the order of the file."""
     return list(_Reader(_entities(step)).statements())
 
 
 def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[StatementDifference]:
-    """Statement by statement, each kind in its order; parts may have other names: a download renames them."""
+    """Compare statements of each kind in order.
+
+    Part names may differ, because a download renames the parts.
+    """
     one, other = _by_kind(expected), _by_kind(stated)
     return [
         _pair(kind, *pair)
@@ -134,7 +137,7 @@ def _by_kind(statements: Sequence[Statement]) -> defaultdict[str, list[Statement
 
 
 def _entities(step: bytes) -> dict[int, _Entity]:
-    """Return the entities of the sorts that are needed, by their number."""
+    """Return the entities of the required types by their number."""
     entities: dict[int, _Entity] = {}
     for statement in _split(step):
         start = _START.match(statement) if len(statement) <= LONGEST else None
@@ -152,7 +155,7 @@ def _entities(step: bytes) -> dict[int, _Entity]:
 
 
 def _split(step: bytes) -> Iterator[str]:
-    """Yield the statements of a text, which end with semicolons outside of strings."""
+    """Yield the statements of a text; a statement ends with a semicolon outside strings."""
     pieces: list[bytes] = []
     for match in _PIECE.finditer(step):
         if match[0] == b";":
@@ -249,7 +252,7 @@ class _Reader:
                 yield Statement(kind, self._part(entity), next(values, ()))
 
     def _part(self, entity: _Entity) -> str:
-        """Return the name of the product that a property is of: by shape, definition and formation."""
+        """Return the name of the product that has a property, by way of shape, definition and formation."""
         for _ in range(4):
             following = self._follow(entity.refs[:1])
             if following is None:

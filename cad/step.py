@@ -45,7 +45,7 @@ once_loaded(_set_up)
 
 @dataclass(frozen=True)
 class Body:
-    """A part as it is found in a STEP file: its shape in its own coordinates, and where it stands."""
+    """A part read from a STEP file: its shape in its own coordinates, and its positions."""
 
     name: str
     shape: Shape
@@ -60,10 +60,13 @@ def write_step(
     *,
     rounds_noise: bool = False,
 ) -> bytes:
-    """Return the parts in millimetres, with product names and colours; equal parts, equal bytes.
+    """Return the parts as a STEP file in millimetres, with product names and colours.
 
-    A single part at a single place is one product; several are an assembly. With `annotations` the file also
-    has their dimensions, and the properties of its parts; the parameters in its header are attributes then.
+    Equal parts give equal bytes.
+
+    A single part at a single position is one product; several are an assembly. With `annotations` the file
+    also contains their dimensions and the properties of its parts, and the parameters in its header become
+    attributes.
     """
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
@@ -91,7 +94,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape.
+        If the bytes are not a STEP file or contain no shape.
     """
     reader = STEPCAFControl_Reader()
     document = _new_document()
@@ -103,7 +106,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
 
 
 def rigid(place: Location) -> tuple[Array, Array]:
-    """Return the rotation (3, 3) and translation (3,) [mm] of a place."""
+    """Return the rotation (3, 3) and translation (3,) [mm] of a position."""
     motion = place.wrapped.Transformation()
     rows = np.array([[motion.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)])
     return rows[:, :3], rows[:, 3]
@@ -116,7 +119,7 @@ def _new_document() -> TDocStd_Document:
 
 
 def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict[str, Product]:
-    """Fill a document with the parts; returns the product of each by its name."""
+    """Fill a document with the parts; return the product of each part by its name."""
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     shapes.SetAutoNaming_s(False)
     if is_single(parts):
@@ -137,12 +140,12 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict
 
 
 def is_single(parts: Sequence[Part]) -> bool:
-    """Return whether parts are one solid at one place, which needs no assembly."""
+    """Return whether there is one solid at one position, which needs no assembly."""
     return len(parts) == 1 and len(parts[0].places) == 1
 
 
 def _placed(solid: Shape, place: Location) -> Shape:
-    """Return a solid in the coordinates of its place: as a product of its own it has no other."""
+    """Return a solid moved to its position, because a single product has no position of its own."""
     if place.wrapped.IsIdentity():
         return solid
     return Shape.cast(BRepBuilderAPI_Transform(solid.wrapped, place.wrapped.Transformation(), True).Shape())
@@ -170,7 +173,7 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
 
 
 def _instances(label: TDF_Label, place: TopLoc_Location) -> Iterator[tuple[TDF_Label, TopLoc_Location]]:
-    """Yield the products below a label that are not assemblies, each time that they are used."""
+    """Yield the products below a label that are not assemblies, once for each use."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
         yield label, place

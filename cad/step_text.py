@@ -1,8 +1,8 @@
-"""The text of a STEP file, made reproducible: varying parts of the kernel's output are replaced.
+"""Make the text of a STEP file reproducible by replacing the varying parts of the kernel's output.
 
 Three things in the text depend on the process that wrote it: the time in the header; a counter of assembly
 usages that never restarts, whose digits shift the line breaks; and the order of colours, which follows memory
-addresses. So this module writes the header and the colours, and counts usages from 1.
+addresses. So this module writes the header and the colours itself, and numbers usages from 1.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ _TOKEN = re.compile(r"'(?:[^']|'')*',?|[^',)]+,?|\)")
 _WIDEST = 72  # a line of the kernel's writer [characters]
 _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
+_PEN = "DRAUGHTING_PRE_DEFINED_COLOUR('{}')"
 _POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
 _NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
 _NUMBER = re.compile(r"#(\d+) = ")
@@ -39,10 +40,10 @@ def finished(
     names: Sequence[str] = (),
     properties: Sequence[PartProperties] = (),
 ) -> str:
-    """Return the kernel's text with our header and the products' colours, in the order of the file.
+    """Return the kernel's text with this program's header and the products' colours in file order.
 
-    `names` are the parameters of its dimensions and then of its geometric tolerances, in the order of the
-    file; `properties` are those of its parts.
+    `names` are the parameters of the dimensions, followed by those of the geometric tolerances, in the order
+    of the file; `properties` are the properties of the parts.
     """
     data = in_ascii(text[text.index("ENDSEC;") + len("ENDSEC;") :])
     number = count(1)
@@ -58,14 +59,14 @@ def finished(
 
 
 def without_noise(text: str) -> str:
-    """Return the kernel's text with a zero for every coordinate nearer to it than 1e-12."""
+    """Return the kernel's text with 0 for every coordinate below 1e-12 in magnitude."""
     return _POINT.sub(lambda point: _NOISE.sub("0.", point[0]), text)
 
 
 def _usage(start: str, number: int, rest: str) -> str:
-    """A usage by its number in the file. Its lines break by widths alone, whatever the kernel's number was.
+    """Return an assembly usage with its number in the file; line breaks do not depend on the kernel's number.
 
-    The kernel's writer may break before a comma; here a comma stays with what is before it.
+    The kernel's writer may break before a comma; here a comma stays on the line of the preceding word.
     """
     lines = [f"{start}'{number}',"]
     for token in _TOKEN.findall(rest.replace("\n  ", "").removesuffix(")")):
@@ -81,9 +82,10 @@ def _append(lines: list[str], token: str) -> None:
 
 
 def _annotated(data: str, names: Sequence[str]) -> str:
-    """Return the data with parameters as names of dimensions, and with the types of deviations."""
+    """Return the data section with parameters as names of dimensions, and with the types of deviations."""
     number = iter(names)
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
+    named = named.replace(_PEN.format("white"), _PEN.format("magenta"))  # on white paper and on black screens
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 
@@ -100,7 +102,10 @@ def _styles(data: str, colours: Iterable[Colour]) -> str:
 
 
 def _last_number(data: str) -> int:
-    """Return the number of the last entity of a data section; found from its end, for the section is long."""
+    """Return the number of the last entity of a data section.
+
+    Search from its end, because the section is long.
+    """
     place = data.rfind("\n#")
     while (last := _NUMBER.match(data, place + 1)) is None:
         place = data.rindex("\n#", 0, place)
@@ -108,7 +113,7 @@ def _last_number(data: str) -> int:
 
 
 def _style(n: int, solid: str, context: str, colour: Colour) -> Iterator[str]:
-    """Yield the nine entities, numbered from n, by which ISO 10303-46 gives a solid its colour."""
+    """Yield the nine entities, numbered from n, that define the colour of a solid by ISO 10303-46."""
     red, green, blue = (f"{channel:.6f}" for channel in colour)
     entities = (
         f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{n + 1}),{context})",

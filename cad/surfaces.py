@@ -1,7 +1,7 @@
-"""Surfaces of a finished solid: planes, cylinders, spheres, tori, cones; dimensions are read from them.
+"""Surfaces of a finished solid (planes, cylinders, spheres, tori, cones), from which dimensions are read.
 
-A dimension that is read from faces is a `Size`: a number that knows its faces. The STEP file states a
-tolerance on these faces, and a drawing places the dimension by them.
+A dimension read from faces is a `Size`: a number with references to its faces. The STEP file states a
+tolerance on these faces, and a drawing uses them to place the dimension.
 """
 
 from __future__ import annotations
@@ -39,42 +39,42 @@ an `edge` is where its faces meet, dimensioned from the axis."""
 
 @dataclass(frozen=True)
 class Place:
-    """The faces of a size; those of a distance or an angle lie on two sides."""
+    """The faces of a size; those of a distance or an angle are on two sides."""
 
     first: tuple[Face, ...]
     second: tuple[Face, ...] = ()
 
 
 class Size(float):
-    """A length [mm] or an angle [deg] that is read from faces; a number wherever one is wanted.
+    """A length [mm] or an angle [deg] read from faces, which can be used as a number.
 
-    A length that repeats, as that of all pins of a shaft, has a place for each repetition.
+    A repeated length, such as that of all pins of a shaft, has a place for each repetition.
     """
 
     kind: Kind
     places: tuple[Place, ...]
 
     def __new__(cls, value: float, kind: Kind, *places: Place) -> Self:
-        """Return a number with its faces."""
+        """Return a number with references to its faces."""
         size = super().__new__(cls, value)
         size.kind, size.places = kind, places
         return size
 
     @staticmethod
     def diameter(surfaces: Sequence[Surface]) -> Size:
-        """Return the diameter of cylinders, all of which are alike."""
+        """Return the common diameter of cylinders."""
         value = alike((one.diameter for one in surfaces), "diameters")
         return Size(value, "diameter", Place(faces_of(surfaces)))
 
     @staticmethod
     def sphere(surfaces: Sequence[Surface]) -> Size:
-        """Return the diameter of spheres, all of which are alike."""
+        """Return the common diameter of spheres."""
         value = alike((one.diameter for one in surfaces), "balls")
         return Size(value, "sphere", Place(faces_of(surfaces)))
 
     @staticmethod
     def radius(surfaces: Sequence[Surface]) -> Size:
-        """Return the radius of cylinders, or of the tubes of tori, all of which are alike."""
+        """Return the common radius of cylinders, or of the tubes of tori."""
         value = alike((one.diameter / 2 for one in surfaces), "radii")
         return Size(value, "radius", Place(faces_of(surfaces)))
 
@@ -85,18 +85,18 @@ class Size(float):
 
     @staticmethod
     def wall(inner: Sequence[Surface], outer: Sequence[Surface]) -> Size:
-        """Return the wall between cylinders about one axis."""
+        """Return the wall thickness between cylinders about one axis."""
         return Size.distance((outer[0].diameter - inner[0].diameter) / 2, inner, outer)
 
     @staticmethod
     def circle(holes: Sequence[Surface]) -> Size:
-        """Return the diameter of the circle about z on which the axes of holes along z lie."""
+        """Return the diameter of the pitch circle about z of holes along z."""
         value = alike((2 * one.point.cross(Z).Length for one in holes), "distances of holes from the axis")
         return Size(value, "circle", Place(faces_of(holes)))
 
     @staticmethod
     def repeated(sizes: Iterable[float], what: str) -> float:
-        """Return the common value of equal sizes, at the places of all of them.
+        """Return the common value of equal sizes, with the places of all of them.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Size(float):
 
 
 def alike(values: Iterable[float], what: str) -> float:
-    """Return the one value of a dimension that several features share.
+    """Return the common value of a dimension that several features share.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def faces_of(surfaces: Iterable[Surface]) -> tuple[Face, ...]:
 
 @dataclass(frozen=True)
 class Surface:
-    """A plane, cylinder, sphere, torus or cone: a point on it or its axis, its normal or axis, its diameter.
+    """A plane, cylinder, sphere, torus or cone with its position, its normal or axis, and its diameter.
 
     Attributes
     ----------
@@ -169,21 +169,21 @@ class Surface:
     form: Form = field(default="plane", compare=False)
 
     def along(self, axis: Vector) -> bool:
-        """Return whether the surface's direction is that of the axis, either way round."""
+        """Return whether the surface's direction is parallel to the axis."""
         return bool(self.direction.cross(axis).Length < _COINCIDENT)
 
     def about(self, axis: Vector) -> bool:
-        """Return whether the surface turns about that axis through the origin."""
+        """Return whether the surface is coaxial with that axis through the origin."""
         turns, through = self.direction.cross(axis), self.point.cross(axis)
         return bool(turns.Length < _COINCIDENT and through.Length < _COINCIDENT)
 
     def holds(self, axis: Vector) -> bool:
-        """Return whether the plane holds that axis through the origin."""
+        """Return whether the plane contains that axis through the origin."""
         flat, upright = self.point.dot(self.direction), self.direction.dot(axis)
         return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
 
     def turned(self, axis: Vector) -> Surface:
-        """Return the same surface, its direction that of the axis and not against it."""
+        """Return the same surface with its direction along the axis, not against it."""
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
@@ -192,7 +192,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class PartSurfaces:
-    """The surfaces of one part, in its own coordinates, and how many of it there are."""
+    """The surfaces of one part in its own coordinates, and the number of its copies."""
 
     count: int
     planes: tuple[Surface, ...]
@@ -207,24 +207,27 @@ class PartSurfaces:
         return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
 
     def levels(self, axis: Vector) -> list[float]:
-        """Return the coordinates [mm] at which planes cross the axis at a right angle, ascending."""
+        """Return the coordinates [mm] at which planes are perpendicular to the axis, ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def planes_at(self, axis: Vector, level: float) -> list[Surface]:
-        """Return the planes that cross the axis at a right angle at a coordinate [mm]."""
+        """Return the planes perpendicular to the axis at a coordinate [mm]."""
         across = (plane for plane in self.planes if plane.along(axis))
         return [plane for plane in across if abs(plane.point.dot(axis) - level) < _COINCIDENT]
 
     def between(self, axis: Vector, first: int, last: int) -> float:
-        """Return the distance between two planes across the axis, counted from the lowest; -1 is the last."""
+        """Return the distance between two planes perpendicular to the axis, numbered from the lowest.
+
+        -1 is the last.
+        """
         levels = self.levels(axis)
         return self.apart(axis, levels[first], levels[last])
 
     def apart(self, axis: Vector, low: float, high: float, near: Vector | None = None) -> float:
-        """Return the distance between the planes across the axis at two coordinates [mm].
+        """Return the distance between the planes perpendicular to the axis at two coordinates [mm].
 
-        It is a plain number where one of them has no plane. With `near`, a point, only the nearest plane at
-        each coordinate is meant.
+        The result is a plain number if there is no plane at one of them. With `near`, a point, only the
+        nearest plane at each coordinate is used.
         """
         first, second = self.planes_at(axis, low), self.planes_at(axis, high)
         if near is not None:
@@ -232,11 +235,14 @@ class PartSurfaces:
         return Size.distance(high - low, first, second) if first and second else high - low
 
     def length(self, axis: Vector) -> float:
-        """Return the distance from the first to the last plane across the axis [mm]."""
+        """Return the distance from the first to the last plane perpendicular to the axis [mm]."""
         return self.between(axis, 0, -1)
 
     def chamfer(self, value: float, ring: Sequence[Surface]) -> float:
-        """Return a chamfer [mm] of 45° at the ends of cylinders about z; a plain number if no cone has it."""
+        """Return the size [mm] of a 45° chamfer at the ends of cylinders about z.
+
+        A plain number if there is no cone of that size.
+        """
         low, high = min(one.reach[0] for one in ring), max(one.reach[1] for one in ring)
         cones = [cone.turned(Z) for cone in self.cones if cone.about(Z)]
         beyond = [
@@ -251,11 +257,11 @@ class PartSurfaces:
         return Size(value, "chamfer", Place(faces_of(beyond))) if beyond else value
 
     def about(self, axis: Vector) -> list[Surface]:
-        """Return the cylinders about the axis, each pointing along it."""
+        """Return the cylinders about the axis, with their directions along it."""
         return [cylinder.turned(axis) for cylinder in self.cylinders if cylinder.about(axis)]
 
     def rings(self, axis: Vector) -> list[list[Surface]]:
-        """Return the cylinders about the axis by their diameter, the thinnest first."""
+        """Return the cylinders about the axis by their diameter, the smallest first."""
         about = self.about(axis)
         sizes = _distinct(cylinder.diameter for cylinder in about)
         return [[c for c in about if abs(c.diameter - size) < _COINCIDENT] for size in sizes]
@@ -266,7 +272,7 @@ class PartSurfaces:
 
 
 def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
-    """Look at every face of a solid of which there are `count`; `part` is its name."""
+    """Return the surfaces of a solid of which there are `count` copies; `part` is its name."""
     of = defaultdict[Any, list[Surface]](list)
     for number, face in enumerate(solid.Faces()):
         adaptor = BRepAdaptor_Surface(face.wrapped)
@@ -329,11 +335,11 @@ _READERS = constant(
 
 
 def _distance(plane: Surface, point: Vector) -> float:
-    """Return the distance of the middle of a plane from a point [mm]."""
+    """Return the distance of the centroid of a plane from a point [mm]."""
     return float((plane.middle - point).Length) if plane.middle is not None else 0.0
 
 
 def _distinct(values: Iterable[float]) -> list[float]:
-    """Return the values in ascending order, those that coincide once."""
+    """Return the values in ascending order, without repeating values that coincide."""
     ordered = sorted(values)
     return ordered[:1] + [high for low, high in pairwise(ordered) if high - low > _COINCIDENT]

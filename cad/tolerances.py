@@ -10,14 +10,14 @@ tolerances:
     }
 
 `datum` makes the faces of the dimension a datum. `cylindricity`, `perpendicularity` and `parallelism` are
-shares of the dimension's own tolerance, upper less lower limit; the last two need `to`, the datum. They are
-written only where the dimension has a tolerance. Nothing here calculates: a released model may change it
-(`MARKS`).
+shares of the dimension's own tolerance, which is the upper minus the lower limit; the last two need `to`, the
+datum. They are written only if the dimension has a tolerance. The declaration does not affect results, so a
+released model may change it (`MARKS`).
 
-Which faces carry a dimension is said in one place, `CadModel.dimensions`, which reads it from them as a
+Only `CadModel.dimensions` defines the faces of a dimension: it reads the dimension from them as a
 `cad.surfaces.Size`.
 
-No kernel is imported here.
+This module does not import the kernel.
 """
 
 from __future__ import annotations
@@ -43,18 +43,18 @@ _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
 @dataclass(frozen=True)
 class FormTolerances:
-    """What the tolerance of a dimension brings with it.
+    """The datum and the geometric tolerances that accompany the tolerance of a dimension.
 
     Attributes
     ----------
     name
         The parameter.
     datum
-        The letter of the datum that its faces are; empty if they are none.
+        The letter of the datum that the faces form; empty if they form none.
     forms
-        Geometric tolerances as shares of the dimension's own tolerance.
+        The geometric tolerances, as shares of the dimension's own tolerance.
     to
-        The letter of the datum to which perpendicularity and parallelism refer.
+        The letter of the datum for perpendicularity and parallelism.
     """
 
     name: str
@@ -74,16 +74,16 @@ class Limits:
 
     @property
     def width(self) -> float:
-        """Return the upper less lower limit [mm]."""
+        """Return the upper minus the lower limit [mm]."""
         return round(self.upper - self.lower, _DIGITS)
 
     def share(self, part: float) -> float:
-        """Return a share of the width [mm], as geometric tolerances are declared."""
+        """Return a share of the width [mm], as the declarations of geometric tolerances use it."""
         return round(self.width * part, _DIGITS)
 
 
 class TolerancedTemplate(Template):
-    """Base of models: a template whose solid has parameters on its faces, so they may have tolerances."""
+    """Base class of models, whose parameters may have tolerances on the faces of the solid."""
 
     toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
     """Which parameters may have limits in the STEP file, in the words of this module."""
@@ -94,12 +94,12 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, FormTolerances]:
-    """Return the declarations of a model, by parameter.
+    """Return the declarations of tolerances of a model, by parameter.
 
     Raises
     ------
     TypeError
-        If the declaration makes no sense; it names the parameter and says what would be right.
+        If the declaration is wrong; the message names the parameter and states what would be right.
     """
     read_ = {name: _carried(cls, name, dict(said)) for name, said in cls.toleranced.items()}
     letters = {one.datum for one in read_.values() if one.datum}
@@ -136,7 +136,7 @@ def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
 
 
 def limits(model: TolerancedTemplate) -> dict[str, Limits]:
-    """Return the limits that a user gave to dimensions of a model that may have them, by parameter."""
+    """Return, by parameter, the limits that a user gave to dimensions that may have them."""
     declared, given = type(model).toleranced, model.ledger.typed
     return dict(
         _single((name, typed) for name in declared if isinstance(typed := given.get(name), TypedQuantity))
@@ -149,7 +149,7 @@ def limits_in(header: Header) -> dict[str, Limits]:
 
 
 def limits_of(texts: Mapping[str, str]) -> dict[str, Limits]:
-    """Return the limits in parameters as texts, such as `48 mm H7`, by parameter."""
+    """Return the limits in parameters given as text, such as `48 mm H7`, by parameter."""
     return dict(_single(_read(texts)))
 
 
@@ -164,7 +164,7 @@ def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, TypedQuantity]]:
 
 
 def _single(pairs: Iterator[tuple[str, TypedQuantity]]) -> Iterator[tuple[str, Limits]]:
-    """Yield the limits of single values, where they leave any room."""
+    """Yield the limits of single values whose limits differ."""
     for name, typed in pairs:
         tolerance, si = typed.tolerance, typed.si
         if isinstance(tolerance, Tolerance) and isinstance(si, float):
@@ -187,3 +187,18 @@ def in_unit(within: Limits, name: str) -> tuple[float, float]:
     factor = unit("mm").factor / unit(name).factor
     lower, upper = (float(f"{end * factor:.12g}") for end in (within.lower, within.upper))
     return lower, upper
+
+
+def deviations(limits: Limits) -> tuple[str, str]:
+    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
+    texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
+    digits = max(1, *(len(text.partition(".")[2]) for text in texts))
+    if limits.upper == -limits.lower:
+        return f"±{limits.upper:.{digits}f}", ""
+    upper, lower = (f"{end:+.{digits}f}" if end else "0" for end in (limits.upper, limits.lower))
+    return upper, lower
+
+
+def number_of(value: float, digits: int) -> str:
+    """Return a number with at most this many decimals."""
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")

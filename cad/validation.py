@@ -1,4 +1,4 @@
-"""A STEP file with added validation properties: volume, area and centroid.
+"""Add validation properties to a STEP file: volume, area and centroid.
 
 Builds without tolerances keep their files unchanged, so the properties are written into a copy. They follow
 the recommended practices of the CAx Interoperability Forum, as in `cad.properties`: a program that reads the
@@ -19,22 +19,22 @@ _NUMBER = re.compile(rb"^#(\d+) *=", re.MULTILINE)
 
 
 def with_validation(step: bytes) -> bytes:
-    """Return the file with the properties of each part; as it is if it has some.
+    """Return the file with the properties of each part; unchanged if it already has some.
 
     Parameters
     ----------
     step
-        A STEP file of a build. Its parts have different names.
+        A STEP file of a build, whose parts have different names.
 
     Returns
     -------
     bytes
-        The same for the same file. Volumes are in mm³, areas in mm², centroids in mm.
+        The STEP file with volumes in mm³, areas in mm² and centroids in mm; equal files give equal bytes.
 
     Raises
     ------
     UnreadableStep
-        If the bytes are no STEP file, or two parts have one name.
+        If the bytes are not a STEP file, or two parts have the same name.
     """
     if is_validated(step):
         return step

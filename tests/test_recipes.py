@@ -1,7 +1,7 @@
 """The recipes of docs/contributing.md, carried out literally on a copy of the tree.
 
-Blocks count in their order: a shell block is run, a block with a file's name is written, a difference is
-given to `git apply`, and a block of plain text is what the shell block before it prints.
+Blocks are handled in order: a shell block is run, a block with a file name is written, a diff is applied by
+`git apply`, and a block of plain text is the expected output of the shell block before it.
 """
 
 import json
@@ -17,7 +17,8 @@ from patience import patient
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
-OUTPUT, FORMAT, FILTER = "one more output, as a new version", "a new file format", "one more filter on a list"
+OUTPUT, FORMAT = "an additional output, as a new version", "a new file format"
+FILTER = "an additional filter on a list"
 FIELD, SECTION = "a field of a resource", "a section of a page"
 RECIPES = (OUTPUT, FORMAT, FILTER, FIELD, SECTION)
 BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)

@@ -1,1 +1,1 @@
-"""The REST interface: reading requests, problems, waiting for jobs."""
+"""Parts that REST routes share: dependencies, responses, event streams, and answers that jobs compute."""

@@ -1,4 +1,4 @@
-"""Send the answer to a question: the answer itself, or 202 with the job that computes it."""
+"""Respond to a request that a job may have to compute: with the answer, or with 202 and the job."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ async def answered(
     seconds: float,
     media_type: str = "application/json",
 ) -> Response:
-    """Return the answer to a question, or 202 with its job and the available parts when the time is up.
+    """Return the answer to a request, or 202 with its job and the available parts when the time is up.
 
     The time that the client waits [s] is limited by the deadline of calculations. The calculation ends if the
     client disconnects.
@@ -43,9 +43,9 @@ async def answered(
     Raises
     ------
     QueueFull
-        Too many calculations, or jobs, are waiting.
+        If too many calculations or jobs are waiting.
     Exception
-        The question itself raises it.
+        An error of the calculation itself.
     """
     services = services_of(request)
     await expensive_steps(request, client)
@@ -67,16 +67,16 @@ async def answered(
 async def answer_of(
     services: Services, job: str, request: Request, client: str, prefer: str | None = None
 ) -> Response:
-    """Return the answer of a job; 202 while the job runs, its problem if it failed.
+    """Return the answer that a job computed; 202 while the job runs, its problem if it failed.
 
-    A lost answer is calculated again, while the client waits as it prefers.
+    A lost answer is calculated again; the client's preference states how long it waits for that.
 
     Raises
     ------
     JobNotFound
-        If there is no job that answers a question.
+        If there is no such job, or it computes no answer.
     CannotRebuild
-        The answer and its question are lost.
+        If both the answer and its request are lost.
     """
     row = await run_in_threadpool(_answering, services, job)
     if not row.finished:
@@ -106,7 +106,7 @@ async def _calculated_again(
 
 
 def _answering(services: Services, id: str) -> Job:
-    """Return the job if its result is an answer; raises JobNotFound."""
+    """Return a job whose result is an answer; raise JobNotFound for any other."""
     row = services.jobs.get(id)
     if row.kind not in ANSWERS:
         raise JobNotFound(id)

@@ -1,6 +1,6 @@
-"""FastAPI dependencies of routes: the parts of `Services`, and the parts of a request besides its body.
+"""FastAPI dependencies of routes: the parts of `Services`, and parts of a request other than its body.
 
-The functions are async although they wait for nothing: FastAPI would run each sync function in a thread.
+The functions are async although they await nothing, because FastAPI would run each sync function in a thread.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def services_of(request: Request) -> Services:
 
 
 def _part(name: str) -> Callable[[Request], Awaitable[object]]:
-    """Return a dependency that provides a part of the services by its name."""
+    """Return a dependency that provides the part of the services with this name."""
 
     async def part(request: Request) -> object:
         return getattr(services_of(request), name)
@@ -117,7 +117,7 @@ TheOnce = Annotated[Once, Depends(get_once)]
 
 
 async def expensive_steps(request: Request, client: TheClient) -> None:
-    """Allow a route to evaluate expensive steps in the pool; a dependency of routers."""
+    """Let the route of a request evaluate expensive steps in the pool; a dependency of routers."""
     steps = services_of(request).steps
     call_as(Caller(steps, client, steps.begun()))
 
@@ -126,7 +126,7 @@ ExpensiveSteps = Depends(expensive_steps)
 
 
 async def one_stream(request: Request, client: TheClient) -> AsyncIterator[Still]:
-    """Count a stream from its first byte to its end, and detect that end."""
+    """Count an event stream while it is open, and detect when it ends."""
     streams = services_of(request).streams
     streams.enter(client)
     try:

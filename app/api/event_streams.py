@@ -1,6 +1,6 @@
-"""Event streams that resume where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
+"""Event streams that resume where the client left off, by `id` and `Last-Event-ID` of the HTML standard.
 
-Browsers send this header automatically when they reconnect.
+Browsers send `Last-Event-ID` automatically when they reconnect.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Still = Callable[[], Awaitable[bool]]
 
 
 async def always() -> bool:
-    """Return at once: without keys a stream may always continue."""
+    """Return True at once: if the service requires no keys, every stream may continue."""
     return True
 
 
@@ -54,7 +54,7 @@ async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
 
 @asynccontextmanager
 async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
-    """Listen to a topic; if the database becomes unavailable the stream ends, and the client reconnects."""
+    """Listen to a topic; if the database becomes unavailable, the stream ends and the client reconnects."""
     with suppress(DatabaseUnavailable):
         async with events.subscribe(topic) as subscription:
             yield subscription
@@ -63,14 +63,14 @@ async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
 def identity(number: int | None) -> str | None:
     """Return the `id` of an event.
 
-    An event that is not stored has none: the client keeps the previous id.
+    An event that is not stored has no id, so the client keeps the previous one.
     """
     return None if number is None else str(number)
 
 
 @dataclass(frozen=True)
 class Whole:
-    """The whole content that a stream shows at every event, and the number of that event."""
+    """The complete content that a stream sends with every event, and the number of that event."""
 
     number: int
     state: str
@@ -86,9 +86,9 @@ class Whole:
 async def as_it_stands(
     events: Subscription, still: Still, read: Callable[[], Whole], last: int | None, **more: str
 ) -> AsyncIterator[ServerSentEvent]:
-    """Yield the content whenever it changes, and its progress with `more`, until it has ended.
+    """Yield the content whenever it changes, with its progress by `more`, until the work has ended.
 
-    A client that has the current state receives only later changes.
+    A client that already has the current state receives only later changes.
     """
     now = await run_in_threadpool(read)
     events.number = now.number

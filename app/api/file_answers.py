@@ -35,9 +35,10 @@ UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None
 async def lost(
     sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None, *, same: bool = False
 ) -> Response | None:
-    """Return None if an artifact is intact, else the response to send while it is rebuilt or if it cannot be.
+    """Return None if an artifact is intact, else the response to send: 503 during its rebuild, or a problem.
 
-    `same` requires the original bytes; otherwise a row that now names different bytes is accepted too.
+    With `same`, only the original bytes are accepted; otherwise a row that now names other bytes is accepted
+    too.
     """
     if await to_thread.run_sync(healing.is_good, sha):
         return None
@@ -45,12 +46,12 @@ async def lost(
         return answer
     if await to_thread.run_sync(healing.is_good, sha):
         return None
-    # A job that was under way already may have passed the file before that was lost: the next one has not.
+    # A job that was already running may have checked the file before it was lost; the next job has not.
     try:
         if answer := await _unless_healed(sha, healing, jobs, prefer):
             return answer
     except ArtifactMissing:
-        pass  # the row names other bytes by now
+        pass  # the row now names other bytes
     if same and not await to_thread.run_sync(healing.is_good, sha):
         return problems.answer(problems.describe(other_bytes(sha)))
     return None
@@ -74,15 +75,15 @@ async def _unless_healed(
 
 def rebuilding(sha: str, job: str) -> Response:
     """Return 503 for an artifact that a job is rebuilding."""
-    about = problems.problem(REBUILDING, f"artifact {sha} was missing or damaged and is made again")
+    about = problems.problem(REBUILDING, f"artifact {sha} was missing or damaged and is being rebuilt")
     place = f"/api/v1/jobs/{job}"
     return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})
 
 
 class StoredFile(FileResponse):
-    """A verified artifact: the open file stays the one that was verified, and is watched while it is sent.
+    """A response with a verified artifact; it sends the open file that was verified, and watches for changes.
 
-    A client that has it already gets 304; Range and If-Range are Starlette's.
+    A client that already has the file receives 304. Starlette handles Range and If-Range.
     """
 
     def __init__(
@@ -104,7 +105,7 @@ class StoredFile(FileResponse):
         opened = await to_thread.run_sync(self._store.open, self._sha)
         with opened:
             descriptor = opened.file.fileno()
-            self.path = f"/dev/fd/{descriptor}"  # this file, whatever takes its name
+            self.path = f"/dev/fd/{descriptor}"  # this open file, even if its name is reused
             self.stat_result = os.fstat(descriptor)
             self.set_stat_headers(self.stat_result)
             await super().__call__(scope, receive, self._watched(opened, send))
@@ -119,10 +120,16 @@ class StoredFile(FileResponse):
         return watched
 
     def _verified_again(self, opened: OpenFile) -> OpenFile:
-        """Return the file after a change that kept its bytes, such as a new time or a lost name."""
+        """Verify the changed file again, and return it if its bytes are the same, as after a new time stamp.
+
+        Raises
+        ------
+        ArtifactDamaged
+            If the bytes have changed.
+        """
         stamp = stamp_of(opened.file)
         opened.file.seek(0)
         if hashlib.file_digest(opened.file, "sha256").hexdigest() != self._sha:
-            self._store.exists(self._sha)  # sets it aside, if it still has the name
+            self._store.exists(self._sha)  # moves the file aside, if it still has its name
             raise ArtifactDamaged(self._sha, "it changed while it was being sent")
         return OpenFile(opened.file, stamp)

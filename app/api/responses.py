@@ -1,7 +1,7 @@
 """Build the responses of routes: waiting, worker threads, 202 with a job, JSON and its compression.
 
 Routes that may wait for the pool of calculation processes have their own threads, so that they never block
-the other routes.
+other routes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from app.schemas.answers import Accepted, Answer
 from app.schemas.problems import Responses
 
 LONGEST = 60.0  # s
-SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
+SMALLEST, LEVEL = 1000, 6  # smallest body that is compressed [bytes], compression level
 PLAIN = ("/events", "/evaluate", ".png", ".step")
 """Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
 CALCULATED = re.compile("/api/v1/(evaluations/.*|templates/.*/worksheet)")
@@ -36,12 +36,12 @@ LATER: Responses = {
 
 
 def later(answer: type[Answer]) -> Responses:
-    """Describe an answer whose 202 contains the available part of the result."""
-    described = "the answer as far as it goes: the work goes on, and its job is in the header Location"
+    """Describe, for OpenAPI, a route whose 202 response contains the available part of the result."""
+    described = "the available part of the answer; the work continues, and the header Location names its job"
     return {202: {"description": described, "model": answer}}
 
 
-MOST_ACCEPTED = 50  # kinds in one Accept; browsers send up to ten
+MOST_ACCEPTED = 50  # media types in one Accept header; browsers send up to ten
 _WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 
@@ -52,7 +52,7 @@ def accepted_kinds(accept: str | None) -> list[tuple[str, str]]:
 
 
 def accepted_weights(accept: str | None) -> dict[str, float]:
-    """Return the weight `q` of each media type of an Accept header, 0 to 1; 1 where it names none."""
+    """Return the weight `q` [0 to 1] of each media type of an Accept header; 1 if the header states none."""
     return {media: _weight(parameters) for media, parameters in accepted_kinds(accept)}
 
 
@@ -73,7 +73,7 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
 
 
 def patience(prefer: str | None, default: float) -> float:
-    """Return how long the client waits for an answer [s]: its preference, or the default."""
+    """Return how long the client waits for an answer [s]: as its Prefer header states, or the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
@@ -111,7 +111,7 @@ WATCHED = 0.05
 
 
 class Threads:
-    """Threads of routes that may wait for the pool, so that those of the others are free."""
+    """Threads for routes that may wait for the pool; the threads of all other routes stay free."""
 
     def __init__(self) -> None:
         self._limiter: CapacityLimiter | None = None
@@ -144,9 +144,9 @@ class Threads:
     async def run_within(
         self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Run a function as `run_for`, and defer the steps that take longer than this time [s].
+        """Run a function as `run_for` does, and defer every step that would take longer than `seconds`.
 
-        The deadline of the calculation limits that time.
+        The deadline of calculations limits that time.
         """
         if caller := present_caller():
             caller.until = time.monotonic() + min(seconds, caller.steps.deadline)
@@ -154,7 +154,7 @@ class Threads:
 
 
 def _closing(caller: Caller, function: Callable[[], T]) -> T:
-    """Call a function, then end its calculations that no job took over."""
+    """Call a function, then end those of its calculations that no job has taken over."""
     failed = True
     try:
         result = function()
@@ -170,13 +170,13 @@ async def _note_leaving(request: Request, caller: Caller) -> None:
 
 
 class Compression:
-    """ASGI middleware that compresses pages and answers, but no stream."""
+    """ASGI middleware that compresses pages and answers, but no event stream."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app, self.compressed = app, GZipMiddleware(app, minimum_size=SMALLEST, compresslevel=LEVEL)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the response on, compressed or not."""
+        """Pass the response on, compressed if the client accepts that."""
         is_plain = scope["type"] != "http" or _is_plain(scope["path"])
         await (self.app if is_plain else self.compressed)(scope, receive, send)
 

@@ -47,7 +47,7 @@ from app.worksheets.service import Worksheets
 
 @dataclass(frozen=True)
 class Services:
-    """The parts of the service; each part ends with the application."""
+    """All parts of the service; each part is closed when the application ends."""
 
     settings: Settings
     catalogues: Catalogues

@@ -1,1 +1,1 @@
-"""Approval of revisions by three principals, and comments on them."""
+"""Approval of revisions by three principals, and comments on revisions."""

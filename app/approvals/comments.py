@@ -1,4 +1,4 @@
-"""Comments on revisions: plain text, on one name or the whole revision, open until resolved."""
+"""Comments on revisions: plain text about one name or the whole revision, open until they are resolved."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Comments:
         self.database = database
 
     def page(self, id: str, number: int | None, limit: int, before: str | None) -> list[CommentRow]:
-        """Return one page of the comments on a revision or a design, plus one comment if there are more.
+        """Return one page of the comments on a revision or a design, newest first.
 
-        The newest comments come first.
+        The list has one comment more than the page if there is a next page.
 
         Raises
         ------
@@ -49,7 +49,7 @@ class Comments:
             return list(session.scalars(query.order_by(CommentRow.id.desc()).limit(limit + 1)))
 
     def add(self, id: str, number: int, body: CommentIn, once: Once) -> Comment:
-        """Add a comment by the acting principal, and return it.
+        """Add a comment by the acting principal, and return the comment.
 
         Raises
         ------
@@ -138,7 +138,7 @@ def _place(row: CommentRow) -> str:
 
 
 def _require_name(row: RevisionRow, subject: str) -> None:
-    """Check that a revision has this name; raises InvalidInputs."""
+    """Check that a revision has the name that a comment is about; raises InvalidInputs."""
     names = set(_names(row))
     if subject in names:
         return
@@ -150,7 +150,7 @@ def _require_name(row: RevisionRow, subject: str) -> None:
 
 
 def _names(row: RevisionRow) -> Iterator[str]:
-    """Yield parameters, blocks, their values, criteria and variants of a revision."""
+    """Yield the names of a revision's parameters, blocks, values, criteria and variants."""
     document, results = row.document, row.results or {}
     yield from document["parameters"]
     for name, step in document["steps"].items():

@@ -1,4 +1,4 @@
-"""The content that a signature covers: document, results, files, signer, time and previous step."""
+"""The content that a signature covers: the document, results, files, signer, time and previous step."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def present(session: Session, row: RevisionRow) -> Present:
 
 
 def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
-    """Return the criteria of a revision as judged; over variants, each at its worst one."""
+    """Return the criteria of a revision as judged; with variants, each criterion at its worst variant."""
     judged = results_of(session, row).judged.get("criteria")
     return judged if isinstance(judged, list) else []
 
@@ -43,7 +43,7 @@ def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
 def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
     """Return the digest of the content to sign; it stays the same until a step is taken.
 
-    Of the files it covers only the STEP files: other files are derived from them on request.
+    It covers only the STEP files, because the service derives all other files from them.
     """
     steps = {name: {STEP: kinds[STEP]} for name, kinds in now.files.items() if STEP in kinds}
     return digest(
@@ -59,7 +59,7 @@ def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
 
 
 def require_files(row: RevisionRow, now: Present) -> Files:
-    """Return the files of a revision that is calculated and has a solid of every model.
+    """Return the files of a revision that is calculated and has a solid for every model.
 
     Raises
     ------

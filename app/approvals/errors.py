@@ -2,8 +2,8 @@
 
 ApprovalError
     NotReady            the revision is not calculated, or a file of it is missing
-    OutOfOrder          another step comes first, or the step is taken
-    Unacknowledged      what is said of unconfirmed criteria is missing, or needless
+    OutOfOrder          another step must be taken first, or this step was already taken
+    Unacknowledged      the statement on unconfirmed criteria is missing, or not needed
     SamePrincipal       the principal has taken another step, or is not the author
     OtherDigest         the content to sign has changed since the signer read it
 """
@@ -14,23 +14,23 @@ from app.identity.principal import LOCAL
 
 
 class ApprovalError(Exception):
-    """Anything that approval refuses."""
+    """Base class of all errors that refuse an approval."""
 
 
 class NotReady(ApprovalError):
-    """The revision cannot be signed as it is."""
+    """The revision cannot be signed in its present state."""
 
 
 class Unacknowledged(ApprovalError):
-    """What the signer says about criteria that are not confirmed is missing, or there are none."""
+    """The signer's statement on unconfirmed criteria is missing, or no criterion is unconfirmed."""
 
 
 class OutOfOrder(ApprovalError):
-    """Another step comes first, or the step is taken."""
+    """Another step must be taken first, or this step was already taken."""
 
 
 class SamePrincipal(ApprovalError):
-    """The principal may not take this step, because of another that it has taken."""
+    """The principal may not take this step because it took another step, or is or is not the author."""
 
     def __init__(self, detail: str, principal: str) -> None:
         if principal == LOCAL.id:
@@ -39,11 +39,11 @@ class SamePrincipal(ApprovalError):
 
 
 class OtherDigest(ApprovalError):
-    """What there is to sign is not what the signer saw."""
+    """The content to sign has changed since the signer read it."""
 
     def __init__(self, right: str) -> None:
         self.headers = {"ETag": f'"{right}"'}
         super().__init__(
-            "what there is to sign is not what If-Match names: read the revision and its approvals again; "
+            "the content to sign is not that of If-Match: read the revision and its approvals again; "
             f'then sign with If-Match: "{right}"'
         )

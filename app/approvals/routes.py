@@ -50,7 +50,7 @@ def sign_revision(
     """Take a step: `calculated` by its author, `checked` and `released` by two other principals.
 
     After the first step the revision is locked and never changes. Every checker can withdraw a release that
-    proves wrong, with a reason (`withdrawn`); the revision stays unchanged.
+    proves wrong (`withdrawn`) and must state a reason; the revision itself stays unchanged.
     """
     if if_match is None:
         raise PreconditionRequired("send If-Match with the value of `to_sign` from the approvals, in quotes")
@@ -75,7 +75,7 @@ def list_comments(
 
 @router.post("/revisions/{number}/comments", status_code=201, responses=refusals(404))
 def add_comment(id: Id, number: Number, body: CommentIn, comments: TheComments, once: TheOnce) -> Comment:
-    """Add a comment on a revision, or on one of its names; the revision does not change."""
+    """Add a comment on a revision or on one name in it; the revision itself does not change."""
     return comments.add(id, number, body, once)
 
 

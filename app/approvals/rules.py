@@ -21,11 +21,11 @@ ROLES: dict[Step, Role] = {
 
 ACKNOWLEDGING: tuple[Step, ...] = ("checked", "released")
 """The steps that say that a design is right."""
-MOST_NAMED = 3  # criteria in a refusal
+MOST_NAMED = 3  # largest number of criteria that a refusal lists
 
 
 def unconfirmed(criteria: Iterable[Criterion]) -> list[str]:
-    """Return the criteria that are not met with a known error and not waived, each in a sentence."""
+    """Return one sentence for each criterion that is not waived and not met with a known error."""
     return [
         f"{one.name}: {one.stated()}"
         for one in criteria
@@ -36,19 +36,19 @@ def unconfirmed(criteria: Iterable[Criterion]) -> list[str]:
 def require_acknowledgement(
     step: Step, acknowledged: str | None, sentences: Sequence[str], number: int
 ) -> None:
-    """Check that a signer says why criteria that are not confirmed may stand, and only then.
+    """Require a statement on unconfirmed criteria if there are any, and refuse one if there are none.
 
     Raises
     ------
     Unacknowledged
-        If the statement is missing or has nothing to be about.
+        If the statement is missing, or every criterion is confirmed.
     """
     is_due = step in ACKNOWLEDGING and bool(sentences)
     if is_due and acknowledged is None:
         more = f"; and {len(sentences) - MOST_NAMED} more" if len(sentences) > MOST_NAMED else ""
         raise Unacknowledged(
             f"criteria of revision {number} are not confirmed: {'; '.join(sentences[:MOST_NAMED])}{more}. "
-            "Say in `acknowledged` why it may be signed all the same"
+            "State in `acknowledged` why it may be signed nevertheless"
         )
     if acknowledged is not None and not is_due:
         why = (
@@ -60,23 +60,23 @@ def require_acknowledgement(
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
-    """Return the last completed step."""
+    """Return the last completed step of an approval."""
     return last_of({row.step for row in taken}) or "unsigned"
 
 
 def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
-    """Return the next step towards a release; None after the release."""
+    """Return the next step towards a release; None once the revision is released."""
     steps = {row.step for row in taken}
     return next((step for step in ORDER[:3] if step not in steps), None)
 
 
 def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
-    """Check that a step is the next one.
+    """Check that a step is the next step.
 
     Raises
     ------
     OutOfOrder
-        If the step is already taken, or another one comes first.
+        If the step was already taken, or another step must be taken first.
     """
     for row in taken:
         if row.step in (step, "withdrawn"):
@@ -94,16 +94,16 @@ def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Seque
     Raises
     ------
     RoleNeeded
-        If its roles do not allow it.
+        If the principal's roles do not allow the step.
     SamePrincipal
-        If it took another step, or submits another author's revision.
+        If the principal took another step, or submits a revision of another author.
     """
     if not who.may(ROLES[step]):
         raise RoleNeeded(who, (ROLES[step],))
     if step == "withdrawn":
         return
     if step == "calculated":
-        if row.author not in (None, who.id):  # null: saved before there were principals
+        if row.author not in (None, who.id):  # null: saved before the service had principals
             detail = f"revision {row.number} was saved by another principal, who hands it over for checking"
             raise SamePrincipal(f"{detail}; or save a revision of your own", who.id)
         return

@@ -26,10 +26,7 @@ WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
 
 
 def _written(text: object) -> object:
-    """Return the value; refuse a text without letters or with control characters.
-
-    Raises ValueError.
-    """
+    """Return the text; raise ValueError if it has no letter or has control characters."""
     if isinstance(text, str) and not re.search(WRITTEN, text):
         plain = re.search(PLAIN, text)
         raise ValueError(
@@ -47,10 +44,10 @@ Text = Annotated[
 
 
 class SignedContent(Answer):
-    """The signed content; `digest` of its step is the SHA-256 of this as canonical JSON.
+    """The signed content; the `digest` of its step is the SHA-256 of this object as canonical JSON.
 
-    Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason`, `unconfirmed` and
-    `acknowledged` only where there are such.
+    In canonical JSON the names are sorted, there are no blanks, letters beyond ASCII are not escaped, and the
+    encoding is UTF-8. `reason`, `unconfirmed` and `acknowledged` are left out if they are empty.
     """
 
     design: str
@@ -58,15 +55,15 @@ class SignedContent(Answer):
     title: str = Field(description="name of the design in this revision")
     step: Step
     principal: str
-    name: str = Field(description="of the principal at that time")
+    name: str = Field(description="name of the principal at that time")
     at: str
-    document: str = Field(description="SHA-256 of what its user wrote, as canonical JSON")
-    results: str = Field(description="SHA-256 of what was calculated, likewise")
-    files: Files = Field(description="of every file of its solids that there was, at least STEP")
-    previous: str | None = Field(description="digest of the step before; null in the first one")
-    reason: str | None = Field(None, description="of a withdrawal")
+    document: str = Field(description="SHA-256 of the document as canonical JSON")
+    results: str = Field(description="SHA-256 of the calculated results as canonical JSON")
+    files: Files = Field(description="SHA-256 of every file of its solids, at least of STEP")
+    previous: str | None = Field(description="digest of the previous step; null for the first step")
+    reason: str | None = Field(None, description="reason for a withdrawal")
     unconfirmed: list[str] = Field([], description="criteria that are not confirmed, each in a sentence")
-    acknowledged: str | None = Field(None, description="why it was signed all the same")
+    acknowledged: str | None = Field(None, description="why it was signed nevertheless")
 
 
 class Approval(Answer):
@@ -74,7 +71,7 @@ class Approval(Answer):
 
     step: Step
     principal: str
-    name: str = Field(description="of the principal at that time")
+    name: str = Field(description="name of the principal at that time")
     at: str
     digest: str
     content: SignedContent
@@ -94,15 +91,15 @@ class Approvals(Answer):
     design: str
     revision: int
     state: ApprovalState
-    steps: list[Approval] = Field(description="in the order in which they were taken")
-    next: Step | None = Field(description="the step that comes next; null where none does")
+    steps: list[Approval] = Field(description="completed steps, in order")
+    next: Step | None = Field(description="the next step; null if there is none")
     unconfirmed: list[str] = Field(
         [],
         description="criteria that are not met with a known error, each in a sentence; "
-        "to check or release the revision, say in `acknowledged` why that may stand",
+        "to check or release the revision, state in `acknowledged` why that is acceptable",
     )
-    obstacle: str | None = Field(description="why whoever asks cannot take it now; null where nothing is")
-    to_sign: str = Field(description="digest of what there is to sign: send it as If-Match; also the ETag")
+    obstacle: str | None = Field(description="why you cannot take the next step now; null if you can")
+    to_sign: str = Field(description="digest of the content to sign: send it as If-Match; also the ETag")
     present: Present
     supersedes: int | None = Field(description="the released revision that this one replaces")
     superseded_by: int | None = Field(description="the newest released revision, if it is a later one")
@@ -115,24 +112,24 @@ class ReleasedRevision(Answer):
     revision: int
     title: str
     approval: Approval
-    report: str = Field(description="link to its report (PDF)")
-    files: Files = Field(description="links to the files of its solids")
+    report: str = Field(description="link to the revision's report (PDF)")
+    files: Files = Field(description="links to the files of the revision's solids")
 
 
 class Comment(Answer):
-    """A comment on a revision. Its text is plain."""
+    """A comment on a revision, in plain text."""
 
     model_config = ConfigDict(from_attributes=True)
 
     id: str
     design: str
     revision: int
-    name: str = Field(description="of whoever wrote it, at that time")
-    subject: str | None = Field(description="the name in the design that it is about")
+    name: str = Field(description="name of the author at that time")
+    subject: str | None = Field(description="the name in the design that the comment is about")
     text: str
     created: str
-    resolved: str | None = Field(description="since when")
-    resolved_by: str | None = Field(description="name of whoever resolved it")
+    resolved: str | None = Field(description="time of resolution; null while the comment is open")
+    resolved_by: str | None = Field(description="name of the principal that resolved it")
 
 
 class CommentList(Page[Comment]):
@@ -140,7 +137,7 @@ class CommentList(Page[Comment]):
 
 
 class ApprovalIn(Bounded):
-    """A step of the approval of a revision."""
+    """A step to take in the approval of a revision."""
 
     model_config = ConfigDict(
         strict=True,
@@ -151,12 +148,12 @@ class ApprovalIn(Bounded):
     )
 
     step: Step
-    reason: Text | None = Field(None, description="of a withdrawal, which needs one; nothing else has one")
+    reason: Text | None = Field(None, description="reason for a withdrawal; no other step takes one")
 
     acknowledged: Text | None = Field(
         None,
         description="why the revision may be checked or released although criteria are not confirmed; "
-        "needed where there are such, and nowhere else",
+        "required if there are unconfirmed criteria, else refused",
     )
 
     @model_validator(mode="after")
@@ -183,7 +180,7 @@ class CommentIn(Bounded):
         None,
         min_length=1,
         max_length=LONGEST_SUBJECT,
-        description="a name in the design: a parameter, a block, or a value of one such as "
+        description="a name in the design: a parameter, a block, or a value of a block, such as "
         "`film.bearing_width`",
     )
 
@@ -192,7 +189,7 @@ ATTACHMENT = "approval.json"
 
 
 class BlockStep(Answer):
-    """A step that had been taken when the report was printed."""
+    """A step that was complete when the report was printed."""
 
     step: Step
     name: str = Field(max_length=1000)
@@ -201,12 +198,12 @@ class BlockStep(Answer):
 
 
 class Block(Answer):
-    """The revision of a report, and the progress of its approval."""
+    """The revision that a report describes, and the state of its approval."""
 
     format: Literal[1]
     design: str = Field(pattern=r"^[A-Za-z0-9_]{1,64}$")
     revision: int = Field(ge=1, le=10**9)
     units: Literal["si", "us"]
-    has_variants: bool = Field(False, description="whether it is the report of all variants")
+    has_variants: bool = Field(False, description="whether the report covers all variants")
     state: ApprovalState
     steps: list[BlockStep] = Field(max_length=4)

@@ -1,4 +1,4 @@
-"""The approval of a revision: read it, sign a step, withdraw."""
+"""Read the approval of a revision, sign a step, or withdraw a release."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class ApprovalService:
         self.database, self.store = database, store
 
     def show(self, id: str, number: int) -> Approvals:
-        """Return the approval of a revision for the acting principal.
+        """Return the approval of a revision as the acting principal sees it.
 
         Raises
         ------
@@ -62,11 +62,11 @@ class ApprovalService:
         NotFound
             If there is no such design or revision.
         RoleNeeded, SamePrincipal
-            If the principal may not.
+            If the principal may not take this step.
         OutOfOrder, NotReady
-            If another step comes first, or the step is already taken.
+            If another step must be taken first, or this step was already taken.
         Unacknowledged
-            If criteria are not confirmed and the body does not say why that may stand.
+            If criteria are not confirmed and the body does not say why that is acceptable.
         OtherDigest
             If `expected` (an If-Match) is not the digest of the content to sign.
         """
@@ -105,7 +105,7 @@ class ApprovalService:
         )
 
     def _require_good_files(self, id: str, number: int) -> None:
-        """Check that the STEP files of a revision are stored with the right bytes; raises NotReady."""
+        """Check that the stored STEP files of a revision are intact; raises NotReady."""
         with self.database.read() as session:
             files = present(session, repository.revision(session, id, number)).files
         for name, kinds in files.items():
@@ -118,7 +118,7 @@ def _links(place: str, kinds: dict[str, str]) -> dict[str, str]:
 
 
 def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -> None:
-    """Check and write a step."""
+    """Check a step, and store it."""
     who, taken, held = acting(), steps_taken(session, row), present(session, row)
     require_principal(body.step, who, row, taken)
     require_turn(body.step, taken, row.number)
@@ -176,7 +176,7 @@ _VERBS: dict[Step, str] = {
 
 def _shown(session: Session, row: RevisionRow) -> Approvals:
     taken, held = steps_taken(session, row), present(session, row)
-    session.flush()  # the step that was taken may be the release
+    session.flush()  # the step taken may be the release
     following, newest = next_step(taken), NEWEST_RELEASED.scalar(session, {"design": row.design_id})
     return Approvals(
         design=row.design_id,

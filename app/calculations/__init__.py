@@ -1,1 +1,1 @@
-"""Evaluate and solve single templates."""
+"""Evaluate and solve single templates, and read curves from files."""

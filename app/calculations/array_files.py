@@ -1,6 +1,6 @@
-"""Outputs as a NumPy file: one column for each output, without inputs, notices and estimated errors.
+"""Outputs as a NumPy file: one column for each output, without inputs, warnings and estimated errors.
 
-For 10⁶ values, JSON takes 20 MB and most of the response time. The file takes 8 MB and is copied once.
+For 10⁶ values, JSON takes 20 MB and most of the response time. The NumPy file takes 8 MB and is copied once.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ MEDIA_TYPES: dict[Form, str] = {"json": JSON, "npy": NPY}
 def npy(result: Evaluation) -> bytes:
     """Return the outputs as one structured array in NumPy's format.
 
-    Each output is a field of double precision under its name; the field's title adds the unit, such as
-    `minimum_film_thickness [um]`. Outputs of one value fill their column.
+    Each output is a double-precision field with the output's name; the field's title adds the unit, such as
+    `minimum_film_thickness [um]`. An output of one value fills its column.
 
     Raises
     ------

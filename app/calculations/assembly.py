@@ -1,4 +1,4 @@
-"""Create the pool of calculation processes and the services that use it; called once."""
+"""Create the pool of calculation processes and the services that use it; the application does so once."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PRELOAD = ("app.calculations.warm",)
 
 @dataclass(frozen=True)
 class Calculations:
-    """The pool, and the steps that are evaluated in it."""
+    """The pool of calculation processes, and the steps that the pool evaluates."""
 
     pool: CalculationPool
     steps: Steps
@@ -45,8 +45,8 @@ def assemble_calculations(
 ) -> Calculations:
     """Create the pool; the exit stack closes it.
 
-    `designs` are the modules that functions of designs need in their processes, `sheets` those that read
-    worksheets, which all processes have.
+    All processes import `designs`, the modules with the functions of designs, and `sheets`, those that read
+    worksheets.
     """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)

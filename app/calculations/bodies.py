@@ -1,4 +1,4 @@
-"""Request and answer bodies for single templates."""
+"""Request bodies for single templates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.schemas.bounds import Bounded, at_most
 from app.schemas.values import Given, Limits
 
 Text = Annotated[str, StringConstraints(max_length=100)]
-MOST_NAMES = 2000  # in one request
+MOST_NAMES = 2000  # largest number of names in one request
 NOTHING: JsonDict = {"default": {}}
 """Describes an empty object as the default; pydantic would copy that itself at length for each request."""
 
@@ -30,7 +30,7 @@ OIL_FILM: JsonObject = {
 
 
 class CalculationRequest(Bounded):
-    """Inputs and what is wanted of them."""
+    """The inputs of a calculation, and the outputs that the client wants."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
@@ -39,14 +39,14 @@ class CalculationRequest(Bounded):
         description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
     )
     outputs: Annotated[list[Text], Field(max_length=200)] | None = Field(
-        None, description="compute these only; all, if not given"
+        None, description="names of the outputs to compute; all outputs if omitted"
     )
-    level: Text | None = Field(None, description="a fidelity by name")
-    tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
+    level: Text | None = Field(None, description="name of a level of fidelity")
+    tolerance: float | None = Field(None, gt=0, lt=1, description="largest acceptable relative error")
     units: Annotated[dict[str, Text], at_most(200)] = Field(
         default_factory=dict,
         max_length=200,
-        description="units in which outputs are wanted",
+        description="units of the outputs, by output",
         json_schema_extra=NOTHING,
     )
 
@@ -57,10 +57,10 @@ class CalculationRequest(Bounded):
 
 
 class EvaluateIn(CalculationRequest):
-    """Evaluate a template."""
+    """A request to evaluate a template."""
 
     per_point: bool = Field(
-        False, description="with a tolerance: the cheapest level at each point, not one level for all points"
+        False, description="with a tolerance: choose the cheapest level at each point, not one for all points"
     )
 
     model_config = ConfigDict(
@@ -71,7 +71,7 @@ class EvaluateIn(CalculationRequest):
 
 
 class SolveIn(CalculationRequest):
-    """Find the input that gives a wanted output."""
+    """A request to find the input that gives a wanted output."""
 
     model_config = ConfigDict(
         json_schema_extra={

@@ -1,4 +1,4 @@
-"""A cache of results, limited by the total memory that they occupy."""
+"""A cache of results, limited by the total memory that the results occupy."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def _kept(megabytes: int) -> LRUCache[Hashable, _CacheEntry]:
 
 
 class Cache:
-    """The values that were used last, as many as fit.
+    """The most recently used values, as many as fit into the memory limit.
 
-    Keys should be short, such as a digest of what the value follows from: they do not count.
+    Keys should be short, such as a digest of everything that determines the value: their size is not counted.
     """
 
     def __init__(self, megabytes: int) -> None:
@@ -48,16 +48,17 @@ class Cache:
         """Return the memory of all values [bytes]."""
         return int(self._kept.currsize)
 
-    def get(self, key: Hashable) -> Any:  # whoever keeps a value knows its type
+    def get(self, key: Hashable) -> Any:  # the caller that stores a value knows its type
         """Return the value stored under a key, or None."""
         with self._lock:
             kept = self._kept.get(key)
         return None if kept is None else kept.value
 
     def keep(self, key: Hashable, value: object, size: int | None = None) -> None:
-        """Store a value, or replace it if it has grown; a value larger than the whole cache is not stored.
+        """Store a value, or replace the stored value if this one is larger.
 
-        Measuring a value takes time; a caller that knows the approximate size may pass it [bytes].
+        A value larger than the whole cache is not stored. Measuring a value takes time, so a caller that
+        knows the approximate size [bytes] may pass it.
         """
         size = size_of(value) if size is None else size
         with self._lock:
@@ -84,9 +85,9 @@ _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 
 
 def size_of(value: object) -> int:
-    """Return the memory of a value and of all that it refers to [bytes].
+    """Return the memory of a value and of all objects that it refers to [bytes].
 
-    Parts that are shared may be counted twice.
+    Shared objects may be counted twice.
     """
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:
@@ -106,7 +107,7 @@ def _is_shared(kind: type) -> bool:
     return issubclass(kind, _SHARED)
 
 
-def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number
-    """Return the objects in an array; for a view also the array that owns the data."""
+def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any number type
+    """Return the objects in an array; for a view, also the array that owns the data."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

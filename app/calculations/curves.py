@@ -1,8 +1,8 @@
-"""Curves from a file: the columns of a table as quantities, an indicator diagram as one cycle.
+"""Read curves from a file: the columns of a table as quantities, an indicator diagram as one cycle.
 
-`crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads files and pasted tables
-alike; `indicator` averages several cycles into one. Nothing is stored. The answer states every assumption,
-and an unclear cell is refused with its line number.
+Headings such as `crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar` are understood.
+`tables` reads files and pasted tables alike; `indicator` averages several cycles into one. Nothing is
+stored. The answer lists every assumption; an ambiguous cell is refused with its line number.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ROW = re.compile(r"row (?P<number>[0-9]+)(?:, column (?P<column>.*))?", re.DOTA
 
 @dataclass(frozen=True)
 class ReadCurves:
-    """The columns of a table as quantities by name, and the assumptions made to read it."""
+    """The columns of a table as quantities by name, and the assumptions made while reading it."""
 
     curves: dict[str, JsonObject]
     assumed: list[str]
@@ -43,7 +43,7 @@ def curves_of(body: bytes) -> ReadCurves:
     Raises
     ------
     InvalidInputs
-        Naming every line that is wrong, up to twenty.
+        With every wrong line, up to twenty.
     """
     try:
         table = as_cycle(_with_units(_table(file_of(body))))
@@ -54,7 +54,7 @@ def curves_of(body: bytes) -> ReadCurves:
 
 
 def file_of(body: bytes) -> FileText:
-    """Return the text of a file that is within the limits for curves.
+    """Return the text of a file that is within the size limits for curves.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def _table(file: FileText) -> Table:
 
 
 def _parted(name: str, given: str) -> tuple[str, str]:
-    """Return the words and the unit of a heading whose unit may end its name."""
+    """Return the words and the unit of a heading that may end with a unit, such as `pressure_bar`."""
     words, _, last = name.rpartition("_")
     return (words, last) if not given and last in SUFFIXES else (name, given)
 
@@ -111,7 +111,7 @@ def _named(column: TableColumn) -> str:
 
 
 def _by_line(fault: Fault) -> Fault:
-    """Return a fault with its line number."""
+    """Return the fault with the line number that it is about."""
     if not (match := _ROW.fullmatch(fault.name)):
         return fault
     detail = f"{match['column']}: {fault.detail}" if match["column"] else fault.detail

@@ -1,8 +1,8 @@
 """Errors of calculations, besides the inputs that templates refuse.
 
-InvalidBody     a body that a calculation process read does not fit the operation
-NoArray         the client asked for an array, but the answer does not fit into one
-TooManyValues   an answer would hold more values than the service gives at once
+InvalidBody     the body of a request does not fit the operation
+NoArray         the client wants an array, but the answer does not fit into one
+TooManyValues   the answer would hold more values than the service returns at once
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from pydantic_core import ErrorDetails
 
 
 class TooManyValues(Exception):
-    """The answer would hold more values than the service gives at once."""
+    """The answer would hold more values than the service returns at once."""
 
 
 class NoArray(Exception):
-    """The outputs do not fit one array of numbers."""
+    """The outputs do not fit into one array of numbers."""
 
 
 class InvalidBody(Exception):
-    """A body that is not what the operation takes; `errors()` are in pydantic's form."""
+    """The body of a request does not fit the operation; `errors()` has Pydantic's form."""
 
     def __init__(self, listed: list[ErrorDetails]) -> None:
         super().__init__(listed)
@@ -30,7 +30,7 @@ class InvalidBody(Exception):
 
     @classmethod
     def of(cls, error: ValidationError) -> Self:
-        """Convert a pydantic error to one located as in FastAPI, without large values."""
+        """Convert a Pydantic error to one with FastAPI's locations, without large values."""
         listed = error.errors(include_url=False, include_input=False, include_context=False)
         return cls([{**entry, "loc": ("body", *entry["loc"])} for entry in listed])
 
@@ -41,5 +41,5 @@ class InvalidBody(Exception):
         return cls([{**entry, "ctx": {"error": reason}}])
 
     def errors(self) -> list[ErrorDetails]:
-        """Return the faults, one by one."""
+        """Return the list of faults."""
         return self._listed

@@ -1,8 +1,8 @@
 """The pressure of a journal bearing's oil film over its unrolled surface, for pictures.
 
-A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as in
-`templates.physics.films.reynolds`. The field is for display only: it is solved on 64 × 16 intervals, with an
-error of 0.1 % of the largest pressure.
+The journal is steady, rigid and aligned, at a given eccentricity. Reynolds' equation is solved with
+Swift-Stieber rupture, as in `templates.physics.films.reynolds`. The field is for display only: it is solved
+on 64 × 16 intervals, with an error of 0.1 % of the largest pressure.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ class Film(Template):
 
 
 def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
-    """Return the pressure field for inputs as typed by a user.
+    """Return the pressure field for inputs in any unit.
 
     Raises
     ------
     InvalidInputs
-        If an input is wrong, an array, or outside the range of the film's solution.
+        If an input is wrong, is an array, or is outside the range of the film's solution.
     """
     film = Film.from_quantities(raw)
     arrays = [name for name, value in film.inputs_si().items() if np.ndim(value)]

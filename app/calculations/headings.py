@@ -1,8 +1,8 @@
-"""Headings of measured tables: a name with its unit, as measuring programs write it.
+"""Read the headings of measured tables: a name with its unit, as measuring programs write it.
 
-`pressure [bar]`, `Druck (bar(g))`, `p / bar`. Crank angles are written `°CA`, `degCA` or `°KW`, and pressures
-`bara` or `bar(g)`; a sensor's volts may carry their calibration, `[20 bar/V]`. The answer states what such a
-unit implies, such as gauge pressure.
+Examples are `pressure [bar]`, `Druck (bar(g))` and `p / bar`. Crank angles are written `°CA`, `degCA` or
+`°KW`, and pressures `bara` or `bar(g)`. The unit of a sensor's volts may contain their calibration, `[20
+bar/V]`. The answer states what such a unit implies, such as gauge pressure.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ LONGEST_UNIT = 60
 
 @dataclass(frozen=True)
 class HeadingUnit:
-    """A unit of a heading: its text here, what values are multiplied by, and what it says beside its size.
+    """A unit of a heading: its text, the factor for the values, and the assumption that it implies.
 
-    `is_crank` says that it is one of crank angles by name.
+    `is_crank` is true for units that name the crank, such as °CA.
     """
 
     text: str
@@ -92,7 +92,7 @@ def is_unit(text: str) -> bool:
 
 
 def parted(cell: str) -> tuple[str, str]:
-    """Return name and unit of a heading such as `load_x [kN]`, `p / bar` or `load_x`, which has no unit."""
+    """Return the name and the unit of a heading such as `load_x [kN]` or `p / bar`; `load_x` has no unit."""
     for opening, closing in ("[]", "()"):
         start = _opening(cell, opening, closing)
         if start >= 0:

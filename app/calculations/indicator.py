@@ -1,8 +1,8 @@
-"""Measured indicator diagrams: average several cycles, and convert times with TDC pulses to crank angles.
+"""Process measured indicator diagrams: average cycles, and convert times with TDC pulses to crank angles.
 
 A table is an indicator diagram if it has a pressure, or the volts of its sensor, over a crank angle, or over
-the time with a column of the pulses at top dead centre (TDC). Every other table stays unchanged. The answer
-states every assumption. Crank angles are counted as in `engine`: combustion is at 360° in a four-stroke
+time with a column of the pulses at top dead centre (TDC). Every other table stays unchanged. The answer
+lists every assumption. Crank angles are counted as in `engine`: combustion is at 360° in a four-stroke
 engine and at 0° in a two-stroke engine.
 """
 
@@ -38,7 +38,7 @@ LONGEST_NAME = 80
 
 
 def as_cycle(table: Table) -> Table:
-    """Return an indicator diagram as one cycle, with the assumptions made; other tables are unchanged.
+    """Return an indicator diagram as one cycle, with the assumptions made; return other tables unchanged.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def _is_pressure(column: TableColumn) -> bool:
 
 
 def _axis(columns: Sequence[TableColumn]) -> TableColumn | None:
-    """Return the column of crank angles, identified by its unit or its name."""
+    """Return the column of crank angles, recognised by its unit or its name."""
     angles = [column for column in columns if column.is_crank or _measures_angle(column)]
     named = (c for c in angles if c.is_crank or _ANGLE.search(c.name[:LONGEST_NAME]))
     return next(named, angles[0] if len(angles) == 1 else None)
@@ -93,7 +93,7 @@ def _pulse(columns: Sequence[TableColumn]) -> TableColumn | None:
 
 
 def _over_cycles(columns: list[TableColumn]) -> tuple[list[TableColumn], list[str]]:
-    """Return the columns without the cycle counter; columns of single cycles are averaged."""
+    """Return the columns without the cycle counter, averaged over the cycles."""
     kept = [column for column in columns if not is_cycle_number(column.name)]
     if len(kept) == len(columns) or len(kept) < 2:
         kept = columns
@@ -115,7 +115,7 @@ def _over_cycles(columns: list[TableColumn]) -> tuple[list[TableColumn], list[st
 def _mean(
     columns: list[TableColumn], axis: TableColumn, pressure: TableColumn
 ) -> tuple[list[TableColumn], list[str]]:
-    """Return the mean cycle of a table over crank angles; the table itself if it has only one cycle."""
+    """Return the mean cycle of a table over crank angles; a table of one cycle is returned unchanged."""
     to_degrees = unit(axis.unit).factor / unit("deg").factor
     angles = np.array(axis.values) * to_degrees
     steps = np.diff(angles)
@@ -158,12 +158,12 @@ def _pairs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 
 def _length(span: float, step: float) -> float | None:
-    """Return the cycle length for a range of angles with a step [deg]; None if it is neither 360 nor 720."""
+    """Return the cycle length [deg] for a range of angles and its step [deg]; None if not 360° or 720°."""
     return next((length for length in (TURN, FOUR_STROKES) if abs(span + step - length) <= 2 * step), None)
 
 
 def _repeated(angles: Array, pressure: Array, step: float) -> float | None:
-    """Return the length of consecutive cycles [deg]; None if there is only one."""
+    """Return the length of each of several consecutive cycles [deg]; None if there is only one cycle."""
     total = float(angles[-1] - angles[0]) + step
     if total < FOUR_STROKES + 2 * step:
         return None
@@ -191,7 +191,7 @@ def _counted(count: int, incomplete: int, length: float) -> list[str]:
 def _over_angles(
     columns: list[TableColumn], time: TableColumn, pulse: TableColumn, pressure: TableColumn
 ) -> tuple[list[TableColumn], list[str]]:
-    """Return the mean cycle over crank angles computed from the pulses, one per revolution."""
+    """Compute crank angles from the pulses, one per revolution, and return the mean cycle over them."""
     seconds = np.array(time.values) * unit(time.unit).factor
     marks = _middles(seconds, np.array(pulse.values), pulse.name)
     turns = np.interp(seconds, marks, np.arange(len(marks)))
@@ -200,7 +200,7 @@ def _over_angles(
     in_turn = float(level[0::2].mean() - level[1::2].mean())
     is_four = abs(in_turn) > 0.1 * span
     count = 2 if is_four else 1
-    first = 1 if is_four and in_turn > 0 else 0  # the gas exchange, so that combustion is at 360 deg
+    first = 1 if is_four and in_turn > 0 else 0  # start at gas exchange, so that combustion is at 360 deg
     whole = (len(marks) - 1 - first) // count
     if whole < 1:
         raise _wrong(pulse, "no whole cycle lies between its pulses; send at least three revolutions")
@@ -231,7 +231,7 @@ def _rows(values: Array, points: int) -> Array:
 
 
 def _middles(seconds: Array, level: Array, name: str) -> Array:
-    """Return the times of the middles of pulses [s], which may be positive or negative.
+    """Return the times of the midpoints of pulses [s]; pulses may be positive or negative.
 
     Raises
     ------
@@ -244,7 +244,7 @@ def _middles(seconds: Array, level: Array, name: str) -> Array:
     share = (level - low) / (high - low) if high > low else np.zeros(len(level))
     if np.median(share) > 0.5:
         share = 1.0 - share
-    states = np.where(share > 0.6, 1, np.where(share < 0.4, 0, -1))  # between, the state stays
+    states = np.where(share > 0.6, 1, np.where(share < 0.4, 0, -1))  # in between, the state persists
     places = np.maximum.accumulate(np.where(states >= 0, np.arange(len(states)), 0))
     is_high = states[places] == 1
     edges = np.diff(is_high.astype(np.int8))

@@ -60,7 +60,7 @@ def criterion(judgement: Judgement) -> JsonObject:
 
 
 def _show_numbers(judgement: Judgement, shown: JsonObject) -> None:
-    """Add the numbers of a criterion to its JSON."""
+    """Add the numbers of a criterion to its JSON object."""
     unit, margin = judgement.unit, judgement.margin
     shown["error_stated"] = shown["error_known"] = judgement.error_known
     if judgement.value is not None and math.isfinite(judgement.value):
@@ -80,7 +80,7 @@ def _show_numbers(judgement: Judgement, shown: JsonObject) -> None:
 
 
 def _show_remarks(judgement: Judgement, shown: JsonObject) -> None:
-    """Add the texts beside the numbers of a criterion to its JSON."""
+    """Add the remarks on a criterion to its JSON object."""
     if judgement.reason is not None:
         shown["reason"] = judgement.reason
     if judgement.level is not None:
@@ -100,7 +100,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
 
 
 def _where(places: Sequence[Place]) -> dict[str, object]:
-    """Return places by name; a place without a unit is a name, such as that of a variant."""
+    """Return the places by name; a place without a unit is a text, such as the name of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
         for place in places
@@ -123,7 +123,7 @@ def identity(cls: type[Template]) -> Identity:
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
-            return identified  # worksheets come and go, and know their digest
+            return identified  # a worksheet may be gone, but it states its digest
         _identities[cls] = identified
     return {**_identities[cls]}
 
@@ -134,7 +134,7 @@ def quantity(value: object, unit: str | None) -> dict[str, object]:
 
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
-    """Return the outputs; a missing value is null with its reason."""
+    """Return the outputs; a missing value is null and has a reason."""
     shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
@@ -147,7 +147,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
 
 
 def _array(output: Answer) -> dict[str, object]:
-    """Return an output of several points or places; each missing value is null with its reason."""
+    """Return an output of several points or places; each missing value is null and has a reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -155,9 +155,9 @@ def _array(output: Answer) -> dict[str, object]:
 
 
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
-    """Return the values as objects, None where there is none.
+    """Return the values as an object array, with None where a value is missing.
 
-    A profile has a single reason, so it is one object.
+    A missing profile is a single None, because it has a single reason.
     """
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
@@ -179,7 +179,7 @@ def _plain(value: object) -> object:
 
 
 def errors(errors: Mapping[str, object]) -> dict[str, object]:
-    """Return the error of each output."""
+    """Return the estimated error of each output."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
         for name, error in errors.items()
@@ -187,7 +187,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
 
 
 def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
-    """Return the inputs that the calculation used."""
+    """Return the inputs as the calculation used them."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
         part: dict[str, object] = {"value": used.value, "unit": used.unit, "from": used.source}
@@ -214,8 +214,8 @@ def evaluation(result: Evaluation) -> JsonObject:
     }
 
 
-def assumptions(result: Evaluation, criteria: Iterable[Judgement]) -> list[dict[str, str]]:
-    """Return what an evaluation and its criteria take for granted."""
+def assumptions(result: Evaluation, criteria: Sequence[Judgement]) -> list[dict[str, str]]:
+    """Return the assumptions that an evaluation and its criteria make."""
     return [vars(one) for one in assumed(result.template, result.outputs, criteria)]
 
 

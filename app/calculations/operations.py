@@ -1,7 +1,7 @@
 """The operations on a template, by name: each turns the bytes of a request into the bytes of an answer.
 
-`answered` runs in a calculation process. Reading a large body and writing a large answer hold the interpreter
-as long as the calculation itself, so both are done there.
+`answered` runs in a calculation process. Python's interpreter lock is held while a large body is read or a
+large answer is written, for about as long as the calculation takes, so the process does both.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from templates.core.language.template import Template
 
 @dataclass(frozen=True)
 class Operation:
-    """An operation: the model of its body, the check that calculates nothing, the forms of its answer."""
+    """An operation: the model of its body, a check without calculation, and a writer for each format."""
 
     body: type[CalculationRequest]
     check: Callable[[type[Template], Any], None]  # takes an object of `body`
@@ -55,7 +55,7 @@ OPERATIONS = {
 
 @dataclass(frozen=True)
 class Question:
-    """A request to calculate, as it is sent to a process and kept in a job."""
+    """A calculation request, as it is sent to a process and stored in a job."""
 
     template: str
     version: int
@@ -63,7 +63,7 @@ class Question:
     body: Pieces
     system: System = "si"
     form: Form = "json"
-    """Of the answer; only `evaluate` gives others than JSON."""
+    """Format of the answer; only `evaluate` offers another one than JSON."""
 
     @property
     def media_type(self) -> str:
@@ -89,7 +89,7 @@ def answered(source: Source, question: Question) -> Pieces:
 
 
 def check(cls: type[Template], question: Question) -> None:
-    """Check a question, as far as possible without calculating.
+    """Check a request as far as possible without calculating.
 
     Raises
     ------
@@ -111,6 +111,8 @@ def _read(model: type[CalculationRequest], body: bytes) -> CalculationRequest:
     except ValueError as error:
         raise InvalidBody.not_json(str(error)[:200]) from None
     try:
-        return model.model_validate(raw, from_attributes=True)  # as FastAPI, whose words are used
+        return model.model_validate(
+            raw, from_attributes=True
+        )  # as FastAPI does, so that faults read the same
     except ValidationError as error:
         raise InvalidBody.of(error) from None

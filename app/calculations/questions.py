@@ -1,6 +1,6 @@
-"""Questions about templates: to evaluate one, to solve it, and to write its formulas out.
+"""Requests to evaluate a template, to solve it, or to write its formulas out.
 
-They are answered by calculation processes, which read the body of the request and write the answer.
+Calculation processes read the body of such a request and write the answer.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ CHECKED_WITHIN = 2.0
 
 
 def calculated(question: Question, database: Database, catalogues: Catalogues) -> Reply[Question, Pieces]:
-    """Return the answer of a calculation process, if its caller waits long enough.
+    """Return the answer of a calculation process, or a reply without one if the caller's waiting time ends.
 
-    With `wait=0` the question is still validated.
+    With `wait=0` the request is still validated.
 
     Raises
     ------
     UnknownTemplate, InvalidBody, InvalidInputs, NoArray, TooManyValues
-        If the question is invalid.
+        If the request is invalid.
     TooManyCalculations
-        Too many are waiting.
+        If too many calculations are waiting.
     """
     cls = catalogues.to_try(question.template, question.version)
     caller = present_caller()
@@ -51,9 +51,9 @@ def calculated(question: Question, database: Database, catalogues: Catalogues) -
 
 
 def _check(cls: type[Template], question: Question, caller: Caller) -> None:
-    """Refuse an invalid question, as far as possible without calculating.
+    """Refuse an invalid request, as far as possible without calculating.
 
-    A large body is read in a calculation process. If none is free in time, the job reports the faults.
+    A calculation process reads a large body. If no process is free in time, the job reports the faults.
     """
     if len(question.body) <= LARGE:
         check(cls, question)
@@ -70,7 +70,7 @@ def _check(cls: type[Template], question: Question, caller: Caller) -> None:
 def _settled(
     question: Question, database: Database, catalogues: Catalogues
 ) -> tuple[Question, Iterable[str]]:
-    """Return the question with the current digest of its template."""
+    """Return the request with the current digest of its template."""
     return question, (digest(catalogues.to_try(question.template, question.version)),)
 
 

@@ -1,4 +1,4 @@
-"""Evaluate and solve: from a request to an answer in plain JSON."""
+"""Evaluate and solve a template: convert a request into an answer in plain JSON."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from templates.core.language.request import read_request, require_points
 from templates.core.language.solve import solve
 from templates.core.language.template import Template
 
-MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
+MOST_VALUES = 2_000_000  # in one answer: about 40 MB of JSON
 
 
 def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
-    """Evaluate a template, as in `evaluated`."""
+    """Evaluate a template as `evaluated` does, and return the answer as plain JSON."""
     return json_values.evaluation(evaluated(cls, body))
 
 
@@ -95,7 +95,7 @@ def _limit(values: int) -> None:
 
 
 def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
-    """Solve for one input.
+    """Find the value of one input that gives a wanted output, and return the answer as plain JSON.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""An evaluation as lines of CSV (names, units, numbers) for a spreadsheet that requests it by a URL."""
+"""Write an evaluation as lines of CSV (names, units, numbers) for a spreadsheet that requests it by a URL."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _column(value: object) -> list[object]:
 
 
 def _cell(value: object) -> object:
-    """Return a value that no spreadsheet reads as a formula; empty if missing."""
+    """Return a value as a cell that no spreadsheet reads as a formula; empty if the value is missing."""
     if isinstance(value, str) and value.startswith(_DANGEROUS):
         return f"'{value}"
     return "" if value is None else value

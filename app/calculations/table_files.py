@@ -1,7 +1,7 @@
 """Read the text of a table file: CSV in any common encoding, or one sheet of XLSX.
 
-The assumptions about a file are returned with its text. An XLSX file is an untrusted zip archive of XML: the
-sizes of its parts are checked before any part is read.
+The assumptions made about a file are returned with its text. An XLSX file is an untrusted zip archive of XML,
+so the sizes of its parts are checked before any part is read.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SAMPLE = 4096
 
 @dataclass(frozen=True)
 class FileText:
-    """The text of a table, and what was assumed of its letters; `is_sheet` says that XLSX had its numbers."""
+    """The text of a table file, and the assumed encoding; `is_sheet` is true if XLSX stored the numbers."""
 
     text: str
     assumed: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
         If it is too large, damaged, or of another kind.
     """
     if len(content) > most_bytes:
-        raise _wrong("too_long", f"a table has at most {most_bytes / 1e6:g} MB; take fewer rows")
+        raise _wrong("too_long", f"a table has at most {most_bytes / 1e6:g} MB; send fewer rows")
     if content.startswith(ZIP):
         return FileText(sheet_text(content, most_unpacked, most_rows), is_sheet=True)
     if content.startswith(OLD_EXCEL):
@@ -81,12 +81,12 @@ def sheet_text(content: bytes, most_unpacked: int, most_rows: int) -> str:
         sheet = next((s for s in book.worksheets if s.sheet_state == "visible"), None)
         if sheet is None:
             raise _wrong("no_sheet", "the file has no visible sheet")
-        sheet.reset_dimensions()  # what the file says of its own size may be wrong
+        sheet.reset_dimensions()  # the size that the file states may be wrong
         rows = sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS)
         return "\n".join(_lines(islice(rows, most_rows + 4)))
     except InvalidInputs:
         raise
-    except Exception:  # openpyxl raises whatever a damaged file makes of it
+    except Exception:  # openpyxl raises errors of any type for a damaged file
         raise _wrong("damaged", DAMAGED) from None
 
 
@@ -96,7 +96,7 @@ def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
 
 
 def _check_size(content: bytes, most_unpacked: int) -> None:
-    """Refuse an archive that would unpack to more than any table; `zipfile` trusts the stated sizes."""
+    """Refuse an archive that would unpack to more than any table needs; `zipfile` trusts the stated sizes."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             parts = archive.infolist()

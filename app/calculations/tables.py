@@ -1,9 +1,10 @@
-"""Tables as people paste them from a spreadsheet or a measuring program.
+"""Read tables that people paste from a spreadsheet or a measuring program.
 
-Columns are separated by tabs, semicolons, commas, or blanks that align them. A decimal comma is read where
-the separator is not a comma; the answer states which mark was used. The first row may hold names, the second
-one units; a unit may also follow a name, `load_x [kN]`. Blank lines, lines that begin with #, and lines
-of words above the headings are skipped. A fault names the row, as numbered in the text, and the column.
+Columns are separated by tabs, semicolons, commas, or blanks that align them. A decimal comma is accepted if
+the separator is not a comma; the answer states which mark was used. The first row may contain names, the
+second row units; a unit may also be part of a heading, `load_x [kN]`. Blank lines, lines that begin with #,
+and lines of words above the headings are skipped. A fault names the row, as numbered in the text, and the
+column.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ _HEAD = 60
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column: its name, its unit (empty where the table says none), and its numbers.
+    """A column: its name, its unit (empty if the table states none), and its numbers.
 
-    `is_crank` says that its unit is one of crank angles by name, such as °CA.
+    `is_crank` is true if its unit is a crank angle such as °CA.
     """
 
     name: str
@@ -44,7 +45,7 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class Table:
-    """The columns of a table, and the assumptions made to read it: the decimal mark, what a unit means."""
+    """The columns of a table, and the assumptions made while reading it, such as the decimal mark."""
 
     columns: list[TableColumn]
     assumed: list[str]
@@ -52,7 +53,7 @@ class Table:
 
 @dataclass(frozen=True)
 class _Line:
-    """The cells of a line, and its number in the text, from 1."""
+    """The cells of a line, and its number in the text, counted from 1."""
 
     row: int
     cells: list[str]
@@ -63,20 +64,20 @@ class _Line:
 
 
 class _Faults:
-    """The faults of a table as they are met: the first `most` are kept, the others counted."""
+    """The faults of a table, collected while reading: the first `most` are listed, the others counted."""
 
     def __init__(self, most: int) -> None:
         self._most, self._kept, self._more = most, list[Fault](), 0
 
     def add(self, fault: Fault) -> None:
-        """Keep a fault, or count it."""
+        """Record a fault; count it only if the list is full."""
         if len(self._kept) < self._most:
             self._kept.append(fault)
         else:
             self._more += 1
 
     def refuse(self) -> None:
-        """Raise InvalidInputs if there are faults; the last one states how many are not listed."""
+        """Raise InvalidInputs if there are faults; the last one states how many more there are."""
         if self._more:
             detail = f"{self._more} further faults of this table are not listed; put these right first"
             self._kept.append(Fault("table", "more_faults", detail))
@@ -86,7 +87,7 @@ class _Faults:
 
 @dataclass
 class _Marks:
-    """The decimal marks of a table as they are met, and the first number that they make ambiguous."""
+    """The decimal marks that a table contains, and the first number that they make ambiguous."""
 
     is_comma: bool  # whether a comma separates the columns
     comma: bool = False
@@ -94,12 +95,12 @@ class _Marks:
     grouped: tuple[_Line, str, str] | None = None
 
     def number(self, line: _Line, name: str, cell: str) -> float:
-        """Return the number in a cell, and note its mark.
+        """Return the number in a cell, and remember its decimal mark.
 
         Raises
         ------
         FaultyText
-            If the cell contains no number.
+            If the cell is not a number.
         """
         value = _number(cell, self.is_comma)
         if not self.comma and "," in cell:
@@ -111,7 +112,7 @@ class _Marks:
         return value
 
     def fault(self) -> Fault | None:
-        """Return a fault if both decimal marks occur, so that a number may be wrong by a factor of 1000."""
+        """Return a fault if both decimal marks occur, because a number could be wrong by a factor of 1000."""
         if not (self.comma and self.point and self.grouped):
             return None
         line, name, cell = self.grouped
@@ -123,7 +124,7 @@ class _Marks:
 
     @property
     def assumed(self) -> list[str]:
-        """Return the assumed decimal and thousands marks."""
+        """Return a sentence on each assumed decimal and thousands mark."""
         taken = [
             f"decimal {name}" for name, is_met in (("comma", self.comma), ("point", self.point)) if is_met
         ]
@@ -149,7 +150,7 @@ def read_table(
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong.
+        With every wrong cell.
     """
     return table_of(
         text,
@@ -174,14 +175,15 @@ def table_of(
     Parameters
     ----------
     heading
-        Checks the name and the unit of each column; its faults are located at the row of the headings.
+        Function that checks the name and the unit of each column; its faults are located at the row of the
+        headings.
     is_sheet
-        Whether a spreadsheet wrote the numbers, so that their decimal mark was not typed.
+        Whether a spreadsheet file stored the numbers, so that nobody typed their decimal mark.
 
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong by its row and column, up to `most_faults`; the last fault states how
+        With every wrong cell by its row and column, up to `most_faults`; the last fault states how
         many more there are.
     """
     lines, is_comma, assumed = _lines(text, most_rows, most_characters)
@@ -247,7 +249,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
 
 
 def _layout(filled: Sequence[tuple[int, str]]) -> tuple[str, int]:
-    """Return the separator of the columns, and the number of lines of words above the headings."""
+    """Return the separator of the columns, and the number of lines of text above the headings."""
     head = filled[:_HEAD]
     for separator in "\t;, ":
         rows = [_trimmed(_cells(row, line, separator), 1) for row, line in head]
@@ -279,7 +281,7 @@ def _layout(filled: Sequence[tuple[int, str]]) -> tuple[str, int]:
 
 
 def _trimmed(cells: list[str], least: int) -> list[str]:
-    """Return the cells without trailing empty ones, which spreadsheets add to rows."""
+    """Return the cells without trailing empty cells, which spreadsheets add to rows."""
     empty = next((n for n, cell in enumerate(reversed(cells)) if cell), 0)
     return cells[: max(len(cells) - empty, least)]
 
@@ -317,7 +319,7 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
 
 
 def _is_words(line: _Line) -> bool:
-    """Return whether a line contains words but no number; `1` may be the unit of a pure number."""
+    """Return whether a line contains words but no number; a `1` may be the unit of a pure number."""
     rest = [cell for cell in line.cells if cell not in ("", "1", "-")]
     return bool(rest) and not any(cell.startswith("=") or _is_number(cell) for cell in rest)
 
@@ -333,13 +335,13 @@ def _heading(cell: str, place: int) -> tuple[str, str]:
 
 
 def _bare(cell: str) -> str:
-    """Return a unit without the brackets around it."""
+    """Return a unit without its surrounding brackets."""
     name, text = parted(cell)
     return text if text and not name else cell
 
 
 def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults: _Faults) -> list[_Unit]:
-    """Return the checked units of a row; empty if there is none, None if it is wrong."""
+    """Return the checked units of a row; empty if the row has no units, None if a unit is wrong."""
     units: list[_Unit] = []
     for name, text in zip(names, texts, strict=True):
         try:
@@ -357,7 +359,7 @@ def _agreed(
     below: Sequence[_Unit],
     faults: _Faults,
 ) -> list[_Unit]:
-    """Return the units of the two rows of headings, which must agree."""
+    """Return the units that the two rows of headings state; the rows must agree."""
     for name, one, other in zip(names, above, below, strict=True):
         if one and other and one.text and other.text and one.text != other.text:
             detail = f"the header says {one.text}, this row {other.text}; keep one of them"
@@ -369,7 +371,7 @@ def _agreed(
 
 
 def _numbers(line: _Line, names: Sequence[str], marks: _Marks, faults: _Faults) -> list[float]:
-    """Return the numbers of a line; add a fault for each cell without a number and for a wrong length."""
+    """Return the numbers of a line; record a fault for each cell without a number or a wrong length."""
     if len(line.cells) != len(names):
         detail = f"it has {len(line.cells)} cells, the first row has {len(names)}"
         hint = "; with decimal commas, separate the columns by semicolons or tabs" if marks.is_comma else ""
@@ -390,7 +392,7 @@ def _number(cell: str, is_comma: bool) -> float:
     Raises
     ------
     FaultyText
-        If the cell contains no number.
+        If the cell is not a number.
     """
     if cell.startswith("="):
         raise FaultyText("formula", f"{excerpt(cell)} is a formula; paste its value instead")

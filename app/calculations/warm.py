@@ -1,14 +1,14 @@
-"""Import everything that calculation processes run: they are forked from a process that holds this module.
+"""Import everything that calculation processes run: they are forked from a process with this module loaded.
 
-Each process reads tables and compiles formulas at first use, which takes 0.3 s at most. Calculating every
-example here would avoid that, but would delay the first calculation after a start.
+Each process still reads tables and compiles formulas at first use, which takes at most 0.3 s. Calculating
+every example here would avoid that, but would delay the first calculation after a start.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.calculations import operations  # noqa: F401 - what the processes run
+from app.calculations import operations  # noqa: F401 - the processes run these
 from app.catalogue.discovery import find_templates
 from app.workers.priority import give_way
 

@@ -1,4 +1,4 @@
-"""A calculation as a worksheet shows it: every formula as symbol = expression = numbers = result."""
+"""Evaluate a template and write its formulas out: symbol = expression = numbers = result."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 
 
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
-    """Return an evaluation, as `evaluate` answers it, in the system's units and with its formulas."""
+    """Return an evaluation as `evaluate` returns it, in a system of units and with its formulas."""
     written = formulas(evaluation.template, system, evaluation.outputs)
     answer = {**json_values.evaluation(evaluation), "formulas": written}
     return answer if system == "si" else Worksheet.model_validate(answer).in_units(system).plain()
 
 
 def formulas(template: Template, system: System, names: Container[str]) -> list[JsonObject]:
-    """Return the formulas of the outputs named, in the order of the template, each in LaTeX and MathML."""
+    """Return the formulas of the named outputs in LaTeX and MathML, in the order of the template."""
     cls = type(template)
     declared = {a: d.meaning.unit for a, d in cls.declarations.items() if d.meaning.unit}
     units = {attribute: shown_unit(unit, system) for attribute, unit in declared.items()}

@@ -1,1 +1,1 @@
-"""The catalogue: templates and their versions."""
+"""The catalogue of templates, their versions, and the library of materials, oils and finishes."""

@@ -1,6 +1,6 @@
-"""Catalogues of the parts of designs: built-in versions, a team's files, and released worksheets.
+"""Catalogues of templates and models: built-in versions, a team's files, and released worksheets.
 
-The files of a team are reloaded when they change; `app.worksheets` lists the worksheets.
+The files of a team are reloaded when they change; `app.worksheets` provides the worksheets.
 """
 
 from __future__ import annotations
@@ -28,16 +28,19 @@ from templates.core.language.template import Template
 
 logger = logging.getLogger(__name__)
 
-EVERY = 1.0  # how often files are looked at, while there are requests [s]
+EVERY = 1.0  # shortest time between two checks of the files [s]
 PATIENCE = 2.0  # how long a request waits for the check of a file that has changed [s]
 
 
 Drafts = Callable[[str, int], type[Template]]
-"""Reads the draft of a worksheet as it is now; raises UnknownTemplate if it has faults, or is gone."""
+"""Read the present draft of a worksheet; raise UnknownTemplate if it has faults or no longer exists."""
 
 
 class Catalogues:
-    """The catalogues as they are now. A caller that uses one of them twice keeps it in between."""
+    """The present templates and models.
+
+    Code that uses a template or model twice should keep the reference, because a refresh may replace it.
+    """
 
     def __init__(self, templates: Catalogue[Template], models: Catalogue[CadModel]) -> None:
         self.files = self.snapshot = Snapshot(templates, models)
@@ -63,7 +66,7 @@ class Catalogues:
             self._join()
 
     def bring(self, models: Mapping[Key, type[CadModel]]) -> None:
-        """Add these models to the catalogue."""
+        """Add these imported models to the catalogue."""
         with self._joining:
             self._brought = models
             self._join()
@@ -97,9 +100,9 @@ class Catalogues:
             return await asyncio.to_thread(self.to_try, id, version)
 
     def with_drafts(self, wanted: Iterable[Key]) -> Catalogues:
-        """Return the same catalogues with the requested drafts of worksheets.
+        """Return these catalogues together with the requested drafts of worksheets.
 
-        A draft with faults is still unusable.
+        A draft with faults remains unusable.
         """
         drafts: dict[Key, type[Template]] = {}
         faulty: dict[Key, str] = {}
@@ -115,24 +118,24 @@ class Catalogues:
         return Catalogues(replace(self.templates, versions=versions, unreleased=unreleased), self.models)
 
     def _take(self, files: Snapshot) -> None:
-        """Replace the files."""
+        """Replace the versions that come from files."""
         with self._joining:
             self.files = files
             self._join()
 
     async def refresh(self) -> None:
-        """Check the files for changes; this catalogue never changes."""
+        """Do nothing, because a catalogue without team files never changes."""
 
     def close(self) -> None:
         """Stop watching the files."""
 
 
 class TeamCatalogues(Catalogues):
-    """The built-in versions, and those of a team's folders.
+    """The built-in versions, and those in a team's folders.
 
-    A request looks at the files if nobody did for a second. A thread then checks and loads what has changed,
-    for which the request waits two seconds at most: an import that does not end holds nobody up for longer.
-    The first look, before this is made, checks by `first` if that is given.
+    A request starts a check of the files if the last one began more than a second ago. A thread checks and
+    loads the changed files, and the request waits at most two seconds for it, so an import that never ends
+    delays no request for longer. The constructor makes the first check, with `first` if that is given.
     """
 
     def __init__(self, folders: Sequence[Path], check: Check, first: Check | None = None) -> None:
@@ -165,7 +168,7 @@ class TeamCatalogues(Catalogues):
         except WorkerError:  # the service is stopping
             return
         except Exception:
-            logger.exception("The files of templates could not be looked at")
+            logger.exception("The files of templates could not be checked")
             return
         if is_changed:
             before = {file.path: file for file in self.snapshot.files}
@@ -180,7 +183,7 @@ def _no_drafts(id: str, version: int) -> type[Template]:
 
 
 async def _ended(future: Future[None], seconds: float) -> None:
-    """Wait for a future of a thread, for at most this time [s], without keeping a reference."""
+    """Wait at most this time [s] for a future of a thread, without keeping a reference to it."""
     loop, ended = asyncio.get_running_loop(), asyncio.Event()
 
     def wake(_: Future[None]) -> None:

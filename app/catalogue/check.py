@@ -1,4 +1,4 @@
-"""Check one file of a team in a process of its own, since it may hang, crash or exhaust memory.
+"""Check a team's file in a separate process, because its import may hang, crash or exhaust memory.
 
 If the file passes, the server loads the same bytes that were checked.
 """
@@ -30,19 +30,19 @@ Check = Callable[[Path, bytes], list[FileFault]]
 
 @dataclass(frozen=True)
 class CheckInProcess:
-    """Checks files in processes of a worker; those that do not name the kernel in processes of `light`."""
+    """Check files in processes of a worker; files that do not name the kernel are checked by `light`."""
 
     worker: Worker
     limits: Limits
     light: Worker | None = None
 
     def __call__(self, path: Path, content: bytes) -> list[FileFault]:
-        """Return every fault of a file; a check that does not finish is a fault too.
+        """Return every fault of a file; a check that does not finish is also reported as a fault.
 
         Raises
         ------
         JobCancelled
-            The service is stopping.
+            If the service is stopping.
         """
         if len(content) > MOST_BYTES:
             what = f"the file has more than {MOST_BYTES // 2**20} MiB"
@@ -65,14 +65,14 @@ class CheckInProcess:
 
 
 def check_content(path: str, content: bytes) -> list[FileFault]:
-    """Return every fault of a file: of its import, then of what it declares; runs in a process of its own."""
+    """Return every fault of a file, of its import and of its declarations; runs in a separate process."""
     place = Path(path)
     cls = loaded_or_faulty(place, content)
     if isinstance(cls, FileFault):
         return [cls]
     try:
         return faults_of(cls, place)
-    except BaseException as error:  # as SystemExit, which nobody wants in the server
+    except BaseException as error:  # also SystemExit, which must not end the server
         return [_import_fault(error, place)]
 
 
@@ -82,7 +82,7 @@ def loaded_or_faulty(path: Path, content: bytes, digest: str = "") -> type[Templ
         cls = declared_in(load(path, content, digest), path)
     except UnusableFile as error:
         return FileFault("declares", str(error).removeprefix(f"{path}: "), DECLARE)
-    except BaseException as error:  # whatever a file raises: SystemExit, KeyboardInterrupt
+    except BaseException as error:  # a file may raise anything, even SystemExit or KeyboardInterrupt
         return _import_fault(error, path)
     if issubclass(cls, CadModel) or cls.formulas:
         return cls

@@ -16,9 +16,9 @@ BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
 def find_templates(
     folders: Iterable[Path], id: str | None = None, version: int | None = None
 ) -> Catalogue[Template]:
-    """Return all templates for calculations, or those of an id and version.
+    """Return all templates for calculations, or only those of an id and version.
 
-    `cad.catalogue.models` has the others.
+    `cad.catalogue.models` returns the CAD models.
     """
     catalogue = find((*BUILT_IN, *folders), Template, id=id, version=version)
     return Catalogue({key: cls for key, cls in catalogue.versions.items() if not issubclass(cls, CadModel)})

@@ -1,7 +1,7 @@
-"""Search templates by the terms of engineers: standards, authors, symbols, names from textbooks.
+"""Search templates by engineering terms: standards, authors, symbols, textbook names.
 
-A template is found by its title, its documentation with the references, and the names, words, symbols and
-sources of what it declares. `TERMS` lists textbook names of quantities that are defined differently here,
+A template matches by its title, its documentation with the references, and the names, words, symbols and
+sources of its declarations. `TERMS` lists textbook names of quantities that are defined differently here,
 each with the conversion factor.
 """
 
@@ -22,7 +22,7 @@ T = TypeVar("T", bound=Template)
 
 @dataclass(frozen=True)
 class Term:
-    """Names of textbooks, the outputs or words of templates that they mean, and how both compare."""
+    """Textbook names, the words in templates that they mean, and a note on how the definitions differ."""
 
     names: tuple[str, ...]
     means: str
@@ -46,8 +46,8 @@ _texts: WeakKeyDictionary[type[Template], str] = WeakKeyDictionary()
 def matching(versions: Iterable[type[T]], query: str) -> tuple[list[type[T]], list[str]]:
     """Return the versions that match a query, and notes on its terms.
 
-    Every word of the query must occur: a word of up to two letters, such as a symbol, as a whole word, a
-    longer one at the beginning of a word.
+    Every word of the query must occur in a version. A word of up to two letters, such as a symbol, must
+    match a whole word; a longer word must match the beginning of a word.
     """
     asked = plain_words(query)
     terms = [term for term in TERMS if any(_has(asked, name) for name in term.names)]
@@ -79,7 +79,7 @@ def _fits(text: str, words: str) -> bool:
 
 
 def _text(cls: type[Template]) -> str:
-    """Return all search terms of a version, which follow from its class alone."""
+    """Return all searchable words of a version; they depend only on its class."""
     if (text := _texts.get(cls)) is None:
         parts = [cls.id, cls.title(), cls.summary(), cls.__doc__ or ""]
         for declared in (*cls.inputs.values(), *cls.formulas.values()):

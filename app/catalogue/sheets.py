@@ -14,7 +14,7 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True)
 class ReleasedSheet:
-    """A released version of a worksheet, and who stands for it."""
+    """A released version of a worksheet, with its author and reviewer."""
 
     cls: type[Template]
     state: Literal["released", "withdrawn"]
@@ -25,7 +25,7 @@ class ReleasedSheet:
 
 @dataclass(frozen=True)
 class Sheets:
-    """All worksheets at one time; `broken` and `unreleased` say why a version cannot be used."""
+    """All worksheets at one time; `broken` and `unreleased` state why a version cannot be used."""
 
     released: Mapping[Key, ReleasedSheet] = field(default_factory=dict)
     broken: Mapping[Key, str] = field(default_factory=dict)

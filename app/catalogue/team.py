@@ -19,13 +19,13 @@ from templates.core.language.template import VERSIONED, Template
 Signature = tuple[tuple[int, int, int] | None, ...]
 """Times of change [ns] and size [bytes] of a file and of those beside it; None for one that is not there."""
 
-_MEANT = re.compile(r".+_[vV][0-9]+")  # a name that somebody may have meant as that of a version
+_MEANT = re.compile(r".+_[vV][0-9]+")  # a name that looks like that of a version
 NAME = "name it <id>_v<version>.py, in small letters, such as bush_duty_v1.py"
 
 
 @dataclass(frozen=True)
 class TeamFile:
-    """One file of a team: what it declares if it can be used, and its faults."""
+    """One file of a team: the class that it declares, if the file is usable, and its faults."""
 
     folder: Path
     path: Path
@@ -36,13 +36,13 @@ class TeamFile:
 
     @property
     def key(self) -> Key | None:
-        """Return the id and version, from the name of the file."""
+        """Return the id and version that the file's name states."""
         match = VERSIONED.match(self.path.stem)
         return (match[1], int(match[2])) if match else None
 
     @property
     def name(self) -> str:
-        """Return the file's path within its folder, as pages show it, without the address of this machine."""
+        """Return the path within the team's folder, as pages show it, without paths of this machine."""
         return str(Path(self.folder.name) / self.path.relative_to(self.folder))
 
     @property
@@ -57,7 +57,7 @@ class TeamFile:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """All templates and models at one time, with the files of teams and the worksheets."""
+    """All templates and models at one time, including files of teams and worksheets."""
 
     templates: Catalogue[Template]
     models: Catalogue[CadModel]
@@ -66,9 +66,9 @@ class Snapshot:
 
 
 class TeamFiles:
-    """The files of a team's folders; `examine` looks again at those that have changed.
+    """The files in a team's folders; `examine` checks the changed ones again.
 
-    Not safe for threads.
+    This class is not thread-safe.
     """
 
     def __init__(self, folders: Sequence[Path], check: Check) -> None:
@@ -76,7 +76,7 @@ class TeamFiles:
         self._files: dict[Path, TeamFile] = {}
 
     def examine(self) -> bool:
-        """Check the files for changes, and return whether there were any."""
+        """Check the files for changes, and return whether any file changed."""
         present = dict(_scanned(self.folders))
         old = self._files
         self._files = {path: self._current(*place, path) for path, place in present.items()}
@@ -86,12 +86,12 @@ class TeamFiles:
 
     @classmethod
     def of_file(cls, path: Path, check: Check) -> TeamFile:
-        """Return one file, examined separately."""
+        """Return one file, checked by itself."""
         return cls((), check)._current(path.parent, _signature(path), path)
 
     @property
     def files(self) -> list[TeamFile]:
-        """Return every file, in the order of the folders and of their names."""
+        """Return every file, sorted by folder and name."""
         return list(self._files.values())
 
     def _current(self, folder: Path, signature: Signature, path: Path) -> TeamFile:
@@ -128,7 +128,10 @@ class TeamFiles:
 
 
 def _scanned(folders: Iterable[Path]) -> Iterator[tuple[Path, tuple[Path, Signature]]]:
-    """Yield every file that is, or seems meant as, a version, with its signature; also missing folders."""
+    """Yield every file whose name is, or resembles, that of a version, with its signature.
+
+    Folders that are missing are also reported.
+    """
     for folder in folders:
         if not folder.is_dir():
             yield folder, (folder.parent, (None,))
@@ -143,10 +146,7 @@ def _signature(path: Path) -> Signature:
 
 
 def _beside(path: Path) -> tuple[Path, ...]:
-    """Return the files that accompany a template.
-
-    They hold measured errors, digests of its release, and results.
-    """
+    """Return the files that accompany a template: measured errors, digests of its release, and results."""
     named = (path.with_name(f"{path.stem}.{kind}.json") for kind in ("accuracy", "release"))
     return (*named, *records(path))
 
@@ -171,7 +171,7 @@ def _digest(path: Path, content: bytes) -> str:
 def merged(
     templates: Catalogue[Template], models: Catalogue[CadModel], files: Iterable[TeamFile]
 ) -> Snapshot:
-    """Return the built-in versions and a team's; a version that already exists is quarantined."""
+    """Return the built-in versions and those of a team; a file for an existing version is quarantined."""
     own_templates, own_models = dict(templates.versions), dict(models.versions)
     owners: dict[tuple[bool, Key], TeamFile] = {}
     settled: list[TeamFile] = []
@@ -198,7 +198,7 @@ def merged(
 
 
 def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
-    """Return the versions of files and those of worksheets.
+    """Return the versions from files together with those from worksheets.
 
     A released worksheet keeps its name: a later file with the same name would change the results of designs
     that use it. A file does not replace a broken worksheet either.
@@ -216,7 +216,7 @@ def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
 
 
 def with_models(files: Snapshot, imported: Mapping[Key, type[CadModel]]) -> Snapshot:
-    """Return the models of files, and those that a team has imported.
+    """Return the models from files together with those that a team has imported.
 
     A file does not replace an imported model.
     """

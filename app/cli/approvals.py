@@ -18,8 +18,8 @@ from templates.core.errors import plain
 @click.argument("design")
 @click.option("--revision", type=click.IntRange(1), required=True)
 @click.option("--step", type=click.Choice(ORDER), required=True)
-@click.option("--reason", default=None, help="of a withdrawal, which needs one")
-@click.option("--acknowledge", default=None, help="why criteria that are not confirmed may stand")
+@click.option("--reason", default=None, help="reason for a withdrawal; required there")
+@click.option("--acknowledge", default=None, help="why unconfirmed criteria are acceptable")
 @url_option
 @data_option
 def approve_command(
@@ -48,9 +48,9 @@ def approve_command(
 def verify_report_command(ctx: click.Context, file: Path, url: str | None, data: Path | None) -> None:
     """Verify FILE, a report (PDF), against the service that has the revision.
 
-    It prints the result of each check: every signature, that the revision is unchanged since it was signed,
-    that it is released, and that the pages equal those that the service prints. The exit code is 1 if a check
-    fails.
+    The command prints the result of each check: every signature, that the revision is unchanged since it was
+    signed, that it is released, and that the pages equal those that the service prints. The exit code is 1
+    if a check fails.
     """
     pdf = file.read_bytes()
     try:

@@ -1,4 +1,4 @@
-"""Inputs as they are written on a command line: quantities, lists, and curves from files."""
+"""Parse inputs on a command line: quantities, lists, and curves from files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from templates.core.errors import Fault, InvalidInputs
 def argument(name: str, text: str) -> Raw:
     """Return the value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
 
-    From a file it takes the column with the name of the input, unless another column is named.
+    A file supplies the column with the name of the input, unless the argument names another column.
 
     Raises
     ------

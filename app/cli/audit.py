@@ -1,4 +1,4 @@
-"""`crankwright audit …`: reads the audit directly from the database, whether or not the service runs."""
+"""`crankwright audit …`: read the audit directly from the database, whether or not the service runs."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _data = click.option(
 
 @click.group("audit")
 def audit_command() -> None:
-    """List who did what, and verify the chain of these rows."""
+    """List who changed what, and verify the hash chain of the audit."""
 
 
 @audit_command.command("list")
 @click.option("--object", default=None, help="a path below /api/v1/, such as designs/ID")
-@click.option("--principal", default=None, help="id or name")
+@click.option("--principal", default=None, help="id or name of the principal")
 @click.option("--action", default=None, help="such as design.create, or design")
 @click.option("--limit", type=click.IntRange(1, 100_000), default=50, show_default=True)
 @_data
@@ -52,7 +52,7 @@ def list_command(
 @_data
 @click.pass_context
 def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:
-    """Verify the chain, and name the first changed, missing or inserted row.
+    """Verify the hash chain, and name the first changed, missing or inserted row.
 
     The exit code is 0 if the chain is intact, 1 if not, 2 if the database cannot be read. Missing rows at the
     end, or a chain that was completely rewritten, are detected only with a hash of `GET /api/v1/audit/head`
@@ -68,14 +68,14 @@ def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> N
 
 
 class CannotRead(click.ClickException):
-    """There is no audit to be read; that says nothing about its rows."""
+    """The audit cannot be read; this is no statement about its rows."""
 
     exit_code = 2
 
 
 @contextmanager
 def _reading(data: Path | None) -> Iterator[Session]:
-    """Open a snapshot of the database that the settings name."""
+    """Open a snapshot of the database in the settings."""
     settings = Settings(data=data) if data else Settings()
     try:
         engine = reading_engine(_url(settings))

@@ -23,10 +23,14 @@ PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checks.check", "app.cata
 @click.command("check-template")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="print the faults as JSON")
-@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), help="longest time; 30 unless set")
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    help="longest time of the check [s]; default: 30",
+)
 @click.pass_context
 def check_template_command(ctx: click.Context, file: Path, as_json: bool, seconds: float | None) -> None:
-    """Check FILE, a template or CAD model `<id>_v<version>.py`, as the service does when it loads it.
+    """Check FILE, a template or CAD model `<id>_v<version>.py`, as the service does when it loads the file.
 
     The exit code is 1 if the file has faults.
     """

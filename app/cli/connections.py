@@ -1,4 +1,4 @@
-"""Connect commands to a running service, or to one started on a data folder."""
+"""Connect commands to a running service, or to one that the command starts on a data folder."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from app.client.names import authorization
 from app.settings import Settings
 
 KEY = "CRANKWRIGHT_KEY"
-PATIENCE = 600.0  # for an answer: a busy service plans a study in its turn [s]
+PATIENCE = 600.0  # longest wait for an answer; a busy service plans studies one at a time [s]
 
 url_option = click.option(
-    "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
+    "--url", default=None, help="address of the service; default: this machine, port CRANKWRIGHT_PORT"
 )
 data_option = click.option(
     "--data",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     default=None,
-    help="a data folder that no service uses, instead of a service",
+    help="use a data folder that no service uses, instead of a service",
 )
 
 
 @contextmanager
 def connected(url: str | None, data: Path | None) -> Iterator[Client]:
-    """Open a client of the named service, or of a service started on a data folder."""
+    """Open a client of the named service, or of a new service on a data folder."""
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         if data is not None:
@@ -64,5 +64,5 @@ def key_of_user() -> str | None:
 
 
 def reasons(problem: Problem) -> str:
-    """Return a problem, with each of its faults on a separate line."""
+    """Return a problem as text, with each of its faults on a separate line."""
     return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])

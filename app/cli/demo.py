@@ -1,4 +1,4 @@
-"""`crankwright demo`: run the paper's demonstration, in one process or on all processes of a team."""
+"""`crankwright demo`: run the paper's demonstration, in one process or with all processes of a team."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from app.settings import Settings
 
 
 @click.command("demo")
-@click.option("--data", type=click.Path(path_type=Path), default=None, help="that of `serve`, if not given")
-@click.option("--team", is_flag=True, help="on PostgreSQL, S3, Dask and two servers; nothing stays")
+@click.option(
+    "--data", type=click.Path(path_type=Path), default=None, help="data folder; default: that of `serve`"
+)
+@click.option("--team", is_flag=True, help="run on PostgreSQL, S3, Dask and two servers; nothing is kept")
 def demo_command(data: Path | None, team: bool) -> None:
     """Run the paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
 
-    The design is kept, and `crankwright serve` shows it. With --team nothing is kept.
+    The design is kept, and `crankwright serve` shows it; with --team, nothing is kept.
     """
     if not team:
         demonstrate(data or Settings().data)

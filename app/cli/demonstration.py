@@ -1,7 +1,8 @@
-"""Demonstrate through the REST interface the link between Mathcad and Creo that the paper shows.
+"""Demonstrate, through the REST interface, the link between Mathcad and Creo that the paper shows.
 
-A ball bearing of 50 mm; SCALE = 1 as a worksheet input; D = SCALE · 48 mm as the worksheet's bearing
-diameter; a relation sets the model's inner diameter to it; after regeneration the bearing measures 48 mm.
+The example is a ball bearing of 50 mm. SCALE = 1 is a worksheet input, and D = SCALE · 48 mm is the
+worksheet's bearing diameter. A relation sets the model's inner diameter to D; after regeneration the bearing
+measures 48 mm.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ from app.schemas.answers import Quantity
 from app.settings import Settings
 
 LOOPBACK = "127.0.0.1"
-START = 600.0  # for the service to start, which takes minutes on a busy machine with a cold disk [s]
-REMARK = 10.0  # how often to say what the demonstration is waiting for [s]
-END = 30.0  # for the service to stop [s]
+START = 600.0  # longest start of the service; minutes on a busy machine with a cold disk [s]
+REMARK = 10.0  # time between messages about what the demonstration waits for [s]
+END = 30.0  # longest time for the service to stop [s]
 HEADER = f"{'':28}{'before':>14}{'after':>14}"
 
 
 def demonstrate(data: Path) -> None:
-    """Run the demonstration on a separate service; its data and STEP file are kept in the folder `data`."""
+    """Run the demonstration on a separate service; the folder `data` keeps its data and STEP files."""
     with service(data) as client:
         before = created(client)
         after = changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
@@ -48,7 +49,7 @@ def demonstrate(data: Path) -> None:
 
 
 def _point_to(design: Design, data: Path) -> None:
-    """Print how to see the design in the browser."""
+    """Print how to open the design in a browser."""
     settings = Settings()
     option = "" if data.absolute() == settings.data.absolute() else f" --data {shlex.quote(str(data))}"
     place = f"http://{LOOPBACK}:{settings.port}/designs/{design.id}"
@@ -64,9 +65,9 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 
 @contextmanager
 def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterator[Client]:
-    """Run a service in a separate process on a free port, and end it afterwards; `err` keeps the output free.
+    """Run a service in a separate process on a free port, and end it afterwards.
 
-    The client sends the key, if one is given.
+    The client sends the key, if one is given. With `err`, messages go to the standard error stream.
     """
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
@@ -87,7 +88,7 @@ def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterato
 
 
 def _await(client: Client, process: subprocess.Popen[bytes], log: Path, *, err: bool = False) -> None:
-    """Wait until the service answers, as long as its process lives, and report progress now and then.
+    """Wait until the service answers or its process ends, and report progress now and then.
 
     Raises
     ------
@@ -128,7 +129,7 @@ def _end_of(log: Path) -> str:
 
 
 def created(client: Client) -> Design:
-    """Return the design before the relation is tied: 50 mm."""
+    """Create the design without the relation, with an inner diameter of 50 mm, and return it."""
     document: JsonObject = json.loads(json.dumps(PAPER))
     document["model"]["parameters"] = {"inner_diameter": "50 mm"}
     click.echo("creating the design: ball bearing of 50 mm, SCALE = 1, D = SCALE * 48 mm")
@@ -136,7 +137,7 @@ def created(client: Client) -> Design:
 
 
 def changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
-    """Announce a change, and return the design after the change and its regeneration."""
+    """Announce a change, apply it, and return the regenerated design."""
     click.echo(f"changing: {what}")
     return _checked(client.change(design, patch, on_progress=_progress))
 
@@ -156,7 +157,7 @@ def _progress(fraction: float, text: str) -> None:
 
 
 def _compare(client: Client, before: Design, after: Design) -> None:
-    """Print the worksheet and the dimensions of two revisions, as measured on their STEP files."""
+    """Print the worksheet values of two revisions, and the dimensions measured on their STEP files."""
     old, new = (_facts(client, design) for design in (before, after))
     click.echo(f"\n{HEADER}")
     for name, (value, unit) in new.items():
@@ -175,7 +176,13 @@ def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
 
 
 def build_of(client: Client, design: Design) -> str:
-    """Return the key of the design's build."""
+    """Return the key of the design's build.
+
+    Raises
+    ------
+    ClickException
+        If the revision has no solid.
+    """
     build = client.revision(design.id, design.revision).models["model"].build
     if build is None:
         raise click.ClickException(f"revision {design.revision} has no solid")
@@ -183,14 +190,14 @@ def build_of(client: Client, design: Design) -> str:
 
 
 def dimensions_of(client: Client, build: str) -> dict[str, Quantity]:
-    """Return the dimensions of a single number that the service measured on a build."""
+    """Return the scalar dimensions that the service measured on a build, by name."""
     measurements = client.build(build).measurements
     dimensions = measurements.dimensions if measurements else {}
     return {name: size for name, size in dimensions.items() if isinstance(size, Quantity)}
 
 
 def saved(client: Client, design: Design, data: Path) -> Path:
-    """Return the STEP file of a revision, in a folder."""
+    """Save the STEP file of a revision in a folder, and return its path."""
     return client.download(design.id, "step", revision=design.revision).save(data)
 
 

@@ -14,19 +14,24 @@ from app.settings import Settings
 @click.command("download")
 @click.argument("design")
 @click.argument("kind", default="step")
-@click.option("--model", default=None, help="its name in the design, if there are several")
-@click.option("--variant", default=None, help="of the design; the design itself if not given")
+@click.option("--model", default=None, help="name of the model in the design, if there are several")
+@click.option("--part", default=None, help="the only part in a glb, stl, 3mf or brep file")
+@click.option("--variant", default=None, help="variant of the design; default: the design itself")
 @click.option(
-    "--revision", type=click.IntRange(1), default=None, help="that of the newest good model if not given"
+    "--revision",
+    type=click.IntRange(1),
+    default=None,
+    help="revision; default: that of the newest valid model",
 )
 @click.option("--folder", type=click.Path(exists=True, file_okay=False, path_type=Path), default=Path())
 @click.option(
-    "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
+    "--url", default=None, help="address of the service; default: this machine, port CRANKWRIGHT_PORT"
 )
 def download_command(
     design: str,
     kind: str,
     model: str | None,
+    part: str | None,
     variant: str | None,
     revision: int | None,
     folder: Path,
@@ -34,13 +39,13 @@ def download_command(
 ) -> None:
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
-    KIND is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP
-    files of all variants. The command waits for a file that the service must create first.
+    KIND is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for
+    the STEP files of all variants. If the service must create the file first, the command waits for it.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         with Client(place) as client:
-            file = _file(client, design, kind, model, variant, revision)
+            file = _file(client, design, kind, model, part, variant, revision)
         click.echo(file.save(folder))
     except Problem as problem:
         raise click.ClickException(str(problem)) from None
@@ -51,15 +56,23 @@ def download_command(
 
 
 def _file(
-    client: Client, design: str, kind: str, model: str | None, variant: str | None, revision: int | None
+    client: Client,
+    design: str,
+    kind: str,
+    model: str | None,
+    part: str | None,
+    variant: str | None,
+    revision: int | None,
 ) -> File:
+    if part is not None and (kind == "zip" or variant is not None):
+        raise click.UsageError("--part names a part of the design itself; leave out --variant and zip")
     if kind == "zip":
         return client.download_variants(design, revision, on_progress=_progress)
     if variant is not None:
         return client.download_variant(
             design, variant, kind, model=model, revision=revision, on_progress=_progress
         )
-    return client.download(design, kind, model=model, revision=revision, on_progress=_progress)
+    return client.download(design, kind, model=model, revision=revision, part=part, on_progress=_progress)
 
 
 def _progress(done: float, text: str) -> None:

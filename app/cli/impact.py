@@ -1,4 +1,4 @@
-"""`crankwright impact`: show how a new version of a template changes the designs that use another version."""
+"""`crankwright impact`: show how a new version of a template would change the designs that use another."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from app.presentation import numbers
 @click.command("impact")
 @click.argument("template")
 @click.argument("version", type=click.IntRange(1, 10**6))
-@click.option("--name", default=None, help="part of the name of the designs")
-@click.option("--tag", "tags", multiple=True, help="of the designs (repeatable)")
-@click.option("--limit", default=20, type=click.IntRange(1, 1000), help="designs that are listed")
+@click.option("--name", default=None, help="only designs whose name contains this text")
+@click.option("--tag", "tags", multiple=True, help="only designs with this tag (repeatable)")
+@click.option("--limit", default=20, type=click.IntRange(1, 1000), help="largest number of designs listed")
 @click.option("--json", "as_json", is_flag=True, help="the whole answer as JSON")
 @url_option
 @data_option
@@ -32,7 +32,7 @@ def impact_command(
     url: str | None,
     data: Path | None,
 ) -> None:
-    """Calculate every design that uses another version of TEMPLATE as if it used VERSION, worst first.
+    """Show how designs that use another version of TEMPLATE would change with VERSION, worst first.
 
     Nothing is saved. An upgrade is a new revision: PATCH /api/v1/designs/{id}, or the button on its page.
     """
@@ -66,14 +66,14 @@ def _print(impact: Impact) -> None:
 
 
 def _moved(verdict: CriterionChange) -> str:
-    """Return a criterion that is judged otherwise: `film.film of main_1 met → not met`."""
+    """Return a criterion whose verdict changes, as in `film.film of main_1 met → not met`."""
     variant = f" of {verdict.variant}" if verdict.variant else ""
     words = f"{verdict.old or 'none'} → {verdict.new or 'none'}".replace("_", " ")
     return f"{verdict.name}{variant} {words}"
 
 
 def _line(one: DesignImpact) -> str:
-    """Return the effect on a design, in short."""
+    """Return the effect on a design as one short line."""
     if one.effect == "refused":
         return f"refused: {'; '.join(f'{fault.name}: {fault.detail}' for fault in one.refusals[:3])}"
     parts = [_moved(verdict) for verdict in one.verdicts[:3]]

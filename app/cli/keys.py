@@ -1,6 +1,6 @@
 """`crankwright keys …`: manage principals and keys directly in the database, even if all keys are lost.
 
-A service may run meanwhile; it applies the change within a few seconds.
+A service may be running at the same time; it applies the change within a few seconds.
 """
 
 from __future__ import annotations
@@ -27,29 +27,36 @@ from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.storage.tables import ApiKeyRow, PrincipalRow
 
-_EVERY = 500  # principals that are read at once
+_EVERY = 500  # principals read in one query
 _SPAN = re.compile(r"([1-9][0-9]{0,4})([dh])")
 
 data_option = click.option(
     "--data",
     type=click.Path(file_okay=False, path_type=Path),
     default=None,
-    help="data folder; that of CRANKWRIGHT_DATA, or the database of CRANKWRIGHT_DATABASE_URL, if not given",
+    help="data folder; default: CRANKWRIGHT_DATA, or the database of CRANKWRIGHT_DATABASE_URL",
 )
 
 
 @click.group("keys")
 def keys_command() -> None:
-    """Add, list, revoke, disable and enable keys. Once there is a key, the service requires keys."""
+    """Add, list and revoke keys; disable and enable principals.
+
+    As soon as one key exists, the service requires keys.
+    """
 
 
 @keys_command.command("add")
 @click.argument("name")
-@click.option("--role", "roles", type=click.Choice(ROLES), multiple=True, help="of NAME (repeatable)")
+@click.option("--role", "roles", type=click.Choice(ROLES), multiple=True, help="role of NAME (repeatable)")
 @click.option("--kind", type=click.Choice(["person", "service"]), default="person", show_default=True)
-@click.option("--expires", default=None, metavar="90d", help="life of the key in days (d) or hours (h)")
+@click.option("--expires", default=None, metavar="90d", help="lifetime of the key in days (d) or hours (h)")
 @click.option(
-    "--scope", "scopes", type=click.Choice(ROLES), multiple=True, help="roles the key is limited to"
+    "--scope",
+    "scopes",
+    type=click.Choice(ROLES),
+    multiple=True,
+    help="limit the key to this role (repeatable)",
 )
 @data_option
 def add_command(
@@ -60,7 +67,7 @@ def add_command(
     scopes: tuple[Role, ...],
     data: Path | None,
 ) -> None:
-    """Print a new key of NAME, once; NAME is added with its roles if there is no such principal."""
+    """Print a new key of NAME, once; if there is no principal NAME, the command adds it with its roles."""
     until = _moment(expires)
     with opened(data) as identity:
         row = identity.named(name)
@@ -83,7 +90,10 @@ def add_command(
 @keys_command.command("list")
 @data_option
 def list_command(data: Path | None) -> None:
-    """List every principal with its keys, by prefix, and the key that created each, with which it ends."""
+    """List every principal with its keys, by prefix, and for each key the key that created it.
+
+    A key ends with the key that created it.
+    """
     with opened(data) as identity:
         after = None
         while rows := identity.page(_EVERY, after):
@@ -107,7 +117,7 @@ def revoke_command(prefix: str, data: Path | None) -> None:
         key, *others = identity.revoke(prefix.removeprefix("cw_")[:10])
     click.echo(f"{key.prefix} is revoked; running servers take notice within a few seconds")
     for other in others:
-        click.echo(f"{_named_key(other)} is revoked with it: made by {other.made_by}")
+        click.echo(f"{_named_key(other)} is also revoked, because {other.made_by} created it")
 
 
 @keys_command.command("disable")
@@ -156,7 +166,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """Return the moment at which a duration such as `90d` from now has passed."""
+    """Return the moment that lies a duration such as `90d` after now."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
@@ -167,7 +177,10 @@ def _moment(span: str | None) -> datetime | None:
 
 @contextmanager
 def opened(data: Path | None) -> Iterator[Identity]:
-    """Open the principals and keys in the database of a data folder or of the settings, in use or not."""
+    """Open the principals and keys in the database of a data folder or of the settings.
+
+    The database may be in use.
+    """
     settings = Settings() if data is None else Settings(data=data)
     try:
         database = Database(_prepared(settings))
@@ -182,9 +195,9 @@ def opened(data: Path | None) -> Iterator[Identity]:
 
 
 def _prepared(settings: Settings) -> str:
-    """Return the URL of the database, migrated unless a server that holds the data folder has done so.
+    """Return the URL of the database; migrate it first, unless a running server holds the data folder.
 
-    A shared database needs no folder, so this also works where nothing can be written.
+    A shared database needs no folder, so this also works without a writable one.
     """
     if (shared := settings.database_url) is not None:
         require_connection(shared)
@@ -207,7 +220,7 @@ def _prepared(settings: Settings) -> str:
 
 
 def asks_for_keys(settings: Settings) -> bool:
-    """Return whether a service with these settings requires keys from its first request on."""
+    """Return whether a service with these settings requires keys from its first request."""
     if settings.oidc_issuer is not None:
         return True
     url = settings.database_url

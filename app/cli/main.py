@@ -1,7 +1,7 @@
 """The command line: `crankwright serve | demo | study | sweep | impact | evaluate | template | …`.
 
-The module of a command is imported when the command is called. So `crankwright --version` imports no command,
-and `evaluate` imports neither the service nor the geometry kernel.
+The module of a command is imported only when the command runs. Therefore `crankwright --version` imports no
+command, and `evaluate` imports neither the service nor the geometry kernel.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SettableCommands(click.Group):
-    """Commands that name a wrong setting of the environment, not the place where the program noticed."""
+    """A group of commands that reports a wrong setting of the environment without a traceback."""
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
@@ -30,8 +30,8 @@ class SettableCommands(click.Group):
 
 
 def _wrong_settings(error: ValueError) -> str:
-    """Return a sentence on wrong settings; empty for another error."""
-    # Pydantic is imported here: a command without settings, such as `--version`, does without it.
+    """Return a sentence on wrong settings; empty if the error is not about settings."""
+    # Pydantic is imported here because commands without settings, such as `--version`, do not need it.
     from pydantic import ValidationError
     from pydantic_settings import SettingsError
 
@@ -48,11 +48,11 @@ def _wrong_setting(error: ErrorDetails) -> str:
 
 @dataclass(frozen=True)
 class OnDemand:
-    """A command that is imported when it is called."""
+    """A command that is imported when it runs."""
 
     module: str
     attribute: str
-    summary: str  # for the list of commands in `--help`
+    summary: str  # shown in the list of commands by `--help`
 
     def load(self) -> click.Command:
         """Import the command."""
@@ -89,7 +89,7 @@ COMMANDS = {
 
 
 class Commands(SettableCommands):
-    """All commands, each imported when it is called."""
+    """All commands, each imported when it runs."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands, sorted."""

@@ -30,10 +30,13 @@ _data = click.option(
 
 
 @click.command("check")
-@click.option("--repair", "repairing", is_flag=True, help="make lost files again; stop the service first")
+@click.option("--repair", "repairing", is_flag=True, help="rebuild lost files; stop the service first")
 @_data
 def check_command(repairing: bool, data: Path | None) -> None:
-    """Check the database, every artifact and every reference; exit code 0 clean, 1 faults, 2 cannot run."""
+    """Check the database, every artifact and every reference.
+
+    The exit code is 0 without faults, 1 with faults, and 2 if the check cannot run.
+    """
     settings = _settings(data)
     with _refusing():
         if repairing:
@@ -44,7 +47,7 @@ def check_command(repairing: bool, data: Path | None) -> None:
 
 @click.command("backup")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--no-files", is_flag=True, help="the database alone, for a bucket that keeps versions")
+@click.option("--no-files", is_flag=True, help="back up only the database, if the bucket keeps versions")
 @_data
 def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
     """Back up the database and its artifacts into FILE (.tar or .tar.gz), whether or not the service runs."""
@@ -55,7 +58,9 @@ def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
 
             contents = team.back_up(settings, url, file, _say, with_files=not no_files)
         elif no_files:
-            raise CannotRun("--no-files is for a team's bucket: SQLite's files are beside the database.")
+            raise CannotRun(
+                "--no-files is for a team's bucket: with SQLite, files are stored with the database."
+            )
         elif is_bucket(settings):
             raise CannotRun(IN_BUCKET.format(url=settings.artifacts_url))
         elif settings.artifacts_url is not None:
@@ -72,7 +77,7 @@ def backup_command(file: Path, no_files: bool, data: Path | None) -> None:
 def restore_command(file: Path, data: Path | None) -> None:
     """Restore the backup FILE into a new folder, which appears only after complete verification.
 
-    A team's backup goes into the empty database of CRANKWRIGHT_DATABASE_URL and into its store of files.
+    A team's backup is restored into the empty database of CRANKWRIGHT_DATABASE_URL and into its file store.
     """
     settings = Settings()
     with _refusing():
@@ -91,17 +96,17 @@ def restore_command(file: Path, data: Path | None) -> None:
 
 def _repair(settings: Settings) -> None:
     """Check and repair under the lock of the data folder."""
-    from app.maintenance.repair import repair  # the geometry kernel, which the other commands do without
+    from app.maintenance.repair import repair  # imports the geometry kernel, which other commands do not need
 
     if settings.database_url and sqlite_file(settings.database_url) is None:
-        raise CannotRun("The servers make lost files again when somebody asks for them.")
+        raise CannotRun("The servers rebuild lost files themselves when a client requests them.")
     path = database_file(settings.data, settings.database_url)
     try:
         folder = DataFolder(settings.data)
     except DataFolderInUse as error:
         raise CannotRun(
-            f"The service runs (process {error.owner}) and makes lost files again by itself when they are "
-            "asked for. Stop it, then repair; `crankwright check` alone may run beside it."
+            f"The service is running (process {error.owner}) and rebuilds lost files itself when a client "
+            "requests them. Stop it before a repair; `crankwright check` alone may run meanwhile."
         ) from None
     try:
         findings = _check(settings, in_use=False)
@@ -122,7 +127,9 @@ def _team_url(settings: Settings) -> str | None:
 def _check(settings: Settings, *, in_use: bool) -> Faults:
     files = files_of(settings)
     if url := _team_url(settings):
-        from app.maintenance.team_check import check_shared  # PostgreSQL, which the other commands do without
+        from app.maintenance.team_check import (
+            check_shared,
+        )  # imports PostgreSQL, which other commands do not need
 
         findings = check_shared(url, files)
     else:
@@ -152,7 +159,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _refusing() -> Iterator[None]:
-    """End the command with a message for any error that prevents it from running."""
+    """End the command with a message if an error prevents it from running."""
     try:
         yield
     except CannotRun as error:

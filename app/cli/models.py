@@ -13,7 +13,7 @@ from templates.core.errors import plain
 
 @click.group("model")
 def model_command() -> None:
-    """Manage models drawn by other programs: import a file, show its origin, save the original."""
+    """Manage models that other programs draw: import a file, show its origin, save the original."""
 
 
 @model_command.command("programs")
@@ -28,14 +28,15 @@ def programs_command(url: str | None, data: Path | None) -> None:
 
 @model_command.command("import")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option("--id", required=True, help="of the model: small letters, digits and single _")
+@click.option("--id", required=True, help="id of the model: lower-case letters, digits and single _")
 @url_option
 @data_option
 def import_command(file: Path, id: str, url: str | None, data: Path | None) -> None:
     """Import FILE as the model ID, or as its next version.
 
     FILE is a document of FreeCAD (.FCStd), a STEP file as a fixed part, or a manifest (JSON) of a model in
-    Creo or of an assembly. Prints the version, its parameters, and how far to trust its solids.
+    Creo or of an assembly. The command prints the version, its parameters, and how far its solids can be
+    trusted.
     """
     with connected(url, data) as client:
         model = client.import_model(id, file.read_bytes(), file.name, on_progress=_progress)
@@ -53,7 +54,7 @@ def import_command(file: Path, id: str, url: str | None, data: Path | None) -> N
 @url_option
 @data_option
 def original_command(id: str, version: int, folder: Path, url: str | None, data: Path | None) -> None:
-    """Save the file from which a version of the model ID was imported, under its name."""
+    """Save, under its own name, the file from which a version of the model ID was imported."""
     with connected(url, data) as client:
         file = client.original_model(id, version)
     try:

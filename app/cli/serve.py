@@ -29,7 +29,7 @@ from cad.catalogue import models
 
 
 def fork_ahead(settings: Settings) -> None:
-    """Fork the servers that these settings need; call it before any thread or connection exists.
+    """Fork the server processes that these settings need; call this before any thread or connection exists.
 
     Built-in templates and models are imported first, so that the processes share their memory. The fork
     server of jobs loads the kernel while the server opens its data; the others are ready at once.
@@ -54,7 +54,7 @@ def fork_ahead(settings: Settings) -> None:
     "--port", default=None, type=click.IntRange(0, 65535), help="8000 unless CRANKWRIGHT_PORT is set"
 )
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts")
-@click.option("--insecure", is_flag=True, help="listen beyond this machine although no key is required")
+@click.option("--insecure", is_flag=True, help="listen on other addresses although no key is required")
 def serve_command(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
     """Serve the REST interface; its documentation is at /docs."""
     given: JsonObject = {"data": data, "host": host, "port": port}
@@ -81,7 +81,7 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
 
 
 def _check_reach(settings: Settings, insecure: bool) -> None:
-    """Refuse to listen beyond this machine if no key is required, unless the operator insists.
+    """Refuse to listen on an address beyond this machine without keys, unless the operator insists.
 
     Raises
     ------

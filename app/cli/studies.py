@@ -1,4 +1,4 @@
-"""`crankwright study | sweep`: calculate many rows of a design, through a service or on a data folder."""
+"""`crankwright study | sweep`: calculate many variations of a design, by a service or on a data folder."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _out = click.option(
 )
 
 
-_variant = click.option("--variant", help="of the design that is studied; the design itself, if not given")
+_variant = click.option("--variant", help="variant to study; the design itself if not given")
 
 
 @click.command("study")
@@ -62,7 +62,10 @@ def study_command(
 @click.argument("design")
 @click.argument("vary", nargs=-1, required=True, metavar="NAME=A..B/STEPS…")
 @click.option(
-    "--output", "outputs", multiple=True, help="as step.output (repeatable); all single values if not given"
+    "--output",
+    "outputs",
+    multiple=True,
+    help="output to list, as step.output (repeatable); default: all single values",
 )
 @_variant
 @_out
@@ -79,7 +82,8 @@ def sweep_command(
 ) -> None:
     """Calculate DESIGN (an id) over a grid, for example: crankwright sweep ID clearance=0.03..0.09mm/41.
 
-    Values are listed by commas: width=18,20mm. The rows go to the standard output, or into a file by --out.
+    Separate single values by commas: width=18,20mm. The rows go to the standard output, or with --out to a
+    file.
     """
     kind, varied = _kind(out), dict(_varied(text) for text in vary)
     steps = {name: count for name, (_, count) in varied.items() if count}
@@ -97,7 +101,7 @@ def sweep_command(
 
 
 def _varied(text: str) -> tuple[str, tuple[JsonObject, int]]:
-    """Return a varied place, its values, and the number of steps of an interval (0 for a list)."""
+    """Return the name of a varied quantity, its values, and an interval's number of steps (0 for a list)."""
     name, sign, what = text.partition("=")
     if match := _INTERVAL.fullmatch(what.strip()):
         low, low_unit, high, unit, steps = match.groups()
@@ -129,7 +133,7 @@ def _single_outputs(client: Client, design: str) -> list[str]:
 
 
 def _followed(study: ClientStudy) -> Study:
-    """Return the study at its end; show its progress as a bar on a terminal."""
+    """Return the study once it has ended; meanwhile show its progress as a bar on a terminal."""
     shown = study.study
     seconds, solids = shown.estimate.seconds, shown.estimate.solids
     cost = [f"about {seconds:.2g} s"] * (seconds is not None) + [f"{solids} solids to build"] * bool(solids)

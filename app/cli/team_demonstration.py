@@ -1,4 +1,4 @@
-"""`crankwright demo --team`: the demonstration through two servers, two workers, PostgreSQL, S3."""
+"""`crankwright demo --team`: run the demonstration with two servers, two workers, PostgreSQL and S3."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from app.team.errors import DidNotStart, Missing
 from app.team.parts import running
 
 WORKERS = 2
-TIMEOUT = 120.0  # for an answer on a busy machine [s]
+TIMEOUT = 120.0  # longest wait for an answer, on a busy machine [s]
 
 
 def demonstrate_team(workers: int = WORKERS) -> None:
-    """Run the demonstration on a temporary team on loopback, and leave nothing behind.
+    """Run the demonstration with a temporary team on loopback, and leave nothing behind.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def demonstrate_team(workers: int = WORKERS) -> None:
                 _run([server.url for server in team.servers], Path(folder))
     except Missing as error:
         lacking = "\n".join(f"  {line}" for line in str(error).splitlines())
-        raise click.ClickException(f"a team needs what is not installed:\n{lacking}") from None
+        raise click.ClickException(f"a team needs programs that are not installed:\n{lacking}") from None
     except DidNotStart as error:
         raise click.ClickException(str(error)) from None
     click.echo("all parts have ended, and their files are removed")
@@ -71,7 +71,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _ending_in_order() -> Iterator[None]:
-    """Raise an exception when the terminal closes or the program is terminated, as with Ctrl-C."""
+    """Raise SystemExit if the terminal closes or the program is terminated, so that all parts stop."""
     numbers = (signal.SIGTERM, signal.SIGHUP)
     before = {number: signal.signal(number, _end) for number in numbers}
     try:

@@ -1,7 +1,7 @@
 """`crankwright evaluate | template | freeze`: use templates in this process, without a service.
 
-If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
-the models with the geometry kernel, and the schema are imported by the commands that need them.
+If the settings name no team folders, `evaluate` imports only the template that it evaluates. Only the
+commands that need them import the settings, the models with the geometry kernel, and the schema.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from app.cli import start  # noqa: F401  # before all that imports Pint
+from app.cli import start  # noqa: F401  # must precede every import of Pint
 
 # isort: split
 from app.catalogue.discovery import find_templates
@@ -49,8 +49,8 @@ class CatalogueCommand(click.Command):
 @click.command("evaluate", cls=CatalogueCommand)
 @click.argument("template")
 @click.argument("inputs", nargs=-1, metavar="NAME=QUANTITY…")
-@click.option("--version", type=int, default=None, help="the latest, if not given")
-@click.option("--output", "outputs", multiple=True, help="compute this only (repeatable)")
+@click.option("--version", type=int, default=None, help="version; default: the latest")
+@click.option("--output", "outputs", multiple=True, help="compute only this output (repeatable)")
 @click.option("--json", "as_json", is_flag=True, help="print the whole answer as JSON")
 def evaluate_command(
     template: str, inputs: tuple[str, ...], version: int | None, outputs: tuple[str, ...], as_json: bool
@@ -81,7 +81,7 @@ def evaluate_command(
 
 
 def _result(answer: Answer) -> str:
-    """Return an answer as one line; for an array its length and range."""
+    """Return an output as one line; for an array, its length and range."""
     printed = unit_symbol(answer.unit or "1")
     if answer.value is None:
         return f"{'none':>14} ({answer.reason})"
@@ -106,7 +106,7 @@ def template_command() -> None:
 
 
 @template_command.command("list", cls=CatalogueCommand)
-@click.option("--search", default="", help="a title, standard, author, symbol, or name of a textbook")
+@click.option("--search", default="", help="a title, standard, author, symbol, or textbook name")
 def list_templates(search: str) -> None:
     """List every version of every template, or the results of a search."""
     from app.catalogue.search import matching
@@ -121,7 +121,7 @@ def list_templates(search: str) -> None:
 
 @template_command.command("show", cls=CatalogueCommand)
 @click.argument("id")
-@click.option("--version", type=int, default=None, help="the latest, if not given")
+@click.option("--version", type=int, default=None, help="version; default: the latest")
 def show_template(id: str, version: int | None) -> None:
     """Show inputs, outputs, limits and errata of one version."""
     from templates.core.paper.schema import describe
@@ -168,14 +168,14 @@ def _find(id: str, version: int | None) -> type[Template]:
     """Return one version, or the latest one that is not withdrawn."""
     catalogue = _catalogue(id, version)
     if not catalogue.versions:
-        catalogue = _catalogue()  # its message names those that there are
+        catalogue = _catalogue()  # its error lists the existing templates
     return catalogue.latest(id) if version is None else catalogue.get(id, version)
 
 
 def _catalogue(id: str | None = None, version: int | None = None) -> Catalogue[Template]:
-    """Return all templates.
+    """Return the catalogue of templates.
 
-    Without a team's files to report, it loads only those of the id and the version.
+    Unless files of a team may have faults to report, it holds only the requested id and version.
     """
     has_team = FOLDERS in map(str.upper, os.environ)
     return _snapshot().templates if has_team else find_templates((), id, version)

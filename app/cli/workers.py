@@ -19,12 +19,12 @@ _BOOT = (
 
 
 @click.command("worker")
-@click.option("--scheduler", help="its address; CRANKWRIGHT_ENGINE if not given", metavar="URL")
-@click.option("--lanes", help='jobs at the same time: {"geometry": 2, "analysis": 1}', metavar="JSON")
+@click.option("--scheduler", help="address of the scheduler; default: CRANKWRIGHT_ENGINE", metavar="URL")
+@click.option("--lanes", help='simultaneous jobs by lane: {"geometry": 2, "analysis": 1}', metavar="JSON")
 def worker_command(scheduler: str | None, lanes: str | None) -> None:
-    """Run jobs of the servers that use the same scheduler and the same program.
+    """Run jobs for the servers that use the same scheduler and the same version of the program.
 
-    Without a scheduler it waits for one, and it reconnects when the connection breaks.
+    The command waits until the scheduler runs, and reconnects when the connection breaks.
     """
     given = {"CRANKWRIGHT_ENGINE": scheduler, "CRANKWRIGHT_LANES": lanes}
     os.environ.update({name: value for name, value in given.items() if value is not None})
@@ -52,7 +52,7 @@ def scheduler_command(host: str, port: int) -> None:
 
 
 def _become(module: str, *args: str) -> NoReturn:
-    """Turn this process into another one, which imports only its own modules."""
+    """Replace this process by another program, which imports only the modules that it needs."""
     command = [sys.executable, "-c", _BOOT.format(module), json.dumps(sys.path), *args]
     sys.stdout.flush()
     os.execv(sys.executable, command)

@@ -1,7 +1,7 @@
 """`crankwright worksheet …`: exchange worksheets as text files with the service, and change their states.
 
-A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text byte for
-byte.
+A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It contains the exact text
+of the worksheet.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def list_command(url: str | None, data: Path | None) -> None:
 @data_option
 @click.pass_context
 def check_command(ctx: click.Context, files: tuple[Path, ...], url: str | None, data: Path | None) -> None:
-    """Check FILES and run their tests; nothing is saved. The exit code is 1 if there is a fault."""
+    """Check FILES and run their tests without saving anything. The exit code is 1 if there is a fault."""
     with connected(url, data) as client:
         checks = {file: client.check_worksheet(_text(file)) for file in files}
     for file, check in checks.items():
@@ -57,13 +57,13 @@ def check_command(ctx: click.Context, files: tuple[Path, ...], url: str | None, 
 
 @worksheet_command.command("import-text")
 @_files
-@click.option("--author", help="who wrote them")
+@click.option("--author", help="author of the worksheets")
 @url_option
 @data_option
 def import_command(files: tuple[Path, ...], author: str | None, url: str | None, data: Path | None) -> None:
-    """Save FILES as drafts: `<id>.sheet` a new worksheet, or an edit of the one that is there.
+    """Save FILES as drafts: `<id>.sheet` creates a worksheet, or edits the existing one.
 
-    Versions of one worksheet must be imported in order, and the earlier ones must be released.
+    Import the versions of one worksheet in order; all but the last must already be released.
     """
     named = sorted((_named(file), file) for file in files)
     with connected(url, data) as client:
@@ -79,7 +79,7 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
 
 @worksheet_command.command("import")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option("--id", help="of the worksheet; the name of the file, if not given")
+@click.option("--id", help="id of the worksheet; default: the name of the file")
 @url_option
 @data_option
 @click.pass_context
@@ -88,7 +88,7 @@ def import_sheet_command(
 ) -> None:
     """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz), as a draft.
 
-    It prints the outcome of each region. The exit code is 1 if some of them prevent a release.
+    The command prints the outcome for each region. The exit code is 1 if some regions prevent a release.
     """
     with connected(url, data) as client:
         sheet = client.import_worksheet(id or _id_of(file), file.read_bytes(), file.name)
@@ -105,23 +105,26 @@ def import_sheet_command(
 
 
 def _values(region: ImportedRegion) -> str:
-    """Return both values of a region that differs."""
+    """Return both values of a region whose results differ."""
     return f"Mathcad {region.mathcad[:5]}, worksheet {region.worksheet[:5]} {region.unit or ''}"
 
 
 def _id_of(file: Path) -> str:
-    """Return an id from the name of a file."""
+    """Return the worksheet id that a file's name states."""
     words = re.sub(r"[^a-z0-9]+", "_", file.stem.lower()).strip("_") or "sheet"
     return (words if words[0].isalpha() else f"sheet_{words}")[:64]
 
 
 @worksheet_command.command("export")
 @click.argument("place")
-@click.option("--version", type=int, default=None, help="the newest, if not given")
+@click.option("--version", type=int, default=None, help="version to export; default: the newest")
 @url_option
 @data_option
 def export_command(place: str, version: int | None, url: str | None, data: Path | None) -> None:
-    """Print the text of the worksheet PLACE, an id; or write every version of all into PLACE, a folder."""
+    """Print the text of the worksheet PLACE, an id, or export all worksheets into the folder PLACE.
+
+    The export into a folder has every version of every worksheet.
+    """
     with connected(url, data) as client:
         if Path(place).is_dir():
             for one in client.worksheets():
@@ -145,8 +148,8 @@ def test_command(id: str, url: str | None, data: Path | None) -> None:
 
 @worksheet_command.command("review")
 @click.argument("id")
-@click.option("--reviewer", required=True, help="your name; another than the author's")
-@click.option("--digest", required=True, help="of the text that you reviewed, or its first 12 digits")
+@click.option("--reviewer", required=True, help="your name, which must differ from the author's")
+@click.option("--digest", required=True, help="digest of the text that you reviewed, or its first 12 digits")
 @url_option
 @data_option
 def review_command(id: str, reviewer: str, digest: str, url: str | None, data: Path | None) -> None:
@@ -173,11 +176,13 @@ def release_command(id: str, url: str | None, data: Path | None) -> None:
 @worksheet_command.command("withdraw")
 @click.argument("id")
 @click.option("--reason", required=True, help="why it must no longer be used")
-@click.option("--version", type=int, default=None, help="the newest released one, if not given")
+@click.option(
+    "--version", type=int, default=None, help="version to withdraw; default: the newest released one"
+)
 @url_option
 @data_option
 def withdraw_command(id: str, reason: str, version: int | None, url: str | None, data: Path | None) -> None:
-    """Withdraw a released version of ID, with the reason."""
+    """Withdraw a released version of ID, and state the reason."""
     with connected(url, data) as client:
         _say(client.withdraw_worksheet(id, reason, version))
 
@@ -189,12 +194,12 @@ def _saved(client: Client, id: str, text: str, author: str | None, sheet: Sheet 
 
 
 def _require_next(file: Path, number: int, sheet: Sheet | None) -> None:
-    """Refuse a file whose version differs from the version that an edit would create; 0 means any.
+    """Refuse a file whose version is not the one that an edit would create; version 0 means any.
 
     Raises
     ------
     ClickException
-        If it is a different one.
+        If the versions differ.
     """
     is_open = sheet is not None and sheet.state in OPEN
     possible = 1 if sheet is None else sheet.version if is_open else sheet.version + 1
@@ -219,7 +224,7 @@ def _say(sheet: Sheet) -> None:
 
 
 def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
-    """Return a remark if the name of the reviewer is not verified."""
+    """Return a remark if the reviewer's name was not verified."""
     return "" if sheet.review_verified else f"{sign}review not verified"
 
 
@@ -238,7 +243,7 @@ def _print(file: Path, check: SheetCheck) -> None:
 
 
 def _named(file: Path) -> tuple[str, int]:
-    """Return the id and the version in a file name; version 0 if it has none."""
+    """Return the id and the version in a file name; version 0 if the name has none."""
     if (match := FILE.fullmatch(file.name)) is None:
         raise click.ClickException(
             f"{file.name} is not named <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
@@ -247,7 +252,7 @@ def _named(file: Path) -> tuple[str, int]:
 
 
 def _text(file: Path) -> str:
-    """Return the text of a file with its original line ends."""
+    """Return the text of a file with its original line endings."""
     try:
         return file.read_bytes().decode("utf-8")
     except UnicodeDecodeError:

@@ -1,4 +1,4 @@
-"""A typed client of the REST interface, over httpx. It returns the models of `app.schemas`.
+"""A typed client of the REST interface, built on httpx. It returns the models of `app.schemas`.
 
 with Client("http://127.0.0.1:8000") as client:
     answer = client.evaluate("oil_film", 1, {"radial_load": "25 kN", …})
@@ -7,8 +7,8 @@ with Client("http://127.0.0.1:8000") as client:
     design = client.change(design, {"parameters": {"scale": "1.02"}})
     path = client.download(design.id, "step").save()  # main_bearing_model_r2.step
 
-Every call waits for its result, even if the service starts a job for it. `AsyncClient` has the same methods,
-to be awaited.
+Every call waits for its result, even if the service starts a job for it. `AsyncClient` has the same methods
+as coroutines.
 """
 
 from app.client.clients import AsyncClient, Client

@@ -1,4 +1,4 @@
-"""The client's calls about approvals of revisions, and comments on them."""
+"""The client's calls for approvals of revisions, and comments on them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.schemas.approval_steps import Step
 
 
 def approvals(id: str, revision: int) -> Exchange[Approvals]:
-    """Return the principals that calculated, checked and released a revision, and the digest to sign."""
+    """Return the completed steps of a revision's approval, the next step, and the digest to sign."""
     return answered(Approvals, get(f"/designs/{id}/revisions/{revision}/approvals"))
 
 
@@ -21,10 +21,10 @@ def approve(
     acknowledged: str | None = None,
     key: str | None = None,
 ) -> Exchange[Approvals]:
-    """Take the next step of an approval that was read; a withdrawal needs a reason.
+    """Take the next step of an approval that was read before; a withdrawal needs a reason.
 
-    To check or release a revision whose approvals list `unconfirmed` criteria, say in `acknowledged` why that
-    may stand.
+    To check or release a revision whose approvals list `unconfirmed` criteria, state in `acknowledged` why
+    that is acceptable.
     """
     said = {"step": step, "reason": reason, "acknowledged": acknowledged}
     body = {name: text for name, text in said.items() if text is not None}
@@ -45,7 +45,7 @@ def comments(id: str, revision: int) -> Exchange[list[Comment]]:
 def comment(
     id: str, revision: int, text: str, subject: str | None = None, *, key: str | None = None
 ) -> Exchange[Comment]:
-    """Comment on a revision, or on one of its names such as `film.bearing_width`."""
+    """Add a comment on a revision, or on one of its names such as `film.bearing_width`."""
     body = {"text": text, "subject": subject}
     return answered(Comment, post(f"/designs/{id}/revisions/{revision}/comments", body, once(key)))
 

@@ -71,24 +71,24 @@ class AsyncMethod(Generic[Asked, Result]):
 
 
 class Client(BlockingConnection):
-    """A connection to a service, which answers every call before it returns.
+    """A synchronous connection to a service.
 
     Parameters
     ----------
     url
-        Where the service listens, such as `http://127.0.0.1:8000`.
+        Address of the service, such as `http://127.0.0.1:8000`.
     timeout
-        How long an answer may take [s].
+        Longest wait for a response [s].
     name
-        Under which name the service counts this client's requests, and takes turns between clients: up to 100
-        printable ASCII characters. If not given, `user@host`.
+        Name of this client, by which the service counts requests and takes turns between clients: up to 100
+        printable ASCII characters. The default is `user@host`.
     key
-        By which the service knows whose requests they are, `cw_…`, where it asks for one.
+        Key that authenticates the requests, `cw_…`; a service with keys requires one.
 
     Raises
     ------
     ValueError
-        If the name is no such text, or the key has not the form of one.
+        If the name or the key does not have the required form.
     """
 
     def study(self, design: str, *, key: str | None = None, **body: object) -> ClientStudy:
@@ -96,7 +96,7 @@ class Client(BlockingConnection):
         return ClientStudy(self, self.run(exchanges.begin(design, body, key)))
 
     def open_study(self, id: str) -> ClientStudy:
-        """Return a study that was begun before."""
+        """Return a study that was started before."""
         return ClientStudy(self, self.run(exchanges.find(id)))
 
     studies = Method(exchanges.find_all)
@@ -184,14 +184,14 @@ class Client(BlockingConnection):
 
 
 class AsyncClient(AwaitedConnection):
-    """A connection to a service, whose calls are awaited. It is made as `Client` is."""
+    """An asynchronous connection to a service, with the parameters of `Client`; its calls are awaited."""
 
     async def study(self, design: str, *, key: str | None = None, **body: object) -> AsyncClientStudy:
         """Start a study of a design: `method`, `vary`, `outputs` and so on, as in `POST /studies`."""
         return AsyncClientStudy(self, await self.run(exchanges.begin(design, body, key)))
 
     async def open_study(self, id: str) -> AsyncClientStudy:
-        """Return a study that was begun before."""
+        """Return a study that was started before."""
         return AsyncClientStudy(self, await self.run(exchanges.find(id)))
 
     studies = AsyncMethod(exchanges.find_all)

@@ -1,4 +1,4 @@
-"""Connections to a service over httpx: one that waits for each response, and one that awaits it."""
+"""Connections to a service over httpx: a blocking connection, and one for coroutines."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import httpx
 from app.client.exchange import Exchange, Query, Request
 from app.client.names import CLIENT_HEADER, authorization, checked_name
 
-_RETRIES = 3  # of the transport, for a connection that is refused
+_RETRIES = 3  # attempts of the transport to open a refused connection
 
 Result = TypeVar("Result")
 
 
 class _Options(TypedDict):
-    """The settings of every connection of httpx."""
+    """The options of an httpx client, the same for both connections."""
 
     base_url: str
     timeout: float
@@ -25,7 +25,7 @@ class _Options(TypedDict):
 
 
 class _Message(TypedDict):
-    """A request as httpx takes it."""
+    """The arguments of a request in httpx."""
 
     method: str
     url: str
@@ -35,7 +35,7 @@ class _Message(TypedDict):
 
 
 class _Connection:
-    """Address and name with which a client connects."""
+    """The address of the service, and the name and key of the client."""
 
     def __init__(
         self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
@@ -50,7 +50,7 @@ class _Connection:
 
 
 def message(request: Request) -> _Message:
-    """Return a request as httpx needs it."""
+    """Return a request as arguments for httpx."""
     return {
         "method": request.method,
         "url": request.path,
@@ -61,7 +61,7 @@ def message(request: Request) -> _Message:
 
 
 class BlockingConnection(_Connection):
-    """Sends one request at once, and waits for its response."""
+    """A connection that sends one request at a time and blocks until the response arrives."""
 
     def __init__(
         self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
@@ -111,7 +111,7 @@ class BlockingConnection(_Connection):
 
 
 class AwaitedConnection(_Connection):
-    """Sends a request, and awaits its response."""
+    """A connection that sends a request and awaits its response."""
 
     def __init__(
         self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None

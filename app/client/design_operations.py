@@ -1,4 +1,4 @@
-"""The client's calls about designs: each function is an exchange that returns a model."""
+"""The client's calls for designs: each function is an exchange that returns a model."""
 
 from __future__ import annotations
 
@@ -60,14 +60,14 @@ def designs(**wanted: Unpack[DesignFilter]) -> Exchange[list[DesignSummary]]:
 
 
 def design(id: str) -> Exchange[Design]:
-    """Return a design as of its newest revision."""
+    """Return a design at its newest revision."""
     return answered(Design, get(f"/designs/{id}"))
 
 
 def create(
     document: Mapping[str, object], *, on_progress: Progress | None = None, key: str | None = None
 ) -> Exchange[Design]:
-    """Create a design and wait until its models are built; see `state` for whether they are.
+    """Create a design and wait until its models are built; `state` shows whether that succeeded.
 
     Two requests with the same key create one design.
     """
@@ -81,7 +81,7 @@ def change(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Change a design that was read: create a new revision, and wait until its models are built."""
+    """Change a design that was read before: create a new revision, and wait until its models are built."""
     headers = {"Content-Type": MERGE_PATCH, **_match(design), **once(key)}
     request = Request("PATCH", f"{BASE}/designs/{design.id}", written(patch), headers=headers)
     return saved(request, on_progress)
@@ -90,7 +90,7 @@ def change(
 def copy(
     id: str, name: str | None = None, *, on_progress: Progress | None = None, key: str | None = None
 ) -> Exchange[Design]:
-    """Create a new design with the newest document of this one; without a name the service chooses one."""
+    """Create a new design with the newest document of this design; without a name the service chooses one."""
     return saved(post(f"/designs/{id}/copy", {"name": name}, once(key)), on_progress)
 
 
@@ -102,13 +102,13 @@ def restore(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Create a new revision, equal to an old one, of a design that was read."""
+    """Create a new revision that equals an old one, of a design that was read before."""
     path = f"/designs/{design.id}/revisions/{number}/restore"
     return saved(post(path, {"note": note}, {**_match(design), **once(key)}), on_progress)
 
 
 def delete(id: str) -> Exchange[None]:
-    """Delete a design from the lists; its revisions are kept."""
+    """Remove a design from the lists; its revisions are kept."""
     checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
 
 
@@ -135,7 +135,8 @@ def compare(
 ) -> Exchange[Comparison]:
     """Return the differences between two revisions, of the same design or of two designs.
 
-    Without numbers it compares the newest revision with the previous one, or the newest ones of both designs.
+    Without numbers, it compares the newest revision with the previous one, or the newest revisions of both
+    designs.
     """
     chosen = {"revision": revision, "with": other, "design": design}
     query = {name: str(value) for name, value in chosen.items() if value is not None}
@@ -143,9 +144,9 @@ def compare(
 
 
 def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
-    """Return the effect of a change.
+    """Return the effect of a change without saving anything.
 
-    Nothing is saved. `worksheet` adds every step with its formulas written out.
+    `worksheet` adds every step with its formulas written out.
     """
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
@@ -160,9 +161,9 @@ def decide(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Decision]:
-    """Decide criteria of a design and its variants, all if none are named: finer levels where needed.
+    """Decide criteria of a design and its variants, by default all criteria, at finer levels where needed.
 
-    With `estimate_only`, the answer names the first levels with their times, and nothing is calculated. The
+    With `estimate_only`, the answer names the first levels and their times, and nothing is calculated. The
     quantities of the answer are in `units`, "si" or "us".
     """
     body = {"criteria": criteria, "budget": budget, "estimate_only": estimate_only}
@@ -170,7 +171,7 @@ def decide(
 
 
 def auto_map(id: str) -> Exchange[list[Proposal]]:
-    """Return proposals for model parameters that are not set."""
+    """Return proposed links for model parameters that are not set."""
     request = Request("POST", f"{BASE}/designs/{id}/auto-map")
     return (yield from answered(Proposals, request)).proposals
 
@@ -201,18 +202,21 @@ def revisions(id: str) -> Exchange[list[Revision]]:
 
 
 def measurements(id: str) -> Exchange[dict[str, ModelMeasurements]]:
-    """Return measurements of the newest good models, by the name of the model."""
+    """Return measurements of the newest valid models, by the name of the model."""
     return answered(dict[str, ModelMeasurements], get(f"/designs/{id}/measurements"))
 
 
 def design_worksheet(id: str, number: int | None = None) -> Exchange[RevisionWorksheet]:
-    """Return a revision, the newest if none is named, with every formula of its steps written out."""
+    """Return a revision, by default the newest, with every formula of its steps written out."""
     revision = f"/revisions/{number}" if number else ""
     return answered(RevisionWorksheet, get(f"/designs/{id}{revision}/worksheet.json"))
 
 
 def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
-    """Return the design once its job has ended; its `state` shows a failed regeneration."""
+    """Wait for the job that builds the design's models, and return the design.
+
+    `state` shows whether the job failed.
+    """
     response = yield request
     answer = read(Design, response)
     if job := job_of(response):
@@ -222,7 +226,7 @@ def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
 
 
 def _filters(wanted: DesignFilter) -> Iterator[tuple[str, str]]:
-    """Yield the filters as query parameters, in which a tag may occur several times."""
+    """Yield the filters as query parameters; the parameter for tags may be repeated."""
     for name, value in wanted.items():
         texts = [value] if isinstance(value, str) else value
         assert isinstance(texts, Sequence), "filters are texts"
@@ -230,10 +234,10 @@ def _filters(wanted: DesignFilter) -> Iterator[tuple[str, str]]:
 
 
 def _match(design: Design) -> dict[str, str]:
-    """Refuse a change if the design has changed since it was read."""
+    """Return the If-Match header that refuses a change if the design has changed since it was read."""
     return {"If-Match": f'"{design.revision}"'}
 
 
 def once(key: str | None) -> dict[str, str]:
-    """Return a key that makes a repeated request harmless."""
+    """Return the header with a new Idempotency-Key, which makes a repeated request harmless."""
     return {"Idempotency-Key": key or uuid.uuid4().hex}

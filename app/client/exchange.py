@@ -1,7 +1,7 @@
 """Exchanges with the service: generators of requests, independent of the client that sends them.
 
-An exchange is a generator. It yields requests, receives their responses and returns a model; it knows nothing
-of sockets, so that `Client` and `AsyncClient` run the same exchanges.
+An exchange yields requests, receives their responses and returns a model. It does not use the network itself,
+so that `Client` and `AsyncClient` can run the same exchanges.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Query = Mapping[str, str] | tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Request:
-    """A request; `listen` receives every line of a stream, which has no time-out."""
+    """A request; `listen` receives every line of a streamed response, which has no time-out."""
 
     method: str
     path: str
@@ -57,7 +57,7 @@ def get(path: str, params: Query | None = None) -> Request:
 
 
 def post(path: str, body: object, headers: Mapping[str, str] | None = None) -> Request:
-    """Send a body as JSON to a path below `BASE`."""
+    """Send a body as JSON by POST to a path below `BASE`."""
     return Request("POST", BASE + path, written(body), headers={"Content-Type": JSON, **(headers or {})})
 
 
@@ -100,7 +100,7 @@ def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] =
 
 
 def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """Repeat a request once its job has ended, as for a file that must be created; return its answer.
+    """Send a request again once its job has ended, as for a file that must be created; return the response.
 
     Raises
     ------
@@ -115,12 +115,12 @@ def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[h
 
 
 def calculated(model: type[Model], request: Request, on_progress: Progress | None = None) -> Exchange[Model]:
-    """Return the answer of a calculation, from its job if it became one."""
+    """Return the answer of a calculation; if the service made it a job, wait for the job."""
     return read(model, (yield from calculation(request, on_progress)))
 
 
 def calculation(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """Return the response of a calculation, from its job if it became one."""
+    """Return the response to a calculation; if the service made it a job, wait for the job."""
     response = yield request
     if job := job_of(response):
         yield from done(job, on_progress)
@@ -129,7 +129,7 @@ def calculation(request: Request, on_progress: Progress | None = None) -> Exchan
 
 
 def job_of(response: httpx.Response) -> str | None:
-    """Return the job that an answer waits for: of a 202, or of a 503 while a lost file is rebuilt."""
+    """Return the job that a response names: a 202, or a 503 while a lost file is rebuilt."""
     place = response.headers.get("Location", "")
     waits = response.status_code in (202, 503) and place.startswith(_JOB)
     return place.removeprefix(_JOB) if waits else None
@@ -141,7 +141,7 @@ def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
     Raises
     ------
     Problem
-        If it failed or was cancelled.
+        If the job failed or was cancelled.
     """
     ended = yield from followed(job, on_progress)
     if ended.problem:
@@ -150,7 +150,7 @@ def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
 
 
 def followed(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
-    """Return a job once it has ended, whatever its outcome."""
+    """Wait until a job has ended, and return it whatever its outcome."""
 
     def listen(line: str) -> None:
         event = json.loads(line.removeprefix("data:")) if line.startswith("data:") else {}

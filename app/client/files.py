@@ -1,4 +1,4 @@
-"""Files that the service sends, under the names that it gives them."""
+"""Files that the service sends, with their names."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _PLAIN = re.compile(r'filename="([^"]*)"')
 
 @dataclass(frozen=True)
 class File:
-    """A file, and what it is called."""
+    """The content and the name of a file."""
 
     name: str
     content: bytes
 
     @classmethod
     def of(cls, response: httpx.Response) -> File:
-        """Return the file in an answer; without a name from the service it is named after the path."""
+        """Return the file in a response; if the service states no name, the file is named after the path."""
         said = response.headers.get("Content-Disposition", "")
         if wide := _WIDE.search(said):
             name = unquote(wide[1])

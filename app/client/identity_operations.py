@@ -1,4 +1,4 @@
-"""The client's calls about principals and keys: each function is an exchange."""
+"""The client's calls for principals and keys: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATH = "/principals"
 
 
 def me() -> Exchange[Me]:
-    """Return the principal of this client, with roles, limits and usage."""
+    """Return the principal of this client, with its roles, limits and usage."""
     return answered(Me, get("/me"))
 
 
@@ -21,7 +21,7 @@ def principals() -> Exchange[list[Principal]]:
 
 
 def add_principal(name: str, roles: Sequence[Role], kind: str = "person") -> Exchange[Principal]:
-    """Return a new principal."""
+    """Add a principal, and return it."""
     return answered(Principal, post(_PATH, {"name": name, "roles": list(roles), "kind": kind}))
 
 
@@ -43,7 +43,7 @@ def keys(principal: str) -> Exchange[list[Key]]:
 def add_key(
     principal: str, *, name: str = "", scopes: Sequence[Role] = (), expires_days: float | None = None
 ) -> Exchange[NewKey]:
-    """Return a new key, which appears only in this answer."""
+    """Create a key, and return it; the key appears only in this answer."""
     body = {"name": name, "scopes": list(scopes), "expires_days": expires_days}
     return answered(NewKey, post(f"{_PATH}/{principal}/keys", body))
 

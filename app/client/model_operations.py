@@ -1,4 +1,4 @@
-"""The client's calls about CAD models and those that a team brings: each function is an exchange."""
+"""The client's calls for CAD models, built-in and imported: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -21,12 +21,10 @@ def drawing_programs() -> Exchange[list[DrawingProgram]]:
 def import_model(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[CadModel]:
-    """Import a file as a version of a model; return it once the service has examined it.
+    """Import a file as a version of a model; return the version once the service has examined it.
 
-    .FCStd, STEP, or a manifest for Creo.
-
-    Two requests with the same key create one version. A file that already exists under this id keeps its
-    version.
+    The file is an .FCStd document, a STEP file, or a manifest for Creo. Two requests with the same key
+    create one version. A file that already exists under this id keeps its version.
 
     Raises
     ------
@@ -51,5 +49,5 @@ def model_origin(id: str, version: int) -> Exchange[ModelOrigin]:
 
 
 def original_model(id: str, version: int) -> Exchange[File]:
-    """Return the file from which a model was imported, unchanged and under its name."""
+    """Return, under its own name, the unchanged file from which a model was imported."""
     return File.of(checked((yield get(f"{_PATH}/{id}/versions/{version}/original"))))

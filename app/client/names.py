@@ -7,15 +7,15 @@ import re
 import socket
 
 CLIENT_HEADER = "Crankwright-Client"
-_NAME = re.compile("[!-~]([ -~]{0,98}[!-~])?")  # up to 100 printable ASCII characters, no blank at an end
+_NAME = re.compile("[!-~]([ -~]{0,98}[!-~])?")  # up to 100 printable ASCII characters, no blank at either end
 _KEY = re.compile("cw_[a-z0-9]{10}_[A-Za-z0-9_-]{43}")
 
 
 def user_at_host() -> str:
-    """Return the user and the machine in printable ASCII, which are the same for all calls of this user."""
+    """Return the user and the machine as `user@host` in printable ASCII."""
     try:
         user = getpass.getuser()
-    except (KeyError, OSError):  # a container may run under a number that has no name
+    except (KeyError, OSError):  # a container may run under a user number without a name
         user = "unknown"
     return re.sub("[^!-~]", "_", f"{user}@{socket.gethostname()}")[:100]
 
@@ -38,12 +38,12 @@ def checked_name(name: str | None) -> str:
 
 
 def authorization(key: str | None) -> dict[str, str]:
-    """Return the header that carries a key; none without one.
+    """Return the header with the key; empty without a key.
 
     Raises
     ------
     ValueError
-        If the key has not the form of one; it is not quoted.
+        If the key does not have the required form; the message does not quote it.
     """
     if key is None:
         return {}

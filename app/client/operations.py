@@ -1,4 +1,4 @@
-"""The client's calls: each function is an exchange that returns a model."""
+"""The client's calls for templates, builds, files and jobs: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from io import BytesIO
 from typing import TypedDict, Unpack
+from urllib.parse import quote
 
 import httpx
 import numpy as np
@@ -68,7 +69,7 @@ Values = Mapping[str, object]
 
 
 class SolveOptions(TypedDict, total=False):
-    """Options of `solve`: how a template is evaluated at a solution."""
+    """Options of `solve`: outputs, level, tolerance and units."""
 
     outputs: list[str]
     level: str
@@ -78,7 +79,7 @@ class SolveOptions(TypedDict, total=False):
 
 
 class Options(SolveOptions, total=False):
-    """Options of `evaluate`: level, tolerance and the like."""
+    """Options of `evaluate`, such as the level and the tolerance."""
 
     per_point: bool
 
@@ -188,7 +189,7 @@ def analyse(
 
 
 def surface(analysis: str) -> Exchange[Surface]:
-    """Return the surface that an analysis computed; its `outputs` must have named it."""
+    """Return the surface that an analysis computed; the `outputs` of that analysis must have named it."""
     return read(Surface, (yield from awaited(get(f"/analyses/{analysis}/surface"))))
 
 
@@ -200,7 +201,7 @@ def build(key: str) -> Exchange[Build]:
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
     """Return a file of the design's newest valid model.
 
-    The kind is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
+    The kind is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 
@@ -211,16 +212,18 @@ def download(
     *,
     model: str | None = None,
     revision: int | None = None,
+    part: str | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[File]:
     """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
-    It comes from the newest valid model if no revision is named; `model` selects one, if the design has
-    several.
+    Without a revision it is the file of the newest valid model; `model` selects one if the design has
+    several. With `part`, a glb, stl, 3mf or brep file holds only this part.
     """
     one = f"/revisions/{revision}" if revision else ""
     named = f"/models/{model}" if model else ""
-    return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}", on_progress)))
+    alone = f"?part={quote(part, safe='')}" if part else ""
+    return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}{alone}", on_progress)))
 
 
 def report(
@@ -232,7 +235,7 @@ def report(
     variants: bool = False,
     on_progress: Progress | None = None,
 ) -> Exchange[bytes]:
-    """Return the calculation report of a revision, the newest if none is named, with all its pictures.
+    """Return the calculation report of a revision, by default the newest, with all its pictures.
 
     The format is pdf or html. `variants` selects the report of all its variants. The quantities are in
     `units`, "si" or "us".
@@ -247,7 +250,7 @@ def picture(id: str, version: int, *, on_progress: Progress | None = None) -> Ex
 
 
 def verify(step: bytes) -> Exchange[Verification]:
-    """Return the build that a STEP file comes from, and the revisions that use it."""
+    """Return the build that produced a STEP file, and the revisions that use that build."""
     request = Request("POST", f"{BASE}/verify", step, headers={"Content-Type": "model/step"})
     return answered(Verification, request)
 
@@ -268,7 +271,7 @@ def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
 
 
 def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response]:
-    """Return the answer with a file once it has been created.
+    """Return the response with a file once the service has created the file.
 
     With `on_progress`, the job is followed from the start.
     """

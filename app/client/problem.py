@@ -12,16 +12,16 @@ from app.schemas.problems import Problem as Described
 
 
 class Problem(Exception):
-    """The service's answer to what it refuses (RFC 9457), or why a job failed.
+    """A problem (RFC 9457): the service refused a request, or a job failed.
 
     Attributes
     ----------
     status
         The HTTP status.
     body
-        The answer as plain JSON values.
+        The problem as plain JSON values.
     described
-        The answer as a model.
+        The problem as a model.
     """
 
     def __init__(self, status: int, body: Mapping[str, JsonValue]) -> None:
@@ -37,15 +37,15 @@ class Problem(Exception):
 
     @classmethod
     def of(cls, response: httpx.Response) -> Problem:
-        """Return the problem in an answer; an error page of a proxy is converted to one too."""
+        """Return the problem in a response; the error page of a proxy also becomes a problem."""
         try:
             return cls(response.status_code, response.json())
-        except ValueError:  # no JSON, or JSON that is not a problem
+        except ValueError:  # not JSON, or not a problem
             return cls(response.status_code, {"title": response.reason_phrase, "detail": response.text[:500]})
 
 
 def checked(response: httpx.Response) -> httpx.Response:
-    """Return the answer unchanged.
+    """Return a response unchanged.
 
     Raises
     ------

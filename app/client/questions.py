@@ -1,4 +1,4 @@
-"""Questions about designs: solve for an input, analyse tolerances, show the impact of a version."""
+"""The client's calls to solve a design for an input, analyse tolerances, and show the impact of a version."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def solve_design(
 ) -> Exchange[DesignSolution]:
     """Return every value of a parameter or input between two bounds that gives a wanted output.
 
-    `others` replaces values of the design for this question: `{"film.speed": "7000 rpm"}`.
+    `others` replaces values of the design for this calculation only: `{"film.speed": "7000 rpm"}`.
     """
     body: dict[str, object] = {"unknown": unknown, "between": list(between), "target": dict(target)}
     body |= {} if tolerance is None else {"tolerance": tolerance}
@@ -43,7 +43,7 @@ def tolerance(
     levels: Mapping[str, str] | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[ToleranceAnalysis]:
-    """Return worst case, scatter, shares and yields of outputs, by default those that criteria judge."""
+    """Return worst case, scatter, contributions and yields of outputs, by default those with criteria."""
     sampling = {"points": points, "seed": seed, "levels": dict(levels or {})}
     body = {"outputs": outputs, "criteria": criteria, **sampling}
     return calculated(ToleranceAnalysis, post(f"/designs/{id}/tolerance", body), on_progress)
@@ -60,7 +60,7 @@ def impact(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Impact]:
-    """Return the effect of a version on the designs that use another one, worst first; nothing is saved.
+    """Return how a version would change the designs that use another one, worst first; nothing is saved.
 
     It covers all designs that are not archived, unless ids, a part of the name or tags select some.
     """
@@ -78,7 +78,10 @@ def upgrade(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[Design]:
-    """Upgrade a design that was read: every step of a template gets this version in a new revision."""
+    """Create a new revision that uses this version in every step of the template.
+
+    The design must have been read before.
+    """
     steps = {name: {"version": version} for name, step in design.steps.items() if step.template == template}
     patch = {"steps": steps, "note": f"{template} version {version}"}
     return change(design, patch, on_progress=on_progress, key=key)

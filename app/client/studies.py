@@ -1,4 +1,4 @@
-"""Studies in the client: an object that waits for the study, lists its rows and chooses one.
+"""Studies in the client: an object that waits for a study, returns its rows and saves one row in the design.
 
 study = client.study(design.id, method="grid", vary={…}, steps=41, outputs=["film.power_loss"])
 study.wait(print).result
@@ -36,12 +36,12 @@ from app.studies.schemas import Study, StudyList, StudyRow, StudyRows
 Where = Word | Literal["refused"]
 """A choice of rows: by their worst verdict, or those without values."""
 Kind = Literal["csv", "xlsx", "npz"]
-_PAGE = "500"  # rows of a request
+_PAGE = "500"  # rows in one request
 _JOB = f"{BASE}/jobs/"
 
 
 def begin(design: str, body: Mapping[str, object], key: str | None = None) -> Exchange[Study]:
-    """Start a study; two requests with the same key start one."""
+    """Start a study; two requests with the same key start one study."""
     return answered(Study, post("/studies", {"design": design, **body}, _once(key)))
 
 
@@ -51,7 +51,7 @@ def find(id: str) -> Exchange[Study]:
 
 
 def find_all(design: str | None = None) -> Exchange[list[Study]]:
-    """Return studies, newest first; those of a design, if one is named."""
+    """Return studies, newest first; with a design, only its studies."""
     return listed(StudyList, "/studies", [("design", design)] if design else [])
 
 
@@ -61,7 +61,7 @@ def end_of(id: str, on_progress: Progress | None = None) -> Exchange[Study]:
     Raises
     ------
     Problem
-        If it failed or was cancelled.
+        If the study failed or was cancelled.
     """
     study = yield from find(id)
     if study.job is not None:
@@ -73,7 +73,7 @@ def end_of(id: str, on_progress: Progress | None = None) -> Exchange[Study]:
 
 
 def rows_of(id: str, query: Sequence[tuple[str, str]]) -> Exchange[list[StudyRow]]:
-    """Return rows of a study, all pages of them."""
+    """Return rows of a study from all pages."""
     return listed(StudyRows, f"/studies/{id}/rows", [*query, ("limit", _PAGE)])
 
 
@@ -86,7 +86,7 @@ def file_of(id: str, kind: Kind, query: Sequence[tuple[str, str]]) -> Exchange[F
 def chosen(
     study: Study, row: int, note: str | None, on_progress: Progress | None, key: str | None
 ) -> Exchange[Design]:
-    """Return the design after a row of its study became its newest revision."""
+    """Save a row of a study as the design's newest revision, and return the design."""
     newest = yield from design(study.design)
     headers = {"If-Match": f'"{newest.revision}"', **_once(key)}
     body = {"row": row, **({"note": note} if note else {})}
@@ -99,31 +99,31 @@ def chosen(
 
 
 def _once(key: str | None) -> dict[str, str]:
-    """Return a key that makes a repeated request harmless."""
+    """Return the header with a new Idempotency-Key, which makes a repeated request harmless."""
     return {"Idempotency-Key": key or uuid.uuid4().hex}
 
 
 def ended(id: str) -> Exchange[Study | None]:
-    """Cancel a waiting or running study, and return it; delete an ended one, and return None."""
+    """Cancel a waiting or running study, and return it; delete an ended study, and return None."""
     response = yield Request("DELETE", f"{BASE}/studies/{id}")
     return None if checked(response).status_code == 204 else read(Study, response)
 
 
 def filters(columns: Sequence[str] | None, where: Where | None, sort: str | None) -> list[tuple[str, str]]:
-    """Return the chosen rows and columns as query parameters."""
+    """Return the selection of rows and columns as query parameters."""
     given = {"columns": ",".join(columns) if columns else None, "where": where, "sort": sort}
     return [(name, value) for name, value in given.items() if value is not None]
 
 
 class ClientStudy:
-    """A study of a `Client`; `study` is what the service said of it last."""
+    """A study of a `Client`; `study` is its state in the last response."""
 
     def __init__(self, client: BlockingConnection, study: Study) -> None:
         self._client, self.study = client, study
 
     @property
     def id(self) -> str:
-        """Return its name in the service."""
+        """Return the id of the study."""
         return self.study.id
 
     def wait(self, on_progress: Progress | None = None) -> Study:
@@ -134,7 +134,7 @@ class ClientStudy:
     def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Return its rows, in order or sorted by a column (`-` in front: the largest first)."""
+        """Return the rows, in order or sorted by a column (`-` in front: in descending order)."""
         return self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     def file(
@@ -145,7 +145,7 @@ class ClientStudy:
         where: Where | None = None,
         sort: str | None = None,
     ) -> File:
-        """Return its rows as a file: csv, xlsx or npz."""
+        """Return the rows as a file: csv, xlsx or npz."""
         return self._client.run(file_of(self.id, kind, filters(columns, where, sort)))
 
     def choose(
@@ -160,19 +160,19 @@ class ClientStudy:
         return self._client.run(chosen(self.study, row, note, on_progress, key))
 
     def end(self) -> Study | None:
-        """Cancel the study if it runs; delete it if it has ended."""
+        """Cancel the study if it is running; delete it if it has ended."""
         return self._client.run(ended(self.id))
 
 
 class AsyncClientStudy:
-    """A study of an `AsyncClient`, as `ClientStudy`; its methods are awaited."""
+    """A study of an `AsyncClient`, like `ClientStudy`; its methods are awaited."""
 
     def __init__(self, client: AwaitedConnection, study: Study) -> None:
         self._client, self.study = client, study
 
     @property
     def id(self) -> str:
-        """Return its name in the service."""
+        """Return the id of the study."""
         return self.study.id
 
     async def wait(self, on_progress: Progress | None = None) -> Study:
@@ -183,7 +183,7 @@ class AsyncClientStudy:
     async def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Return its rows, in order or sorted by a column (`-` in front: the largest first)."""
+        """Return the rows, in order or sorted by a column (`-` in front: in descending order)."""
         return await self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     async def file(
@@ -194,7 +194,7 @@ class AsyncClientStudy:
         where: Where | None = None,
         sort: str | None = None,
     ) -> File:
-        """Return its rows as a file: csv, xlsx or npz."""
+        """Return the rows as a file: csv, xlsx or npz."""
         return await self._client.run(file_of(self.id, kind, filters(columns, where, sort)))
 
     async def choose(
@@ -209,5 +209,5 @@ class AsyncClientStudy:
         return await self._client.run(chosen(self.study, row, note, on_progress, key))
 
     async def end(self) -> Study | None:
-        """Cancel the study if it runs; delete it if it has ended."""
+        """Cancel the study if it is running; delete it if it has ended."""
         return await self._client.run(ended(self.id))

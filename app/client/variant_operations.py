@@ -1,4 +1,4 @@
-"""The client's calls about the variants of designs: exchanges, as in `operations`."""
+"""The client's calls for variants of designs: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ def variant(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[VariantDetail]:
-    """Return one variant with all its outputs, or some of them, curves included.
+    """Return one variant with all or some of its outputs, including curves.
 
-    `base` is the design itself.
+    The variant `base` is the design itself.
     """
     one = f"/revisions/{revision}" if revision else ""
     query = (("units", units), *(("output", output) for output in outputs))
@@ -64,10 +64,10 @@ def put_variants(
     on_progress: Progress | None = None,
     key: str | None = None,
 ) -> Exchange[VariantsOut]:
-    """Replace the variants of a design that was read, and wait until their solids are built.
+    """Replace the variants of a design that was read before, and wait until their solids are built.
 
-    An unchanged table creates no revision. A variant whose solid fails states the reason in its `state` and
-    `problem`.
+    An unchanged table creates no revision. If the solid of a variant fails, its `state` and `problem` state
+    the reason.
     """
     id = design.design if isinstance(design, VariantsOut) else design.id
     headers = {
@@ -95,7 +95,7 @@ def download_variant(
 ) -> Exchange[File]:
     """Return a file of a variant under its name, `{design}_{variant}_r{revision}.{kind}`.
 
-    It comes from its newest valid solid if no revision is named; `model` selects one, if the design has
+    Without a revision it is the file of the newest valid solid; `model` selects one if the design has
     several.
     """
     one = f"/revisions/{revision}" if revision else ""

@@ -1,4 +1,4 @@
-"""The client's calls about worksheets: each function is an exchange."""
+"""The client's calls for worksheets: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def worksheets() -> Exchange[list[SheetSummary]]:
 
 
 def read_worksheet(id: str, version: int | None = None) -> Exchange[Sheet]:
-    """Return a worksheet at its newest version, or at another one."""
+    """Return a worksheet, by default at its newest version."""
     return answered(Sheet, get(f"{_PATH}/{id}" if version is None else f"{_PATH}/{id}/versions/{version}"))
 
 
@@ -42,14 +42,14 @@ def worksheet_text(id: str, version: int | None = None) -> Exchange[str]:
 
 
 def check_worksheet(text: str, id: str | None = None) -> Exchange[SheetCheck]:
-    """Check a text: return all its faults, or every line on paper with the example's numbers."""
+    """Check a text: return all its faults, or every line typeset with the example's numbers."""
     return answered(SheetCheck, post(f"{_PATH}/check", {"text": text, **({"id": id} if id else {})}))
 
 
 def create_worksheet(
     id: str, text: str, *, author: str | None = None, key: str | None = None
 ) -> Exchange[Sheet]:
-    """Create a worksheet as a draft, and return it; two requests with the same key create one."""
+    """Create a worksheet as a draft, and return it; two requests with the same key create one worksheet."""
     body = {"id": id, "text": text, **({"author": author} if author else {})}
     return answered(Sheet, post(_PATH, body, {"Idempotency-Key": key or uuid.uuid4().hex}))
 
@@ -78,19 +78,19 @@ def read_import(id: str) -> Exchange[SheetImport]:
 
 
 def change_worksheet(sheet: Sheet, text: str, *, author: str | None = None) -> Exchange[Sheet]:
-    """Edit a worksheet that was read: return its draft, or the next version of a released one."""
+    """Edit a worksheet that was read before; return its draft, or the next version of a released one."""
     body = {"text": text, **({"author": author} if author else {})}
     headers = {"Content-Type": MERGE_PATCH, "Idempotency-Key": uuid.uuid4().hex, **_if_match(sheet)}
     return answered(Sheet, Request("PATCH", f"{BASE}{_PATH}/{sheet.id}", written(body), headers=headers))
 
 
 def test_worksheet(sheet: Sheet) -> Exchange[Sheet]:
-    """Run the tests and the golden steps of a worksheet that was read: draft → tested."""
+    """Run the tests and the golden steps of a worksheet that was read before: draft → tested."""
     return answered(Sheet, post(f"{_PATH}/{sheet.id}/test", {}, _if_match(sheet)))
 
 
 def review_worksheet(sheet: Sheet, reviewer: str) -> Exchange[Sheet]:
-    """Record the review of a worksheet that was read: tested → reviewed."""
+    """Record the review of a worksheet that was read before: tested → reviewed."""
     body = {"reviewer": reviewer, "digest": sheet.digest or ""}
     return answered(Sheet, post(f"{_PATH}/{sheet.id}/review", body, _if_match(sheet)))
 
@@ -101,13 +101,13 @@ def release_worksheet(sheet: Sheet) -> Exchange[Sheet]:
 
 
 def withdraw_worksheet(id: str, reason: str, version: int | None = None) -> Exchange[Sheet]:
-    """Withdraw a released version, by default the newest, with the reason."""
+    """Withdraw a released version, by default the newest, and state the reason."""
     body = {"reason": reason, **({} if version is None else {"version": version})}
     return answered(Sheet, post(f"{_PATH}/{id}/withdraw", body))
 
 
 def delete_worksheet(sheet: Sheet) -> Exchange[None]:
-    """Delete the newest version of a worksheet that was read, if it was never released."""
+    """Delete the newest version of a worksheet that was read before, if that version was never released."""
     checked((yield Request("DELETE", f"{BASE}{_PATH}/{sheet.id}", headers=_if_match(sheet))))
 
 

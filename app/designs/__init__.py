@@ -1,1 +1,1 @@
-"""Designs combine calculations and shapes."""
+"""Designs: documents that combine calculations (steps) with CAD models."""

@@ -1,4 +1,4 @@
-"""Analyses that models of a design declare: the outputs that relations use, and their faults.
+"""Finite-element analyses that the models of a design declare: outputs used by relations, and faults.
 
 `"throw": {…, "analyses": {"torsion": {"tolerance": 0.005}}}` lets relations use `throw.torsion.stiffness`.
 The service computes only outputs that a relation or an iteration uses. An unused analysis costs nothing.
@@ -34,22 +34,19 @@ def is_measured(reference: Reference, declared: Iterable[str], cls: type[Templat
 
 
 def is_table(reference: Reference) -> bool:
-    """Return whether a name means an output of an analysis that is a table or a list.
-
-    Others are single values.
-    """
+    """Return whether a name refers to an analysis output that is a table or a list, not a single value."""
     return axes_of(reference) > 0
 
 
 def axes_of(reference: Reference) -> int:
-    """Return the number of axes of an analysis' output: 2 for a table, 1 for a list, 0 for a single value."""
+    """Return the number of axes of an analysis output: 2 for a table, 1 for a list, 0 for a single value."""
     if reference.analysis not in KINDS:
         return 0
     return 2 if reference.output in TABLES else int(reference.output in LISTS)
 
 
 def measured_names(declared: Iterable[str], cls: type[Template]) -> Iterator[str]:
-    """Yield every name of that sort."""
+    """Yield the names of all measurements and analysis outputs that a model provides."""
     yield from MEASURES
     yield from _further(cls)
     yield from (f"{kind}.{output}" for kind in declared for output in KINDS[kind])
@@ -60,7 +57,7 @@ def _further(cls: type[Template]) -> Mapping[str, str]:
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
-    """Return the analyses that a model declares, as far as they are valid, and their faults."""
+    """Return the valid analyses that a model declares, by kind, and the faults of the others."""
     if not model.analyses:
         return {}, []
     declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
@@ -75,10 +72,7 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
-    """Return a remedy for an unknown name that refers to an analysis.
-
-    It is None if the name refers to no analysis.
-    """
+    """Return a remedy for an unknown name that refers to an analysis; None if it refers to no analysis."""
     model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
         return None
@@ -89,7 +83,7 @@ def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -
 
 
 def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
-    """Return the outputs of an analysis that relations use."""
+    """Return the outputs of one kind of analysis that relations use."""
     return in_order(
         kind,
         {reference.output for reference in references if reference.analysis == kind and reference.output},

@@ -1,12 +1,12 @@
-"""Proposals that link unset model parameters to values of a design, by kind, name and role, with reasons.
+"""Propose relations for unset model parameters; each proposal links one to a value of the design.
 
-A proposal is applied only if the user accepts it. Three things must fit:
+A proposal is applied only if the user accepts it. A value fits by three tests:
 
-- the *kind*: both measure the same kind of quantity, and a single value is not linked to a curve;
-- the *name*: the step's quantity has the name of the parameter, or a name listed under `also`;
-- the *role*: a name of general words only, such as `bore` or `width`, does not say which part it belongs to:
-the bore of an engine is the bore of its cylinder. Such a name counts only if it equals the name of the
-parameter and the ids of template and model share a word.
+- the *kind*: value and parameter are the same kind of quantity, and a curve never fits a single value;
+- the *name*: the value has the name of the parameter, or a name listed under `also`;
+- the *role*: a name of general words only, such as `bore` or `width`, does not identify a part; the bore
+of an engine is the bore of its cylinder. So a value with such a name fits only if it has exactly the name
+of the parameter and the ids of template and model share a word.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GENERAL = frozenset(
     "angle area bore clearance depth diameter face height inner length load mass number outer radius size "
     "speed stroke temperature thickness volume wall width".split()
 )
-"""Words that say what is measured, but not of which part."""
+"""Words that name a quantity without identifying the part."""
 NO_SINGLE_VALUE = (Choice, Curve, Profile, Table, Text)
 
 
@@ -56,7 +56,7 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
     meaning, words = model.cls.inputs[name].meaning, called.replace("_", " ")
     same = f"both are called {words}" if called == name else f"{meaning.words} is also {words}"
     more = f"; {', '.join(map(str, others))} would fit too" if others else ""
-    return f"{same}, and both are given in {meaning.unit} or its like{more}"
+    return f"{same}, and both are the same kind of quantity{more}"
 
 
 def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
@@ -72,7 +72,7 @@ def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Refer
 
 
 def _tells_its_part(called: str) -> bool:
-    """Return whether a name identifies its part: `bearing_width` does, `width` does not."""
+    """Return whether a name identifies a part: `bearing_width` does, `width` does not."""
     return not GENERAL.issuperset(called.split("_"))
 
 
@@ -81,7 +81,7 @@ def _share_a_role(step: Block, model: Block) -> bool:
 
 
 def _is_namesake(source: Reference, model: Block) -> bool:
-    """Return whether the names of step and model share a word: `front_shell` goes with `front_film`."""
+    """Return whether the names of a step and a model share a word, as `front_shell` and `front_film` do."""
     block = source.block if source.output is not None else ""
     return not set(block.split("_")).isdisjoint(model.name.split("_"))
 

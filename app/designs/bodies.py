@@ -1,4 +1,4 @@
-"""Request bodies for designs, besides the design itself."""
+"""Request bodies about designs, except the document itself."""
 
 from __future__ import annotations
 
@@ -44,11 +44,13 @@ PAPER: JsonDict = {
 """The paper's demonstration as a design."""
 
 LONGEST_NOTE = 1000  # letters
-Note = Field(None, max_length=LONGEST_NOTE, description="why, for the list of revisions")
+Note = Field(
+    None, max_length=LONGEST_NOTE, description="reason for the change, shown in the list of revisions"
+)
 
 
 class DesignIn(Document):
-    """A new design."""
+    """Request for a new design."""
 
     model_config = ConfigDict(
         strict=True,
@@ -64,21 +66,21 @@ class DesignIn(Document):
 
 
 class RestoreIn(Bounded):
-    """A note for the revision that a restore makes."""
+    """Request to restore a revision, with a note for the new one."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     note: str | None = Note
 
 
 class CopyIn(Bounded):
-    """A name for the copy."""
+    """Request to copy a design, with a name for the copy."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     name: Name | None = None
 
 
 class DecideIn(Bounded):
-    """The criteria of a design and its variants to decide, and the time that may take."""
+    """Request to decide criteria of a design and its variants within a time budget."""
 
     model_config = ConfigDict(
         strict=True,
@@ -86,11 +88,11 @@ class DecideIn(Bounded):
         json_schema_extra={"examples": [{"criteria": ["film.film"], "budget": "30 s"}]},
     )
     criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
-        None, description="by name; all that are undecided, if not given"
+        None, description="names of the criteria to decide; by default all that are undecided"
     )
-    budget: Given = Field("30 s", description="after which no further level begins")
+    budget: Given = Field("30 s", description="time after which no further level is started")
     estimate_only: bool = Field(
-        False, description="only the levels that would be calculated first are named, with their times"
+        False, description="only return the first level to calculate for each design, with its estimated time"
     )
 
 
@@ -128,4 +130,4 @@ PATCH: JsonDict = {
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
     },
 }
-"""What a merge patch of a design may name; null removes. What it leads to is checked as a whole design."""
+"""Members of a merge patch of a design; null removes a member. The resulting design is checked as a whole."""

@@ -1,7 +1,7 @@
-"""Choices that relations test, as in `film.oil is "SAE 30"`: resolved from the document alone.
+"""Tests of choices in relations, such as `film.oil is "SAE 30"`: resolved from the document alone.
 
-A choice does not depend on other values. So the network resolves each test when it is built, and a test
-creates no loop if a relation sets an input of the same step.
+The options chosen in a document do not depend on calculated values. So each test is resolved when the
+network is built, and it creates no loop even if the relation sets an input of the same step.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ T = TypeVar("T", bound=Template)
 
 @dataclass(frozen=True)
 class Choices:
-    """The choices of a design's steps and models."""
+    """The choice inputs of a design's steps and models, and the options that its document selects."""
 
     document: Document
     catalogues: Catalogues
 
     def decided(self, relation: Relation) -> Relation:
-        """Return a relation with its choices replaced by their words.
+        """Return a relation in which each tested choice is replaced by the selected option.
 
-        It is unchanged if a template is unknown.
+        The relation is returned unchanged if a template is unknown.
 
         Raises
         ------
@@ -46,14 +46,14 @@ class Choices:
         for name, word in relation.tests:
             try:
                 declared, raw = self._choice(name)
-            except UnknownTemplate:  # a fault of its own
+            except UnknownTemplate:  # reported as a separate fault
                 return relation
             check_word(name, word, declared.options)
             words[name] = _word(name, declared, raw)
         return relation.decided(words)
 
     def _choice(self, name: str) -> tuple[Choice, Raw]:
-        """Return the declaration of a choice, and its value in the document."""
+        """Return the declaration of a choice, and the value that the document gives it."""
         reference = Reference.parse(name)
         cls, values = self._block(name, reference.block)
         declared = cls.inputs.get(reference.member) if cls else None

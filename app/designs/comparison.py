@@ -1,4 +1,4 @@
-"""List all differences between two stored revisions, of one design or of two; nothing is calculated."""
+"""List all differences between two stored revisions of one design or of two; nothing is recalculated."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Pair:
-    """The two revisions to compare; a rule chooses a revision where a number is missing."""
+    """The two revisions to compare; `rows` chooses a revision if its number is not given."""
 
     design: str
     revision: int | None
-    other: str | None  # another design; None for the same
-    number: int | None  # of the other side
+    other: str | None  # the id of the second design; None for the same design
+    number: int | None  # of the second revision
 
     def rows(self, session: Session) -> tuple[RevisionRow, RevisionRow]:
         """Return the older and the newer revision.
 
-        Without numbers these are the last two revisions of one design, or the newest ones of two designs.
+        If the numbers are missing, these are the last two revisions of one design, or the newest revision of
+        each of two designs.
 
         Raises
         ------
@@ -73,7 +74,7 @@ def compare(session: Session, pair: Pair) -> Comparison:
 
 @dataclass(frozen=True)
 class _Parts:
-    """The parts of a revision by their dotted names."""
+    """The comparable values and texts of a revision, by dotted names."""
 
     parameters: dict[str, str]
     versions: dict[str, str]
@@ -106,7 +107,7 @@ class _Parts:
 
 
 def _typed(document: JsonObject) -> dict[str, Json]:
-    """Return the parameters of a design as typed, and the overrides of its variants."""
+    """Return the values of the design's parameters and of its variants' overrides, as typed."""
     variants = {f"variants.{name}": values for name, values in document.get("variants", {}).items()}
     return {**document["parameters"], **_named(variants)}
 
@@ -138,7 +139,7 @@ def _outputs(step: JsonObject) -> dict[str, Json]:
 
 
 def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObject]) -> dict[str, str]:
-    """Return the version of each step with the first digits of its code's digest, and its level."""
+    """Return for each step its version, the first digits of its code's digest, and its level."""
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})
@@ -155,7 +156,7 @@ def _model_versions(row: RevisionRow) -> dict[str, str]:
 
 
 def _criteria(results: JsonObject) -> Iterator[tuple[str, VerdictOf]]:
-    """Yield the stored verdicts: of the revision, or of its steps, whose names have no prefix."""
+    """Yield name and verdict of each stored criterion; step results may store names without the step."""
     for item in results.get("criteria", ()):
         yield item["name"], _verdict(item)
     for name, step in results.get("steps", {}).items():
@@ -176,7 +177,7 @@ def _verdicts(old: Mapping[str, VerdictOf], new: Mapping[str, VerdictOf]) -> lis
 
 
 def _measured(session: Session, row: RevisionRow) -> Iterator[tuple[str, Json]]:
-    """Yield the measurements of a revision's solids that are built."""
+    """Yield the measurements of a revision's finished solids."""
     for model in row.models:
         build = rows.build(session, model.build_key) if model.build_key else None
         if build is not None:

@@ -1,4 +1,4 @@
-"""Explain a verdict: verdict ← value ← formula ← inputs, and limit ← its source."""
+"""Explain a criterion's verdict: verdict ← value ← formula ← inputs, and limit ← its source."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.storage.errors import NotFound
 from templates.core.criteria.criterion import Limit
 from templates.core.units.relation import Relation
 
-PREFIX = "criteria."  # before the name of a criterion that is called like a parameter of the only model
+PREFIX = "criteria."  # before the name of a criterion that has the name of a parameter of the only model
 
 
 def explain_any(document: Document, calculation: Calculation, name: str) -> JsonObject:
@@ -46,9 +46,9 @@ def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
 
 
 def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:
-    """Return the explanation of a verdict: the values of both sides, traced as far as possible.
+    """Return the explanation of a verdict, with the values on both sides traced as far as possible.
 
-    A criterion whose step does not compute a required output was not judged, and has no `criterion`.
+    If the step does not compute a required output, the criterion was not judged and has no `criterion` entry.
     """
     verdicts = Verdicts(calculation)
     name = name.removeprefix(PREFIX)
@@ -59,14 +59,17 @@ def explain_criterion(document: Document, calculation: Calculation, name: str) -
 
 
 class _Sides:
-    """Value and limit of one criterion."""
+    """Explain the value side and the limit side of one criterion."""
 
     def __init__(self, document: Document, calculation: Calculation, subject: Subject) -> None:
         self.document, self.subject = document, subject
         self.explainer = Explainer(calculation, depth=1)
 
     def all(self) -> Iterator[JsonObject]:
-        """Yield every name of the value, then of the limit; a side without names is yielded whole."""
+        """Yield the explanation of every name on the value side, then on the limit side.
+
+        A side without names is explained as a whole.
+        """
         criterion = self.subject.criterion
         for link in self._side(criterion.value):
             yield {**link, "side": "value"}
@@ -81,7 +84,7 @@ class _Sides:
             yield {"name": relation.text, "kind": "written", **({"source": source} if source else {})}
 
     def _link(self, name: str) -> JsonObject:
-        """Return the values on which a name depends, or the user who gave it."""
+        """Return the explanation of a name: the values on which it depends, or the user who typed it."""
         if name in self.subject.references:
             return self.explainer.of(self.subject.references[name])
         return self._limit(self.subject.criterion.limits_by_name[name])
@@ -89,7 +92,7 @@ class _Sides:
     def _limit(self, limit: Limit) -> JsonObject:
         """Return the origin of a limit that the calculation does not use.
 
-        This is the step, a library row, a default, or none.
+        The origin is the step, a library row, a default, or nothing.
         """
         block = self.subject.block
         assert block is not None, "a criterion of the design declares no limits"

@@ -35,9 +35,10 @@ LONGEST_BUDGET = 600.0  # s
 
 @dataclass(frozen=True)
 class DecisionQuestion:
-    """The criteria of a design and its variants to decide (all, if None), and the time that may take [s].
+    """Request to decide criteria of a design and its variants within a time `budget` [s].
 
-    The answer has its quantities in `units`. With `estimate_only` nothing is calculated at finer levels.
+    If `criteria` is None, all are decided. The answer has its quantities in `units`. With `estimate_only`,
+    nothing is calculated at finer levels.
     """
 
     design: str
@@ -49,12 +50,12 @@ class DecisionQuestion:
 
 
 def read_budget(raw: Raw) -> float:
-    """Return a time as typed [s].
+    """Return a typed time budget [s].
 
     Raises
     ------
     InvalidInputs
-        If it is not a single time from 0 to `LONGEST_BUDGET`.
+        If it is not a single time above 0 and at most `LONGEST_BUDGET`.
     """
     try:
         seconds = read(raw, "s").si
@@ -69,12 +70,12 @@ def read_budget(raw: Raw) -> float:
 def decided(
     asked: DecisionQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[DecisionQuestion, Decision]:
-    """Return the decision as far as it is known when the caller stops waiting.
+    """Return the decision, and the request to continue if a step is still being calculated.
 
     Raises
     ------
     InvalidInputs
-        If a criterion is named that the design does not have.
+        If the request names a criterion that the design does not have.
     """
     row, document, calculation = calculated_revision(asked, database, catalogues)
     raise_if(calculation.faults)
@@ -89,7 +90,7 @@ def decided(
 
 
 def _variants(document: Document, available: Available) -> dict[str, Calculation]:
-    """Return the variants that can be calculated, as designs of their own; none of one that iterates."""
+    """Return the calculations of the valid variants, by name; none if the design declares iterations."""
     if document.iterations:
         return {}
     outcomes = sorted(together(document, available), key=lambda outcome: natural(outcome.name))
@@ -97,7 +98,7 @@ def _variants(document: Document, available: Available) -> dict[str, Calculation
 
 
 def _decided(asked: DecisionQuestion, designs: Mapping[str, Calculation]) -> dict[str, ClimbResult]:
-    """Return how each design was decided; all share the budget."""
+    """Return the decision for the design and each variant; all of them share the budget."""
     end, results = time.monotonic() + asked.budget, {}
     for number, (name, calculation) in enumerate(designs.items()):
         if calculation.deferred:
@@ -112,7 +113,7 @@ def _decided(asked: DecisionQuestion, designs: Mapping[str, Calculation]) -> dic
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
-    """Return the answer while the design itself is still being calculated."""
+    """Return the result for a design whose steps are still being calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
     return ClimbResult(judgements, None, (), (), (), "pending")
 
@@ -152,7 +153,7 @@ def _shown_variant(name: str, result: ClimbResult) -> VariantDecision:
 
 
 def _union(names: Iterable[Iterable[str]]) -> list[str]:
-    """Return each name once, in the order in which they come."""
+    """Return each name once, in the order of first occurrence."""
     return list(dict.fromkeys(name for one in names for name in one))
 
 

@@ -1,4 +1,4 @@
-"""Compare two stored values: whether and how much they differ, and how to show them."""
+"""Compare two stored values: decide whether they differ and by how much, and shorten them for display."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from templates.core.errors import FaultyText
 from templates.core.units.tolerance import KEYS
 from templates.core.units.units import Unit, unit
 
-MOST_SHOWN = 20  # numbers of an array
-SAME = 1e-12  # relative: what differs less was typed in another unit
+MOST_SHOWN = 20  # a longer array is shown by its range
+SAME = 1e-12  # relative: smaller differences come from conversion between units
 PARTS = ("value", "unit", "reason", *KEYS)
 
 Numbers = NDArray[np.float64]
 
 
 def differing(old: Mapping[str, Json], new: Mapping[str, Json]) -> list[ValueDifference]:
-    """Return every quantity that differs, in the order of the newer ones."""
+    """Return the differences of all quantities that are not equal, in the order of the newer revision."""
     names = dict.fromkeys([*new, *old])
     pairs = ((name, old.get(name), new.get(name)) for name in names)
     return [_compared(*pair) for pair in pairs if not _is_same(pair[1], pair[2])]
 
 
 def differing_texts(old: Mapping[str, str], new: Mapping[str, str]) -> list[TextChange]:
-    """Return every text that differs, in the order of the newer ones."""
+    """Return the differences of all texts that are not equal, in the order of the newer revision."""
     names = dict.fromkeys([*new, *old])
     changes = (TextChange(name=name, old=old.get(name), new=new.get(name)) for name in names)
     return [change for change in changes if change.old != change.new]
 
 
 def leaves(tree: Mapping[str, Json], prefix: str) -> Iterator[tuple[str, Json]]:
-    """Yield the quantities of a tree of names, by their dotted names."""
+    """Yield the quantities in a nested mapping, with their dotted names."""
     for name, part in tree.items():
         if isinstance(part, Mapping) and "value" not in part:
             yield from leaves(part, f"{prefix}.{name}")
@@ -60,9 +60,9 @@ def _close(one: Numbers, other: Numbers) -> bool:
 
 
 def _parts(raw: Json) -> JsonObject:
-    """Return a value as a dictionary of parts.
+    """Return the parts of a stored value, such as `value` and `unit`.
 
-    A value that is not an object, such as a typed text, is the part `value`.
+    A value that is not an object, such as a typed text, has the single part `value`.
     """
     if isinstance(raw, Mapping):
         return {name: raw[name] for name in PARTS if raw.get(name) is not None}
@@ -72,7 +72,7 @@ def _parts(raw: Json) -> JsonObject:
 def _unit_of(parts: JsonObject) -> Unit | None:
     try:
         return unit(parts["unit"]) if isinstance(parts.get("unit"), str) else None
-    except FaultyText:  # an older program knew it
+    except FaultyText:  # a unit that only an older program knew
         return None
 
 
@@ -82,7 +82,7 @@ def _is_same_kind(one: JsonObject, other: JsonObject) -> bool:
 
 
 def _numbers(parts: JsonObject) -> Numbers | None:
-    """Return the magnitudes in SI; None for a text, or without a unit."""
+    """Return the magnitudes in SI; None for a text, or for a value without a unit."""
     scale = _unit_of(parts)
     if scale is None or isinstance(parts.get("value"), (str, bool)):
         return None
@@ -104,7 +104,7 @@ def _compared(name: str, old: Json, new: Json) -> ValueDifference:
 
 
 def _change(one: JsonObject, other: JsonObject, before: Numbers, after: Numbers) -> float | None:
-    """Return the relative change; None for temperatures, whose zero is arbitrary."""
+    """Return the largest relative change; None for temperatures, whose zero is arbitrary."""
     if _is_temperature(one) or _is_temperature(other):
         return None
     scale = _largest(before)
@@ -152,5 +152,5 @@ def _range(numbers: Numbers) -> dict[str, float]:
 
 
 def _count(value: object) -> int:
-    """Return the number of values, at any depth."""
+    """Return the number of single values in nested lists."""
     return sum(map(_count, value)) if isinstance(value, list) else 1

@@ -1,6 +1,6 @@
 """A design as its user wrote it: parameters, steps, models, iterations. A revision stores this document.
 
-Values stay as typed: a quantity, a relation that begins with `=`, or a list of both.
+Values stay as typed: a quantity, a relation that begins with `=`, or a list of quantities and relations.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
 Values = Annotated[dict[Word, Given], Field(max_length=500), at_most(500)]
 CRITERION = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 CriterionName = Annotated[str, StringConstraints(pattern=CRITERION)]
-"""A criterion of the design, or with a step before it that of a template: `film`, `film.pressure`."""
+"""A criterion of the design (`film`), or of the template of a step (`film.pressure`)."""
 Sentence = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=NAME)]
 Place = Annotated[str, StringConstraints(pattern=PLACE)]
 Overrides = Annotated[dict[Place, Given], Field(max_length=500), at_most(500)]
-"""What a variant changes: values by parameter, `step.input` or `model.parameter`."""
+"""The values of a variant by parameter, `step.input` or `model.parameter`."""
 MOST_CRITERIA = 100
-MOST_VALUES = 10_000  # that all steps and models of a design set together
+MOST_VALUES = 10_000  # largest total number of values that steps and models may set
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class Step(Bounded):
-    """A template at work in a design; without a version the latest is taken, once and for all."""
+    """A template used in a design; a step without a version is pinned to the latest one when it is added."""
 
     model_config = _STRICT
 
@@ -56,13 +56,13 @@ class Step(Bounded):
     tolerance: float | None = Field(None, gt=0, lt=1)
     inputs: Values = {}
     outputs: Annotated[list[Word], Field(max_length=200)] | None = Field(
-        None, description="compute these only; all, if not given"
+        None, description="compute only these outputs; all, if not given"
     )
     limits: Limits = {}
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty limits, so that documents without limits have one form."""
+        """Remove an empty `limits` member, so that equal documents have one stored form."""
         return _without_nothing(plain(self), "limits")
 
 
@@ -75,17 +75,17 @@ class Model(Bounded):
     version: Version = None
     parameters: Values = {}
     analyses: Annotated[dict[Word, Options], Field(max_length=10), at_most(10)] = Field(
-        {}, description="what relations may use of finite elements on its solid", examples=[{"torsion": {}}]
+        {}, description="analyses of its solid for use in relations", examples=[{"torsion": {}}]
     )
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty analyses, so that documents without analyses have one form."""
+        """Remove an empty `analyses` member, so that equal documents have one stored form."""
         return _without_nothing(plain(self), "analyses")
 
 
 class Iteration(Bounded):
-    """A loop that its user allows: through a measure or analysis of a solid, from a start, to a tolerance."""
+    """A loop that the user allows: the measurement or analysis output to repeat, a start, a tolerance."""
 
     model_config = _STRICT
 
@@ -110,22 +110,22 @@ class WrittenCriterion(Bounded):
         "not needed for a criterion of a template",
     )
     words: Sentence | None = Field(None, description="what it means")
-    source: Sentence | None = Field(None, description="of the limit or of the rule")
-    waived: Sentence | None = Field(None, description="why it does not count; it is judged all the same")
+    source: Sentence | None = Field(None, description="source of the limit or of the rule")
+    waived: Sentence | None = Field(None, description="why it is waived; it is still judged")
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Return the document without members that are null or empty."""
+        """Remove members that are null or empty."""
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
 def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
-    """Return variants as people count them: main_2 before main_10."""
+    """Return variants in natural order of their names: main_2 before main_10."""
     return {name: variants[name] for name in sorted(variants, key=natural)}
 
 
 class Document(Bounded):
-    """The words of the user that a revision keeps."""
+    """The complete input of a design, as stored in a revision."""
 
     model_config = _STRICT
 
@@ -136,7 +136,9 @@ class Document(Bounded):
     iterations: Annotated[list[Iteration], Field(max_length=10)] = []
     criteria: Annotated[
         dict[CriterionName, WrittenCriterion], Field(max_length=MOST_CRITERIA), at_most(MOST_CRITERIA)
-    ] = Field({}, description="what the design demands; `step.name` overrides or waives one of a template")
+    ] = Field(
+        {}, description="criteria of the design; `step.name` overrides or waives a criterion of a template"
+    )
     variants: Annotated[
         dict[Word, Overrides],
         Field(max_length=MOST_VARIANTS),
@@ -150,27 +152,27 @@ class Document(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty criteria and variants, so that documents without them have one form."""
+        """Remove empty criteria and variants, so that equal documents have one stored form."""
         return _without_nothing(plain(self), "criteria", "variants")
 
     @model_validator(mode="before")
     @classmethod
     def one_model(cls, raw: Raw) -> Raw:
-        """Replace `model` by `models` with one entry of that name."""
+        """Replace `model` by `models` with one entry, named `model`."""
         if not isinstance(raw, Mapping):
             return raw
         if "model" in raw and "models" in raw:
-            raise ValueError("give either model or models, not both")
+            raise ValueError("give either `model` or `models`, not both")
         whole = _in_models(raw)
         if _values_set(whole) > MOST_VALUES:
-            raise ValueError(f"the steps and models of a design set at most {MOST_VALUES} values together")
+            raise ValueError(f"the steps and models of a design set at most {MOST_VALUES} values in total")
         if _overrides_set(whole) > MOST_OVERRIDES:
             raise ValueError(f"the variants of a design override at most {MOST_OVERRIDES} values together")
         return whole
 
     @model_validator(mode="after")
     def names_differ(self) -> Self:
-        """Require that parameters, steps and models have different names."""
+        """Require that parameters, steps and models all have different names."""
         count = Counter(chain(self.parameters, self.steps, self.models))
         twice = sorted(name for name, times in count.items() if times > 1)
         if twice:
@@ -184,7 +186,7 @@ def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """Return the number of values that the steps and models of a document set, even if it is malformed."""
+    """Count the values that steps and models set, even in a malformed document."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -193,14 +195,14 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """Return the number of values that the variants of a document override, even if it is malformed."""
+    """Count the values that variants override, even in a malformed document."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
 
 
 def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
-    """Return a document with `model` moved into `models`; unchanged without `model`, or if it has both."""
+    """Return a document with `model` moved into `models`; unchanged if it has no `model`, or has both."""
     if "model" not in raw or "models" in raw:
         return raw
     rest = {key: value for key, value in raw.items() if key != "model"}
@@ -210,7 +212,7 @@ def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
 def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
     """Return the document with a merge patch applied (RFC 7396).
 
-    A quantity is replaced whole, never merged into.
+    A quantity is always replaced as a whole.
     """
     return dict(_merged(document, _in_models(patch), ()))
 
@@ -228,9 +230,9 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """Return whether a patch is merged into the value.
+    """Return whether a patch is merged into a value instead of replacing it.
 
-    This holds for the document, its groups, its steps and models, and their parts.
+    Containers are the document, its groups, its steps and models, and their parts.
     """
     match path:
         case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):

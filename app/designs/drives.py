@@ -1,4 +1,4 @@
-"""The dependencies in a design: blocks in columns, relations, and the names that relations may use."""
+"""The dependencies in a design for display: blocks in columns, relations, and usable names."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from templates.core.units.units import dimension_of, unit
 
 Columns = Mapping[str, int]
 
-KEPT = 20_000  # names and relations of networks
+KEPT = 20_000  # largest total of names and relations in the cached networks
 _kept: LRUCache[bytes, tuple[Snapshot, DesignNetwork]] = LRUCache(
     KEPT, getsizeof=lambda kept: len(kept[1].names) + len(kept[1].relations)
 )
-"""Networks by the digest of their document, each with the catalogue of which it was made; read only."""
+"""Networks by the digest of their document, each with the catalogue from which it was built; read only."""
 _keeping = Lock()
 
 
 def network(document: Mapping[str, Raw], catalogues: Catalogues) -> DesignNetwork:
-    """Return the dependencies in a stored document; computed once for a document and a catalogue."""
+    """Return the dependencies in a stored document; cached by document and catalogue."""
     digest, snapshot = sha256(canonical_json(document).encode()).digest(), catalogues.snapshot
     with _keeping:
         of, kept = _kept.get(digest, (None, None))
@@ -60,7 +60,7 @@ def network_of(graph: Graph) -> DesignNetwork:
 def _columns(graph: Graph) -> dict[str, int]:
     """Return the column of every parameter and block, in the order of calculation.
 
-    A block does not wait for a later block whose input it uses, or for the assumed value of an iteration.
+    A block depends neither on a later block whose input it uses, nor on the assumed value of an iteration.
     """
     columns: dict[str, int] = {}
     for name in _ordered(graph):
@@ -70,7 +70,7 @@ def _columns(graph: Graph) -> dict[str, int]:
 
 
 def _ordered(graph: Graph) -> Iterator[str]:
-    """Yield the names of parameters and blocks in the network's order; as written if there is none."""
+    """Yield the names of parameters and blocks in calculation order, or as written if there is none."""
     nodes = graph.order or (*graph.parameters.values(), *graph.blocks.values())
     for node in nodes:
         if isinstance(node, Block) or (isinstance(node, Cell) and node.declared is None):
@@ -78,7 +78,7 @@ def _ordered(graph: Graph) -> Iterator[str]:
 
 
 def _cells(graph: Graph, name: str) -> list[Cell]:
-    """Return the cells of a block, or the parameter itself."""
+    """Return the cells of a block; for a parameter, the parameter itself."""
     block = graph.blocks.get(name)
     return list(block.cells.values()) if block else [graph.parameters[name]]
 
@@ -90,7 +90,7 @@ def _kind(graph: Graph, name: str) -> Literal["parameter", "step", "model"]:
 
 
 def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
-    """Yield every name in every relation that refers to an existing block."""
+    """Yield one entry for every name in a relation that refers to an existing block."""
     for cell in graph.cells():
         target = cell.reference.block
         for name, source in _sources(cell).items():
@@ -100,18 +100,18 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
 
 
 def _sources(cell: Cell) -> Mapping[str, Reference]:
-    """Return the references of a cell: quantities, and tested choices."""
+    """Return the references that a cell uses: quantities, and choices that it tests."""
     return {**cell.uses, **cell.tests}
 
 
 def _text(cell: Cell) -> str:
-    """Return the relation as typed; for a list its first one."""
+    """Return a cell's relation as typed; for a list, the first relation in it."""
     texts = cell.raw if isinstance(cell.raw, list) else [cell.raw]
     return next(str(text) for text in texts if is_relation(text))
 
 
 def _names(graph: Graph) -> Iterator[NetworkName]:
-    """Yield every name that a relation may use."""
+    """Yield every name that a relation may use, with its unit and meaning."""
     for name, kind in graph.kinds.items():
         if name in graph.parameters:
             yield _name(name, "parameter", "parameter of the design", kind.unit)
@@ -138,7 +138,10 @@ def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
 
 
 def _words(measure: Reference) -> str:
-    """Return a measurement in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
+    """Return the description of a measurement.
+
+    `throw.torsion.stiffness` becomes "stiffness, torsion analysis".
+    """
     origin = f"{measure.analysis} analysis" if measure.analysis else "measured"
     return f"{measure.own_name.replace('_', ' ')}, {origin}"
 

@@ -2,7 +2,7 @@
 
 DesignError
     StaleRevision       the design has changed since the client read it
-    NotConverged        a declared iteration did not settle within its limit
+    NotConverged        a declared iteration did not converge within its limit
     DesignReleased      a design with a released revision cannot be deleted
 """
 
@@ -14,7 +14,7 @@ from app.plain import Json
 
 
 class DesignError(Exception):
-    """Anything that designs refuse, beyond wrong inputs."""
+    """Base class of the errors that the design service raises, apart from wrong inputs."""
 
 
 class StaleRevision(DesignError):
@@ -29,23 +29,23 @@ class StaleRevision(DesignError):
 
 
 class DesignReleased(DesignError):
-    """A design with a released revision is not deleted."""
+    """A design with a released revision cannot be deleted."""
 
     def __init__(self, id: str, revision: int) -> None:
         super().__init__(
-            f"revision {revision} of design {id[:80]} was released, so the design is kept; archive it "
-            f'instead: POST /api/v1/designs/{id[:80]}/labels {{"archived": true}}'
+            f"revision {revision} of design {id[:80]} was released, so the design cannot be deleted; "
+            f'archive it instead: POST /api/v1/designs/{id[:80]}/labels {{"archived": true}}'
         )
 
 
 class NotConverged(DesignError):
-    """A declared iteration did not settle within its limit; `rounds` holds what was assumed and measured."""
+    """A declared iteration did not converge; `rounds` lists the assumed and measured values of each round."""
 
     def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Json]]) -> None:
         self.rounds = [dict(done) for done in rounds]
         last = rounds[-1]
         super().__init__(
-            f"the iteration through {through} did not settle to {tolerance:g} within {len(rounds)} rounds: "
+            f"the iteration through {through} did not converge to {tolerance:g} within {len(rounds)} rounds: "
             f"it assumed {last['assumed']:.6g} and measured {last['measured']:.6g} {last['unit']}; "
             "start nearer, allow more rounds, or weaken the feedback"
         )

@@ -1,4 +1,4 @@
-"""The explanation of a name: the chain behind it, and its sensitivities to typed quantities."""
+"""Explain a name in a design: the values on which it depends, and its sensitivities to typed quantities."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from app.storage.database import Database
 
 @dataclass(frozen=True)
 class ExplanationQuestion:
-    """The name in a design that is to be explained; quantities and slopes are in `units`.
+    """Request to explain a name in a design; quantities and slopes are in `units`.
 
-    `revision` is the newest, if it is None.
+    If `revision` is None, it is the newest.
     """
 
     design: str
@@ -34,7 +34,7 @@ class ExplanationQuestion:
 def explanation(
     asked: ExplanationQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ExplanationQuestion, Explanation]:
-    """Return the explanation, unless the caller does not wait for the steps of the design.
+    """Return the explanation, or the request to continue if a step is deferred.
 
     Raises
     ------
@@ -50,9 +50,9 @@ def explanation(
 def explained(
     document: Document, calculation: Calculation, catalogues: Catalogues, name: str, system: System = "si"
 ) -> Explanation:
-    """Explain where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
+    """Return where a model parameter or the verdict of a criterion comes from, with sensitivities.
 
-    Quantities and slopes are in a system of units; typed values are not converted.
+    Quantities and slopes are in the system of units; typed values are not converted.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""A filter on the list of designs, and its SQL conditions.
+"""Filter the list of designs by SQL conditions.
 
-The database walks along the designs, newest first, until a page is full. A filter therefore costs time in
-proportion to the number of designs that it skips, and memory for one page.
+The database scans the designs, newest first, until a page is full. The time therefore grows with the number
+of designs that a filter skips, and the memory is that of one page.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from app.storage.tables import DesignRow, DesignTagRow, RevisionModelRow, Revisi
 from templates.core.errors import Fault, InvalidInputs
 
 TEMPLATE = r"^[A-Za-z0-9_]{1,100}(/[1-9][0-9]{0,8})?$"
-"""An id, or an id and a version: `oil_film`, `oil_film/2`."""
+"""A template id, with or without a version: `oil_film`, `oil_film/2`."""
 
 
 @dataclass(frozen=True)
 class DesignFilter:
-    """Filter of a list of designs; a field that is None lets every design pass."""
+    """A filter on the list of designs; a field that is None matches every design."""
 
-    name: str | None = None  # part of the design's name, in upper or lower case
-    state: str | None = None  # of the newest revision
+    name: str | None = None  # part of the design's name; case is ignored
+    state: str | None = None  # state of the newest revision
     tags: tuple[str, ...] = ()  # keys of tags, all of which the design has
-    archived: str = "false"  # true: archived ones alone; any: those as well
-    template: str | None = None  # of a step or a model of the newest revision, see TEMPLATE
+    archived: str = "false"  # "true": only archived designs; "any": archived designs too
+    template: str | None = None  # template of a step, or CAD model, in the newest revision; see TEMPLATE
 
     def __post_init__(self) -> None:
-        """Check the template.
+        """Check the form of the template filter.
 
         Raises
         ------
         InvalidInputs
-            If the template is not an id, or an id and a version.
+            If the template is neither an id nor an id with a version.
         """
         if self.template is not None and not re.fullmatch(TEMPLATE, self.template):
             detail = "give the id of a template or model, or id/version: oil_film or oil_film/2"
@@ -44,7 +44,7 @@ class DesignFilter:
 
 
 def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
-    """Yield the conditions of a filter on a design."""
+    """Yield the SQL conditions of a filter on a design."""
     if wanted.name is not None:
         yield DesignRow.name.icontains(wanted.name, autoescape=True)
     if wanted.archived != "any":
@@ -60,7 +60,7 @@ def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
-    """Yield the conditions of a filter on the newest revision of a design."""
+    """Yield the SQL conditions of a filter on the newest revision of a design."""
     if wanted.state is not None:
         yield RevisionRow.state == wanted.state
     if wanted.template is not None:
@@ -70,7 +70,7 @@ def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[bool]:
-    """Return whether a step of the revision uses a template; its steps are read as a table of JSON values."""
+    """Return a condition that a step of the revision uses a template; it searches the stored JSON."""
     steps = func.json_each(_document(session)["steps"]).table_valued(column("value", JSON), name="step")
     step = steps.c.value
     query = select(1).select_from(steps).where(step["template"].as_string() == id)
@@ -80,16 +80,13 @@ def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[b
 
 
 def _document(session: Session) -> ColumnElement[JSON]:
-    """Return the stored document as JSON.
-
-    PostgreSQL has a type.
-    """
+    """Return the stored document as a JSON expression; PostgreSQL needs a cast."""
     is_text = session.get_bind().dialect.name == "sqlite"
     return type_coerce(RevisionRow.document, JSON) if is_text else cast(RevisionRow.document, JSON)
 
 
 def _has_model(id: str, version: int | None) -> ColumnElement[bool]:
-    """Return whether a CAD model of the revision is of this kind."""
+    """Return a condition that the revision has a CAD model of this kind."""
     query = select(1).where(
         RevisionModelRow.design_id == RevisionRow.design_id,
         RevisionModelRow.number == RevisionRow.number,

@@ -1,6 +1,6 @@
-"""Read a document as its user sent it, build its network, and check it before any calculation.
+"""Read a document, build its network, and check it before any calculation.
 
-Every check returns its findings and changes nothing. The units of relations are checked before any value is
+Every check returns its findings and changes nothing. Units of relations are checked before any value is
 known.
 """
 
@@ -48,7 +48,7 @@ from templates.core.units.units import unit
 T = TypeVar("T", bound=Template)
 
 MOST_RELATION_TEXT = 50_000
-"""Characters of all relations of a design; reading them takes a quarter of a second."""
+"""Largest number of characters in all relations of a design; parsing them takes a quarter of a second."""
 
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
@@ -56,12 +56,15 @@ __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
     """Return the network of a document, and all faults that can be found before any value is known.
 
-    A graph with faults can be used for a preview of its valid parts, not for a save.
+    A network with faults can still be used to preview its valid parts, but not for a save.
     """
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
-    unread = {*document.steps, *document.models} - network.blocks.keys()  # what uses them has no fault
+    unread = {
+        *document.steps,
+        *document.models,
+    } - network.blocks.keys()  # relations that use them are not reported
     links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
     if faults := [*faults, *_unknown(network, links), *unknown_names_in(network, unread)]:
         return _graph(network), faults
@@ -111,7 +114,7 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
 def _cell(
     choices: Choices, reference: Reference, name: str, raw: Raw, declared: Input | None = None
 ) -> tuple[Cell, list[Fault]]:
-    """Return a cell with its readable relations, and the faults of the others."""
+    """Return a cell with the relations that can be read, and the faults of the others."""
     if isinstance(raw, list):
         texts = [item for item in raw if is_relation(item)]
     else:
@@ -154,7 +157,7 @@ def _step(choices: Choices, name: str, step: Step) -> tuple[Block | None, list[F
 def _related_limits(
     choices: Choices, name: str, step: Step, cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """Return the limits of a step that are set by relations; other names are left to `_limits`."""
+    """Return the limits of a step that relations set; `_limits` reads the others."""
     cells: dict[str, Cell] = {}
     faults: list[Fault] = []
     if not step.limits:
@@ -173,7 +176,7 @@ def _related_limits(
 def _limits(
     name: str, raw: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits of a step that are set by quantities, or by a library row."""
+    """Return the limits of a step that are quantities, or come from a library row, and the faults."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -202,7 +205,7 @@ def _class(
 def _cells(
     choices: Choices, block: str, values: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """Return the cells of a block; unknown names are faults."""
+    """Return the cells of a block, and a fault for each unknown name."""
     cells: dict[str, Cell] = {}
     unknown = unknown_names(filterfalse(cls.inputs.__contains__, values), cls.inputs, "input")
     faults = [fault.within(block) for fault in unknown]
@@ -216,7 +219,10 @@ def _cells(
 
 
 def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
-    """Return the node of each name that a cell uses, None if there is none; assumed values need none."""
+    """Return the node for each name that a cell uses, or None if no such node exists.
+
+    Values that iterations assume are left out.
+    """
     return {
         reference: network.node(reference)
         for reference in cell.uses.values()
@@ -228,9 +234,9 @@ Links = Mapping[Cell, Mapping[Reference, Node | None]]
 
 
 def _unknown(network: Network, links: Links) -> Iterator[Fault]:
-    """Yield unknown names in relations and in iterations."""
+    """Yield a fault for each unknown name in relations and in iterations."""
     models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
-    unknown: list[tuple[str, str]] = []  # where, and what
+    unknown: list[tuple[str, str]] = []  # the cell, and the unknown name in it
     for cell, linked in links.items():
         for reference, node in linked.items():
             if node is not None:
@@ -244,12 +250,12 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         yield from (replace(f, name=cell) for (cell, _), f in zip(unknown, faults, strict=True))
     for through in sorted(network.assumed, key=str):
         if is_table(through):
-            detail = f"an iteration runs through one value; {through} is a table or a list"
+            detail = f"an iteration needs a single value; {through} is a table or a list"
             yield Fault("iterations", "not_a_number", detail)
         elif through.block not in models or not is_measured(
             through, models[through.block], network.blocks[through.block].cls
         ):
-            detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"
+            detail = f"an iteration needs a measurement of a model, such as model.mass, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
 
 
@@ -267,7 +273,7 @@ def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
 
 
 def raise_if(faults: list[Fault]) -> None:
-    """Raise the faults, if there are any.
+    """Raise InvalidInputs if there are any faults.
 
     Raises
     ------
@@ -279,20 +285,20 @@ def raise_if(faults: list[Fault]) -> None:
 
 
 def too_many_relations(document: Document) -> Iterator[Fault]:
-    """Yield a fault if the relations of a design are longer together than is read."""
+    """Yield a fault if the total length of a design's relations exceeds the limit."""
     texts = [item for item in _items(document) if isinstance(item, str)]
     required = sum(len(criterion.require or "") for criterion in document.criteria.values())
     if required + sum(map(len, texts)) <= MOST_RELATION_TEXT:
         return
     length = required + sum(len(text) for text in texts if is_relation(text))
     if length > MOST_RELATION_TEXT:
-        most = f"at most {MOST_RELATION_TEXT} characters together, not {length}"
+        most = f"at most {MOST_RELATION_TEXT} characters in total, not {length}"
         message = f"the relations and criteria of a design have {most}"
         yield Fault("design", "too_long", message)
 
 
 def _items(document: Document) -> Iterator[Raw]:
-    """Return every value of a document, and every item of lists."""
+    """Return every value of a document, with the items of lists one by one."""
     groups = [document.parameters]
     groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
     groups += [model.parameters for model in document.models.values()]
@@ -309,19 +315,19 @@ def has_relation(raw: Raw) -> bool:
 def ordered(
     network: Network, sources: Mapping[Node, tuple[Node, ...]]
 ) -> tuple[tuple[Node, ...], list[Fault]]:
-    """Return all nodes in dependency order; or none, and a fault that names the loop."""
+    """Return all nodes in dependency order; if there is a loop, no nodes and a fault that names it."""
     try:
         return tuple(TopologicalSorter(sources).static_order()), []
     except CycleError as error:
         path = list(_named(network, error.args[1]))
     shown = " → ".join([*path, path[0]])
-    detail = f"each follows from the one before it: {shown}; break the loop or declare an iteration"
+    detail = f"each depends on the one before it: {shown}; break the loop or declare an iteration"
     cells = {cell.name for cell in network.cells()}
     return (), [Fault(next(name for name in path if name in cells), "loop", detail)]
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Yield the nodes of a cycle (the last is the first) with the names that its relations use."""
+    """Yield the names along a cycle of nodes, as its relations use them; the last node is the first."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name
@@ -330,9 +336,9 @@ def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
 
 
 def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Kind], list[Fault]]:
-    """Return the kind of unit of each parameter, and a fault for each relation whose units do not fit.
+    """Return the kind of each parameter, and a fault for each relation whose units do not fit.
 
-    The cells come in order, so that a parameter's unit is known before its use.
+    The cells come in dependency order, so that the unit of a parameter is known before its use.
     """
     kinds: dict[str, Kind] = {}
     faults: dict[str, Fault] = {}
@@ -354,7 +360,13 @@ def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Ki
 
 
 def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
-    """Return the kind of a cell if its relations fit the declared unit."""
+    """Return the kind of a cell.
+
+    Raises
+    ------
+    FaultyText
+        If its relations do not fit the declared unit.
+    """
     if not cell.relations:
         return kind_of(read_any(cell.raw).unit, cell.name)
     used = {
@@ -371,13 +383,13 @@ def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> N
     declared = cell.declared
     assert declared is not None
     if isinstance(declared, Choice):
-        message = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
+        message = f"{cell.name} is one of {', '.join(declared.options)}; a relation cannot set it"
         raise FaultyText("unit_mismatch", message)
     if why := relation.misfit(used, declared.meaning.accepted):
         raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}{why}")
 
 
-LONGEST_PLACE = 200  # characters of where in a document something is wrong
+LONGEST_PLACE = 200  # characters of the place in a fault
 
 
 def read_document(raw: Mapping[str, Raw]) -> Document:
@@ -400,7 +412,7 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """Return the document with fixed versions, and every size by the name that its step declares.
+    """Return the document with pinned versions, and every size under the name that its step declares.
 
     Both are resolved once, when a step or model is added.
     """
@@ -410,7 +422,7 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
 
 
 def _other_sizes(document: Document, catalogues: Catalogues) -> Iterator[tuple[str, str, str]]:
-    """Yield step, name and declared name of each size that a document gives by another name."""
+    """Yield step, typed name and declared name for each size that a document gives under another name."""
     overridden = {place for overrides in document.variants.values() for place in overrides}
     for name, step in document.steps.items():
         cls, _ = _class(catalogues.templates, name, step.template, step.version)
@@ -436,12 +448,12 @@ def _pinned(document: Document, catalogues: Catalogues) -> Document:
 
 
 def starts(document: Document) -> dict[Reference, float]:
-    """Return the SI values with which the iterations of a document begin.
+    """Return the starting values [SI] of a document's iterations.
 
     Raises
     ------
     InvalidInputs
-        If a starting value is not a quantity of its measurement's kind.
+        If a start is not a quantity of the same kind as its measurement.
     """
     faults, values = list[Fault](), dict[Reference, float]()
     for iteration in document.iterations:
@@ -455,7 +467,7 @@ def starts(document: Document) -> dict[Reference, float]:
 
 
 def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
-    """Return the final values [SI] of the iterations of a revision, from its results."""
+    """Return the final values [SI] of the iterations of a revision, from its stored results."""
     rounds = (results or {}).get("iterations", [])
     values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
     return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}

@@ -1,4 +1,4 @@
-"""Labels of designs in the database. A change of labels invalidates no result."""
+"""Labels of designs in the database. A change of labels affects no result."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_LISTED = 500
 
 
 class LabelsIn(Bounded):
-    """A change of labels; what it does not name stays. To send it twice does no harm."""
+    """A change of labels; labels that it does not name stay. Repeating the change has no further effect."""
 
     model_config = ConfigDict(
         strict=True,
@@ -32,22 +32,29 @@ class LabelsIn(Bounded):
     )
 
     add_tags: list[Tag] = Field([], max_length=MOST_TAGS)
-    remove_tags: list[Tag] = Field([], max_length=MOST_TAGS, description="those it does not have are ignored")
-    archived: bool | None = Field(None, description="true: lists leave it out, unless they name `archived`")
+    remove_tags: list[Tag] = Field(
+        [], max_length=MOST_TAGS, description="tags that the design does not have are ignored"
+    )
+    archived: bool | None = Field(
+        None, description="if true, lists omit the design unless they are filtered by `archived`"
+    )
 
 
 def key_of(tag: str) -> str:
-    """Return the common key of all spellings of a tag: `Main  bearing` and `main bearing` are the same."""
+    """Return the common key of all spellings of a tag.
+
+    `Main  bearing` and `main bearing` have the same key.
+    """
     return clean(tag).casefold()
 
 
 def clean(tag: str) -> str:
-    """Return a tag in its stored form: composed letters, single blanks."""
+    """Return a tag in its stored form: composed letters, single spaces."""
     return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
 class LabelService:
-    """Changes of labels, which leave results as they are."""
+    """Reads and changes labels, which do not affect results."""
 
     def __init__(self, database: Database) -> None:
         self.database = database
@@ -58,12 +65,12 @@ class LabelService:
             return _labels(session, repository.design(session, id))
 
     def label(self, id: str, change: LabelsIn) -> Labels:
-        """Change the labels of a design.
+        """Change the labels of a design, and return them.
 
         Raises
         ------
         InvalidInputs
-            If it would have too many tags.
+            If the design would have too many tags.
         """
 
         def unit(session: Session) -> Labels:
@@ -91,7 +98,7 @@ def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
 
 
 def _record(session: Session, id: str, before: Labels, after: Labels) -> None:
-    """Record a change, if there is one."""
+    """Record a change of labels in the audit log, if there is one."""
     if before.tags != after.tags:
         record(session, "design.tag", f"designs/{id}")
     if before.archived != after.archived:
@@ -103,7 +110,7 @@ def _labels(session: Session, row: DesignRow) -> Labels:
 
 
 def tags_of(session: Session, ids: Sequence[str]) -> dict[str, list[str]]:
-    """Return the tags of designs, by design, in alphabetical order."""
+    """Return the tags of each design, in alphabetical order."""
     tags: dict[str, list[str]] = {id: [] for id in ids}
     query = select(DesignTagRow.design_id, DesignTagRow.tag).where(DesignTagRow.design_id.in_(ids))
     for id, tag in session.execute(query.order_by(DesignTagRow.key)):
@@ -112,7 +119,7 @@ def tags_of(session: Session, ids: Sequence[str]) -> dict[str, list[str]]:
 
 
 def all_tags(session: Session) -> Iterable[TagUse]:
-    """Return the tags of designs that are listed, the most used first."""
+    """Return the tags of designs that are neither deleted nor archived, most used first."""
     count = func.count()
     query = (
         select(func.min(DesignTagRow.tag), count)

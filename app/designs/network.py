@@ -4,7 +4,7 @@ Its nodes are cells (the values that a user wrote, such as `scale` or `film.radi
 models), solids (built models) and analyses of solids. A block depends on its cells, and its outputs depend on
 the block. Measurements depend on the solid.
 
-Criteria name values of the network. A name without a dot is a criterion of the design itself, which needs
+Criteria refer to values of the network. A name without a dot is a criterion of the design itself, which needs
 `require`. `film.pressure` is the criterion `pressure` of the template of step `film`: the design may replace
 its comparison, words or source, or waive it.
 """
@@ -37,14 +37,14 @@ from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import Relation
 
-LIMITS = "limits"  # where a reference has the name of an analysis, if it means a limit: film.limits.pressure
+LIMITS = "limits"  # marks a reference to a limit, at the position of an analysis name: film.limits.pressure
 
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """One value as its user wrote it, with the relations in it (a list may hold several) and what they use.
+    """One value as its user wrote it, with its relations (a list may have several) and the names they use.
 
-    `declared` is the input or the limit of a block that it sets; a parameter of the design has none.
+    `declared` is the input or limit of a block that the cell sets; None for a parameter of the design.
     """
 
     reference: Reference
@@ -56,12 +56,12 @@ class Cell:
 
     @cached_property
     def tests(self) -> Mapping[str, Reference]:
-        """Return the choices that its relations test; these are already resolved."""
+        """Return the choices that the relations test; these are already resolved."""
         return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
 
     @cached_property
     def relations_by_text(self) -> Mapping[str, Relation]:
-        """Return its relations by text, in the order of list items."""
+        """Return the relations by their text, in the order of list items."""
         return {relation.text: relation for relation in self.relations}
 
 
@@ -69,8 +69,8 @@ class Cell:
 class Block:
     """A step or a model: a template and the cells that are set.
 
-    `limits` of its criteria are known at once; `related` ones follow from relations, and nothing of the block
-    follows from them.
+    `limits` of its criteria are known at once; `related` limits are set by relations. No value of the block
+    depends on a limit.
     """
 
     name: str
@@ -85,23 +85,23 @@ class Block:
 
     @cached_property
     def is_model(self) -> bool:
-        """Return whether it has a shape."""
+        """Return whether the block is a CAD model."""
         return issubclass(self.cls, CadModel)
 
     @cached_property
     def solid(self) -> Solid:
-        """Return the build of a model."""
+        """Return the node of the model's solid."""
         return Solid(self)
 
     @cached_property
     def analysed(self) -> Mapping[str, SolidAnalysis]:
-        """Return the analyses that a model declares, by their kind."""
+        """Return the nodes of the analyses that a model declares, by kind."""
         return {kind: SolidAnalysis(self, kind) for kind in self.analyses}
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A model when it is built."""
+    """A model's built solid."""
 
     model: Block
 
@@ -116,9 +116,10 @@ class SolidAnalysis:
 
 @dataclass(frozen=True, eq=False)
 class Demand:
-    """A criterion as a design writes it; without a `criterion`, words about one of a template.
+    """A criterion in the document of a design.
 
-    `criterion` is checked once the kinds of all parameters are known.
+    `criterion` is set once the kinds of all parameters are known. It stays None if the entry only changes the
+    words of a template's criterion.
     """
 
     name: str
@@ -132,12 +133,12 @@ Node = Cell | Block | Solid | SolidAnalysis
 
 @dataclass(frozen=True)
 class Network:
-    """The parameters and blocks of one document, and what its names mean."""
+    """The parameters and blocks of one document; resolves the names that refer to them."""
 
     parameters: dict[str, Cell]
     blocks: dict[str, Block]
-    assumed: frozenset[Reference]  # the measures through which a declared iteration runs
-    demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria that the design writes itself
+    assumed: frozenset[Reference]  # the measurements that declared iterations assume
+    demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria written in the design
 
     def cells(self) -> Iterator[Cell]:
         """Yield every cell of the design."""
@@ -158,12 +159,12 @@ class Network:
         return block.cells.get(reference.member)
 
     def node(self, reference: Reference) -> Node | None:
-        """Return the node that gives a name in a relation its value; None if there is none."""
+        """Return the node that provides the value of a name; None if there is none."""
         block, output = self.blocks.get(reference.block), reference.output
         if block is None or output is None:
             return self.parameters.get(reference.block) if output is None else None
         if reference.analysis is None and (cell := block.cells.get(output)):
-            return None if isinstance(cell.declared, Choice) else cell  # a word is no value to calculate with
+            return None if isinstance(cell.declared, Choice) else cell  # a choice has no numeric value
         if declared := _declared(block, reference):
             return None if isinstance(declared, Choice) else block
         if not (block.is_model and is_measured(reference, block.analyses, block.cls)):
@@ -171,7 +172,7 @@ class Network:
         return block.analysed[reference.analysis] if reference.analysis else block.solid
 
     def names(self) -> list[str]:
-        """Return every name that a relation may use, for a remedy."""
+        """Return every name that a relation may use, for error messages."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
         models = (block for block in self.blocks.values() if block.is_model)
         measured = (
@@ -181,7 +182,7 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """Return references of relations, iterations and criteria to each block, ordered by name."""
+        """Return the references to each block in relations, iterations and criteria, ordered by name."""
         names = {str(reference): reference for reference in self.assumed}
         for cell in self.cells():
             names.update(cell.uses)
@@ -193,14 +194,14 @@ class Network:
         return {block: tuple(references) for block, references in blocks.items()}
 
     def computed(self, step: Block) -> tuple[str, ...] | None:
-        """Return the outputs that a step computes: all (None), or those named and those used."""
+        """Return the outputs that a step computes: all (None), or the requested and the used outputs."""
         if step.outputs is None:
             return None
         linked = (reference.member for reference in self.used.get(step.name, ()))
         return tuple(dict.fromkeys([*step.outputs, *(name for name in linked if name in step.cls.formulas)]))
 
     def wanted(self, model: str, kind: str) -> tuple[str, ...]:
-        """Return the outputs of an analysis that relations or iterations use."""
+        """Return the outputs of an analysis that relations, iterations or criteria use."""
         return used(kind, self.used.get(model, ()))
 
     def unit_of(self, reference: Reference) -> str:
@@ -209,22 +210,22 @@ class Network:
         return declared.meaning.unit if declared else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit that decides which units a user may type for a name inside a block."""
+        """Return the unit that determines which units a user may type for a name inside a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.accepted if declared else measured_unit(reference)
 
     def kind_of(self, reference: Reference) -> Kind:
-        """Return the kind of a name inside a block, under that name."""
+        """Return the kind of quantity of a name inside a block."""
         return kind_of(self.accepted(reference), str(reference))
 
 
 def limits_of(cls: type[Template]) -> dict[str, Limit]:
-    """Return the limits that the criteria of a template take from its user."""
+    """Return the limits that a user may set for the criteria of a template, by name."""
     return {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
 
 
 def _declared(block: Block, reference: Reference) -> Input | Formula[Template] | None:
-    """Return the input or formula of a block that a reference names; None for a measurement."""
+    """Return the input or formula of a block to which a reference points; None for a measurement."""
     if reference.analysis is not None or reference.output is None:
         return None
     return block.cls.inputs.get(reference.output) or block.cls.formulas.get(reference.output)
@@ -232,16 +233,18 @@ def _declared(block: Block, reference: Reference) -> Input | Formula[Template] |
 
 @dataclass(frozen=True)
 class Graph(Network):
-    """A checked network: its nodes in an order in which they can be calculated."""
+    """A checked network, with its nodes in calculation order."""
 
-    sources: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)  # what each follows from directly
+    sources: Mapping[Node, tuple[Node, ...]] = field(
+        default_factory=dict
+    )  # the nodes on which each node depends directly
     order: Sequence[Node] = ()
-    kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the parameters
+    kinds: Mapping[str, Kind] = field(default_factory=dict)  # kinds of the parameters
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A criterion of a design: that of a step's template, or one that the design writes itself."""
+    """A criterion of a design: from a step's template, or written in the design itself."""
 
     criterion: Criterion
     block: Block | None
@@ -249,7 +252,7 @@ class Subject:
 
     @cached_property
     def references(self) -> Mapping[str, Reference]:
-        """Return the values that it names, without limits that have no relation."""
+        """Return the values that the criterion uses, without limits that no relation sets."""
         if self.block is None:
             return self.demand.uses if self.demand else {}
         limits = self.criterion.limits_by_name
@@ -258,12 +261,12 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[MissingValue, Subject], ...]:
-        """Return the comparisons to judge where a value is missing."""
+        """Return the comparisons to judge if a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 
     def is_due(self, graph: Graph) -> bool:
-        """Return whether judging it needs no output that the design leaves out."""
+        """Return whether the criterion can be judged with the outputs that the design computes."""
         if self.block is None or self.block.is_model:
             return True
         computed = graph.computed(self.block)
@@ -272,7 +275,7 @@ class Subject:
 
 
 def subjects(graph: Graph) -> dict[str, Subject]:
-    """Return all criteria by name; a criterion of the design replaces that of a template."""
+    """Return all criteria by name; the design's changes to a template's criterion are attached to it."""
     by_name: dict[str, Subject] = {}
     for block in graph.blocks.values():
         for criterion in block.cls.declared_criteria:
@@ -299,14 +302,20 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """Return whether a criterion belongs to a step with an unknown template, which is a separate fault."""
+    """Return whether a criterion belongs to a step with an unknown template, which is reported separately."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks
 
 
 def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, Block]) -> None:
-    """Refuse a criterion that no template has, and a criterion of the design without `require`."""
+    """Check that a criterion exists in a template, or is a criterion of the design with `require`.
+
+    Raises
+    ------
+    FaultyText
+        If it is neither.
+    """
     criterion = Reference.parse(name)
     if criterion.output is None:
         if written.require is None:
@@ -317,7 +326,11 @@ def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, 
     names = [declared.name for declared in block.cls.declared_criteria] if block else []
     if criterion.member not in names:
         there = [f"{b.name}.{c.name}" for b in blocks.values() for c in b.cls.declared_criteria]
-        detail = unknown_name(name, there, "criterion").detail if there else "no template here has criteria"
+        detail = (
+            unknown_name(name, there, "criterion").detail
+            if there
+            else "no template in this design has criteria"
+        )
         raise FaultyText("unknown_name", f"{detail}; the name of a design's criterion must not contain a dot")
 
 
@@ -329,9 +342,9 @@ def _uses(require: str | None) -> dict[str, Reference]:
 
 
 def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[Fault]:
-    """Return a fault for every name in a criterion of the design that is not a number.
+    """Return a fault for every name in a criterion of the design that does not refer to a number.
 
-    `unread` are blocks with an unknown template, which is a separate fault.
+    `unread` are blocks with an unknown template, which are reported separately.
     """
     unknown = [
         (demand.name, used)
@@ -351,7 +364,7 @@ def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[s
     faults: list[Fault] = []
     for name, demand in network.demands.items():
         if demand.written.require is None or not _parameters(network, demand) <= kinds.keys():
-            demands[name] = demand  # a parameter whose kind is not known is a fault already
+            demands[name] = demand  # a parameter of unknown kind is reported already
             continue
         try:
             demands[name] = replace(demand, criterion=_checked(network, kinds, demand))
@@ -361,7 +374,7 @@ def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[s
 
 
 def _is_value(network: Network, reference: Reference) -> bool:
-    """Return whether a name refers to a number, not to a word or a table."""
+    """Return whether a name refers to a number, rather than a word or a table."""
     if reference in network.assumed:
         return True
     if network.node(reference) is None or is_table(reference):
@@ -383,7 +396,7 @@ def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Cri
 
 
 def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> NameDescription:
-    """Return the display unit and the words of a value."""
+    """Return the display unit, the description and the kind of a value."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
         return NameDescription(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
@@ -394,5 +407,5 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:
-    """Return the fault of a criterion, located in the document."""
+    """Return an error in a criterion as a fault with its place in the document."""
     return error.fault(f"criteria.{name}")

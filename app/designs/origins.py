@@ -14,7 +14,7 @@ from templates.core.errors import FaultyText
 
 
 def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> list[Cell]:
-    """Return the single typed quantities on which values depend, tracing each formula separately.
+    """Return the typed single quantities on which values depend; each formula is traced separately.
 
     Quantities that act through a measurement of a solid are included.
     """
@@ -50,9 +50,9 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
 
 
 def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
-    """Return the cells that act on values through a solid, each with the model of one such solid.
+    """Return the cells that affect values through a solid, each with the model of one such solid.
 
-    A step counts as a whole, because its calculation needs all its inputs.
+    A step is traced as a whole, because its calculation needs all its inputs.
     """
     cells: dict[Reference, Block] = {}
     left, seen = [*_needs(graph, wanted).waiting], set[str]()
@@ -74,7 +74,7 @@ def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference
             continue
         try:
             measures[reference] = float(calculation.value(reference))
-        except (FaultyText, KeyError):  # not built, or not analysed
+        except (FaultyText, KeyError):  # the solid is not built or not analysed
             continue
     return measures
 

@@ -1,4 +1,4 @@
-"""Temporary values that a question uses instead of those of the design; they are never saved."""
+"""Values that a request uses in place of those of the design; they are never saved."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ WITH = "with"
 
 
 def changed(document: Document, catalogues: Catalogues, others: Overrides, unknown: str) -> Document:
-    """Return the document with replaced values; the original is not changed.
+    """Return a copy of the document with replaced values.
 
     Raises
     ------
     InvalidInputs
-        If a place does not exist, a value does not fit its place, or the unknown itself is given.
+        If a place does not exist, a value does not fit its place, or a value is given for the unknown.
     """
     graph, faults = build_graph(document, catalogues)
     raise_if(faults)
@@ -39,13 +39,13 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
         yield from unknown_names(absent, list(places(graph)), "parameter or input")
     for name, raw in others.items():
         if name == unknown:
-            yield Fault(name, "conflict", f"{name} is the unknown of `solve`; do not give it a value")
+            yield Fault(name, "conflict", f"{name} is the unknown of `solve`; leave its value out")
         elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
             yield from _misfit(graph, name, raw)
 
 
 def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
-    """Yield a fault if a value does not fit its place: a word that is not an option, or a wrong quantity."""
+    """Yield a fault if a value does not fit its place: an unknown option, or a quantity of the wrong kind."""
     reference = Reference.parse(name)
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None

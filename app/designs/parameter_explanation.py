@@ -17,13 +17,13 @@ from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import formula_on_paper
 from templates.core.units.units import Value, unit
 
-DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
+DEEPEST = 50  # links; many JSON readers, and this program's writer, refuse deeper nesting
 
 
 def explain(calculation: Calculation, parameter: str) -> JsonObject:
-    """Return the explanation of a model parameter as nested `because`; repeated parts are only named.
+    """Return the explanation of a model parameter as nested `because`; a repeated part is only named.
 
-    A chain is followed over 50 links; `deeper` values are not explained.
+    Chains are followed up to 50 links; values marked `deeper` are not explained further.
     """
     return Explainer(calculation).of(Reference.parse(parameter))
 
@@ -34,7 +34,7 @@ def model_parameters(calculation: Calculation) -> list[str]:
 
 
 def full_name(calculation: Calculation, name: str) -> str:
-    """Return the name with its model; with a single model, `inner_diameter` is enough."""
+    """Return a parameter's name with its model; in a design with one model, `inner_diameter` is enough."""
     models = _models(calculation)
     return f"{models[0].name}.{name}" if len(models) == 1 and name in models[0].cls.inputs else name
 
@@ -44,7 +44,7 @@ def _models(calculation: Calculation) -> list[Block]:
 
 
 class Explainer:
-    """The chain behind values of one calculated design; what was explained once is named only."""
+    """Explains the values of one calculated design; a value that was explained before is only named."""
 
     def __init__(self, calculation: Calculation, depth: int = 0) -> None:
         self.calculation, self.graph = calculation, calculation.graph
@@ -108,7 +108,7 @@ class Explainer:
         cell = self.graph.cell(reference)
         declared = cell.declared if cell else cls.inputs.get(reference.member)
         declared = declared or cls.formulas.get(reference.member)
-        if isinstance(si, tuple):  # a table, empty where it is not given
+        if isinstance(si, tuple):  # a table; empty if it is not set
             si = np.asarray(si)
         if not np.size(si):
             return None
@@ -116,7 +116,7 @@ class Explainer:
 
 
 def _on_paper(cell: Cell) -> JsonObject:
-    """Return a relation as LaTeX and MathML, if it is more than a name."""
+    """Return a relation as LaTeX and MathML; nothing if it is only a name."""
     latex = relation_latex(cell.raw)
     return {"latex": latex, "mathml": mathml(latex)} if latex else {}
 

@@ -1,4 +1,4 @@
-"""The effect of a change before it is saved: outputs and model parameters, old beside new."""
+"""Preview a change before it is saved: old and new values of outputs and model parameters."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ from templates.core.errors import Fault
 
 @dataclass(frozen=True)
 class PreviewRequest:
-    """A change that is to be previewed, and how.
+    """Request to preview a patch of a design.
 
-    The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
-    a revision would hold it, its formulas written out.
+    If `revision` is None, the patch applies to the newest one. With `worksheet`, the answer contains every
+    step as a revision would store it, with its formulas written out.
     """
 
     design: str
@@ -54,9 +54,9 @@ class PreviewRequest:
 def preview(
     asked: PreviewRequest, database: Database, catalogues: Catalogues
 ) -> Reply[PreviewRequest, Preview]:
-    """Return old and new values for a patch of a design; nothing is saved or built.
+    """Return the old and new values for a patch of a design; nothing is saved or built.
 
-    The answer is incomplete if values depend on deferred steps.
+    If values depend on deferred steps, the answer is incomplete and comes with the request to continue.
 
     Raises
     ------
@@ -70,9 +70,9 @@ def preview(
             else repository.revision(session, asked.design, asked.revision)
         )
     changed = resolved(read_document(merge(head.document, asked.patch)), catalogues)
-    catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview keeps nothing
+    catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview saves nothing, so drafts may be used
     new, mismatched = _calculated(database, catalogues, changed)
-    raise_if(new.faults)  # not those of the old one: the change may be to correct it
+    raise_if(new.faults)  # faults of the old document are ignored: the change may correct them
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     own = judged(new)
     steps = _steps(new, own)
@@ -95,7 +95,7 @@ def preview(
 
 
 def _steps_of(document: Document) -> list[tuple[str, int]]:
-    """Return the versions that the steps of a document name."""
+    """Return template and version of every step with a pinned version."""
     named = ((step.template, step.version) for step in document.steps.values())
     return [(template, version) for template, version in named if isinstance(version, int)]
 
@@ -103,7 +103,13 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 def _variants(
     database: Database, catalogues: Catalogues, document: Document, base: Calculation
 ) -> list[Outcome]:
-    """Return the variants of a document, with the same refusals as a save."""
+    """Return the calculated variants of a document.
+
+    Raises
+    ------
+    InvalidInputs
+        With the faults that would also make a save refuse the table.
+    """
     outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
     raise_if(faults)
     return outcomes
@@ -163,7 +169,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 
 def _values(new: Calculation) -> dict[str, Shown]:
-    """Return the values of the design's parameters in SI, without pending ones."""
+    """Return the known values of the design's parameters in their units."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {name: Shown(**shown(new.values[name].value, new.graph.kinds[name].unit)) for name in names}
 

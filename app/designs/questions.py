@@ -1,4 +1,4 @@
-"""Questions about a design that the pool calculates, and the data on which their answers depend."""
+"""Requests about a design that the process pool answers, and the data that determine their answers."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ T = TypeVar("T", bound=Template)
 
 @dataclass(frozen=True)
 class DesignQuestion:
-    """A question about a design: the body of its request as JSON text, and the units of its answer.
+    """A request about a design: its body as JSON text, and the units of its answer.
 
-    `revision` is the newest, if it is None.
+    If `revision` is None, it is the newest.
     """
 
     design: str
@@ -49,9 +49,9 @@ class DesignQuestion:
 def in_a_process(
     name: str, answer: type[A], answered: Callable[[DesignTask, int, str], A]
 ) -> Kind[DesignQuestion, A]:
-    """Return a kind of question that is calculated in the pool as a whole.
+    """Return a kind of request that is answered as a whole in the process pool.
 
-    `answered` answers a body [JSON text] about a revision of a design, by its number and in SI units.
+    `answered` takes a task, a revision number and a body [JSON text], and returns an answer in SI units.
     """
 
     def calculate(
@@ -78,7 +78,7 @@ def in_a_process(
 
 
 class AboutRevision(Protocol):
-    """A question about a revision of a design; the newest, if it names none."""
+    """A request about a revision of a design; the newest if `revision` is None."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
 
@@ -95,9 +95,9 @@ R = TypeVar("R", bound=AboutRevision)
 
 
 def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, Iterable[str]]:
-    """Return a question with its revision, and the data on which the answer depends.
+    """Return a request with its revision number, and the data that determine the answer.
 
-    These are the code of the versions that the revision uses, and the number of the design's newest event,
+    These are the digests of the versions that the revision uses, and the number of the design's newest event,
     which changes when a solid is built.
 
     Raises
@@ -118,9 +118,9 @@ def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, It
 def calculated_revision(
     asked: AboutRevision, database: Database, catalogues: Catalogues
 ) -> tuple[RevisionRow, Document, Calculation]:
-    """Return the calculated revision of a question, by default the newest, and its document.
+    """Return the revision that a request names, by default the newest, with its document and its calculation.
 
-    Iterations have their final values. Faults stay in the calculation.
+    Iterations have their final values. Faults of values are left in the calculation.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def calculated_revision(
 
 
 def _digests(catalogue: Catalogue[T], versions: Iterable[tuple[str, object]]) -> Iterator[str]:
-    """Yield the digests of versions; for a version that no longer exists, a mark."""
+    """Yield the digest of each version; for a version that no longer exists, a placeholder."""
     for id, version in versions:
         assert isinstance(version, int), "a revision pins every version"
         try:

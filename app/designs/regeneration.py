@@ -1,4 +1,4 @@
-"""The job behind a revision: build and measure missing solids, calculate dependent steps, iterate."""
+"""The job that completes a revision: build and measure solids, calculate dependent steps, iterate."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ FAILURES = (
     NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded,
     CannotRebuild,
 )  # fmt: skip
-"""What a design itself brings about."""
+"""Errors that are caused by the design itself."""
 
 
 class Regeneration:
-    """The handler of jobs that complete a revision: `regenerate` and the kinds beside it."""
+    """Handles the jobs that complete a revision: `regenerate` and its related kinds."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class Regeneration:
         )
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Regenerate the revision of a job; the completion attaches the results.
+        """Regenerate the revision of a job, and return a completion that stores the results.
 
         Raises
         ------
@@ -94,7 +94,10 @@ class Regeneration:
         return completion
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Record in the revision why its regeneration failed; runs in the transaction that ends the job."""
+        """Record in the revision why its regeneration failed.
+
+        This runs in the transaction that ends the job.
+        """
         if self.steps is not None:
             self.steps.drop(job.id)
         if job.design is not None and job.revision is not None:
@@ -102,7 +105,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> DocumentCalculation:
-        """Return a revision's document and its calculation, from its save or calculated again."""
+        """Return a revision's document and its calculation, either cached by the save or repeated."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -116,7 +119,7 @@ class Regeneration:
     def _settled(
         self, prepared: DocumentCalculation, context: JobContext
     ) -> tuple[Calculation, list[JsonObject]]:
-        """Return the calculation with all solids built and iterations converged, and its rounds."""
+        """Return the calculation with all solids built and all iterations converged, and their rounds."""
         document, calculation = prepared
         rounds = list[JsonObject]()
         while True:
@@ -149,15 +152,15 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """Return the calculation once all its models are built and all used analyses are finished.
+        """Return the calculation after all its models are built and all used analyses are finished.
 
-        Models may wait for each other's measurements, so each round builds the models that can be built.
+        A model may need measurements of another one, so each round builds the models that can be built.
         """
         while True:
             raise_if(calculation.faults)
             if not self.builds.keep(calculation.shapes[name] for name in calculation.measures):
                 calculation = self._calculated(calculation.graph, calculation.assumed)
-                continue  # a build was deleted since: it is built again
+                continue  # a build was deleted in the meantime and must be built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
                 with failures_named(name):
@@ -167,13 +170,13 @@ class Regeneration:
             calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
-        """Analyse every solid that needs it; return whether there was any."""
+        """Analyse every solid that needs it; return whether any did."""
         waiting = calculation.waiting()
         for node in waiting:
             name, kind = node.model.name, node.kind
             question = node.model.analyses[kind]
             with failures_named(name, kind):
-                self.builds.make(calculation.shapes[name], context)  # its file may be lost
+                self.builds.make(calculation.shapes[name], context)  # the file of the solid may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
                 )
@@ -181,7 +184,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """Return the lane of a job, so that a change of a bearing never waits for long calculations."""
+    """Return the lane of a job, so that a quick change never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

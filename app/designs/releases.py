@@ -1,4 +1,4 @@
-"""The released revisions of a design: the newest one, and those that later ones supersede."""
+"""The released revisions of a design, and the progress of their approval."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
     ApprovalRow.design_id == bindparam("design"), ApprovalRow.step == "released"
 )
 EVER_RELEASED = Statement(_EVER_RELEASED, "design")
-"""The number of the newest revision of a `design` that was released, withdrawn since or not; or null."""
+"""Selects the newest revision of a `design` that was ever released, even if withdrawn since; or null."""
 OF_NEWEST_RELEASED = _EVER_RELEASED.where(~_IS_WITHDRAWN)
 NEWEST_RELEASED = Statement(OF_NEWEST_RELEASED, "design")
-"""The number of the newest released revision of a `design` that is not withdrawn; or null."""
+"""Selects the newest released revision of a `design` that is not withdrawn; or null."""
 
 
 def newest_released(session: Session, design: str) -> int:
@@ -48,7 +48,7 @@ def newest_released(session: Session, design: str) -> int:
 
 
 def released_of(session: Session, designs: Collection[str]) -> dict[str, int]:
-    """Return the newest released revision of each of these designs that has one."""
+    """Return the newest released revision of each design that has one."""
     query = (
         select(ApprovalRow.design_id, func.max(ApprovalRow.revision))
         .where(ApprovalRow.design_id.in_(designs), ApprovalRow.step == "released", ~_IS_WITHDRAWN)
@@ -58,7 +58,7 @@ def released_of(session: Session, designs: Collection[str]) -> dict[str, int]:
 
 
 def state_of(session: Session, row: RevisionRow) -> Step | None:
-    """Return the last step of the approval of a revision; None before the first."""
+    """Return the latest step in the approval of a revision; None before the first."""
     newest = select(ApprovalRow.step).where(
         ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
     )
@@ -66,5 +66,5 @@ def state_of(session: Session, row: RevisionRow) -> Step | None:
 
 
 def last_of(steps: Collection[str]) -> Step | None:
-    """Return the last of some steps; None if there are none."""
+    """Return the latest of some approval steps; None if there are none."""
     return next((step for step in reversed(ORDER) if step in steps), None)

@@ -1,4 +1,4 @@
-"""All SQL of designs and revisions."""
+"""All SQL statements for designs and revisions."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class StoredRevision:
     models: Sequence[ModelState]
     state: str
     note: str | None
-    action: str = "design.change"  # as the audit calls it
+    action: str = "design.change"  # the name of the action in the audit log
 
 
 def design(session: Session, id: str) -> DesignRow:
@@ -61,7 +61,7 @@ def design(session: Session, id: str) -> DesignRow:
 
 
 def locked(session: Session, id: str) -> DesignRow:
-    """Return the present state of a design that is not deleted; lock it until the end of this unit.
+    """Return a design that is not deleted, read anew and locked until the end of the transaction.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def heads(session: Session, rows: Sequence[DesignRow]) -> dict[str, RevisionRow]
 
 
 def revision(session: Session, id: str, number: int) -> RevisionRow:
-    """Return a revision; those of a deleted design are kept.
+    """Return a revision, including one of a deleted design.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def lean(session: Session, id: str, number: int) -> RevisionRow:
-    """Return a revision whose results are loaded from the row when they are first read.
+    """Return a revision whose results are loaded when they are first read.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def lean_head(session: Session, id: str) -> RevisionRow:
 
 
 class Newest(NamedTuple):
-    """A revision without its results, and when its design was created."""
+    """A revision without its results, and the time when its design was created."""
 
     number: int
     document: JsonObject
@@ -176,7 +176,7 @@ def _no_revision(id: str, number: int) -> NotFound:
 
 
 def of_ids(session: Session, ids: Collection[str]) -> list[DesignRow]:
-    """Return the designs of these ids that are not deleted."""
+    """Return the designs with these ids that are not deleted."""
     return list(session.scalars(select(DesignRow).where(DesignRow.id.in_(ids), DesignRow.deleted.is_(None))))
 
 
@@ -190,7 +190,7 @@ def newest_number(session: Session, id: str) -> int:
 def designs(
     session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
 ) -> list[DesignRow]:
-    """Return one page of the designs that a filter selects, newest first, plus one if there are more."""
+    """Return one page of the designs that match a filter, newest first, plus one design if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
     if wanted is not None:
         query = query.where(*conditions(session, wanted))
@@ -209,16 +209,16 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 
 def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
-    """Create a design with its first revision, `at` a time or now; return its id and revision number."""
+    """Create a design with its first revision at time `at`, or now; return its id and revision number."""
     id, created = new_id(session), at or now()
     statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)
 
 
 def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
-    """Append a revision to a design whose newest one is `base`, `at` a time or now; return its number.
+    """Append a revision after revision `base` at time `at`, or now; return its number.
 
-    The row of the design decides: of several servers that append to the same revision, one succeeds.
+    The row of the design is locked: if several servers append to the same revision, one of them succeeds.
 
     Raises
     ------
@@ -269,7 +269,7 @@ def _model_row(id: str, number: int, state: ModelState) -> Values:
 
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
-    """Attach the results of a regeneration to its revision, which becomes current."""
+    """Store the results of a regeneration in its revision, which becomes current."""
     statements.ATTACHED.run(session, {"of": id, "at": number, "computed": results})
     for state in models:
         upsert_values(session, statements.MODELS, _model_row(id, number, state))
@@ -282,7 +282,7 @@ def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
 
 
 def delete(session: Session, id: str) -> None:
-    """Take a design from the lists; its revisions are kept.
+    """Remove a design from the lists; its revisions are kept.
 
     Raises
     ------
@@ -298,12 +298,12 @@ def delete(session: Session, id: str) -> None:
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
-    """Return the newest revision, up to this one, whose model of this name was built and accepted."""
+    """Return the newest revision, up to a given one, in which the named model was built and accepted."""
     return _model(statements.GOOD.run(session, {"of": id, "model": model, "until": until}))
 
 
 def built_model(session: Session, id: str, number: int, model: str) -> RevisionModelRow | None:
-    """Return a model of a revision, if it was built."""
+    """Return a model of a revision if it was built, else None."""
     return _model(statements.BUILT.run(session, {"of": id, "model": model, "at": number}))
 
 
@@ -324,7 +324,7 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
 
 @dataclass(frozen=True)
 class RegenerationState:
-    """The state of a design's regeneration, and the newest event that it includes."""
+    """The state of a design's regeneration, and the newest event that it reflects."""
 
     number: int
     revision: int
@@ -333,7 +333,7 @@ class RegenerationState:
 
 
 def note_revision(session: Session, events: Events, design: str, revision: int, state: str) -> None:
-    """Record a new revision and its state as an event, in the same unit of work."""
+    """Record an event for a new revision and its state, in the same transaction."""
     topic, data = f"design:{design}", {"revision": revision}
     events.note(session, Event(topic, "revision", data), Event(topic, state, data))
 
@@ -352,6 +352,6 @@ def standing(session: Session, id: str) -> RegenerationState:
 
 
 def can_resume(session: Session, id: str, last: int | None) -> bool:
-    """Return whether all events of a design after a reader's last one are still stored."""
+    """Return whether all events of a design after the last one that a client received are still stored."""
     until = design(session, id).event
     return last is not None and are_events_kept(session, f"design:{id}", last, until)

@@ -1,4 +1,4 @@
-"""The results stored with a revision, as models; equal texts are parsed once.
+"""The results stored with a revision, as Pydantic models; equal texts are parsed once.
 
 A revision stores its results once, but every page reads them several times. The cache is keyed by the stored
 text, so it cannot return outdated results.
@@ -22,7 +22,7 @@ from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.tables import JsonText, RevisionRow, canonical_json
 
-KEPT = 4 * 2**20  # characters of stored texts; their models take some ten times as many bytes
+KEPT = 4 * 2**20  # characters of cached texts; the parsed models take about ten times as many bytes
 _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
     RevisionRow.design_id == bindparam("of"), RevisionRow.number == bindparam("at")
 )
@@ -37,17 +37,17 @@ _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
 
 @dataclass(frozen=True)
 class Results:
-    """The results of a revision; they are shared, so nobody changes them."""
+    """The results of a revision; they are shared by all readers and must not be modified."""
 
     text: str | None
-    steps: Mapping[str, RevisionStep]  # those that are calculated
-    judged: Mapping[str, list[Criterion] | Verdict | None]  # what is stored of `criteria` and `verdict`
+    steps: Mapping[str, RevisionStep]  # the calculated steps
+    judged: Mapping[str, list[Criterion] | Verdict | None]  # the stored members `criteria` and `verdict`
     iterations: list[Round]
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
 
     @cached_property
     def digest(self) -> str:
-        """Return the SHA-256 of their canonical form, which a signature covers."""
+        """Return the SHA-256 of the results in canonical form, which a signature covers."""
         return hashlib.sha256(canonical_json(_JSON.process_result_value(self.text)).encode()).hexdigest()
 
 
@@ -56,7 +56,7 @@ _keeping = Lock()
 
 
 def results_of(session: Session, row: RevisionRow) -> Results:
-    """Return the results of a revision; empty while there are none."""
+    """Return the results of a revision; empty if there are none yet."""
     text: str | None = session.scalar(_TEXT, {"of": row.design_id, "at": row.number})
     if text is None:
         return Results(None, {}, {}, [], {})

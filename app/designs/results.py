@@ -33,7 +33,7 @@ VARIANTS = "variants"
 
 @dataclass(frozen=True)
 class ModelState:
-    """A model of a revision with its parameters resolved, as far as they are known."""
+    """A model of a revision, with its parameters resolved as far as they are known."""
 
     name: str
     id: str
@@ -47,7 +47,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return the results of a calculation and its variants that a revision stores besides the models."""
+    """Return what a revision stores of a calculation and its variants, apart from the models."""
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
@@ -63,7 +63,7 @@ def stored(
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
-    """Return by model every declared analysis, with its used and known outputs."""
+    """Return every declared analysis by model, with the known outputs that relations use."""
     return {
         block.name: {
             kind: in_design(
@@ -81,7 +81,7 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
     """Return every step: its evaluation, or that it waits for a solid or a job.
 
-    Its criteria are listed with those of the design; the step keeps the warnings of unmet ones.
+    The criteria of steps are listed with those of the design; a step stores only the warnings of unmet ones.
     """
     return {
         name: _step(calculation, block, criteria)
@@ -98,7 +98,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
     answer = json_values.evaluation(evaluation)
     if evaluation.seconds > EXPENSIVE:
         remember(answer, evaluation)
-    del answer["seconds"]  # equal revisions are equal
+    del answer["seconds"]  # so that equal revisions have equal results
     own = _own(block, criteria)
     answer["warnings"] = json_values.warnings([*evaluation.warnings, *warned(block.cls, own)])
     answer["assumed"] = json_values.assumptions(evaluation, own)
@@ -106,7 +106,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
 
 
 def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
-    """Return the criteria of a step's template, as they were judged in the design, by their own names."""
+    """Return the judgements of a step's own criteria, under their names in the template."""
     prefix = f"{block.name}."
     return [
         replace(judgement, name=judgement.name.removeprefix(prefix))
@@ -116,7 +116,7 @@ def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
 
 
 def models(calculation: Calculation, outcomes: Iterable[Outcome] = ()) -> list[ModelState]:
-    """Return every model of a design, then those of its variants, each with the key of its build."""
+    """Return every model of a design, then the models of its variants, each with the key of its build."""
     blocks = (block for block in calculation.graph.blocks.values() if block.is_model)
     own = [_model(calculation, block) for block in blocks]
     return [*own, *chain.from_iterable(outcome.models for outcome in outcomes)]
@@ -146,7 +146,7 @@ def _variant(
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
 ) -> JsonObject:
-    """Return one variant as a revision stores it, without empty members."""
+    """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {
         "values": dict(values),
         "outputs": dict(outputs),
@@ -158,32 +158,32 @@ def _variant(
 
 @dataclass(frozen=True)
 class Outcome:
-    """One variant, as far as it is calculated.
+    """The result of one variant, as far as it is calculated.
 
     Attributes
     ----------
     places
-        What it overrides; of parameters with the unit in which the design has typed them, else empty.
+        The overridden places; for a parameter with the unit in which the design typed it, else with "".
     values
-        The places that it overrides as quantities, in the units in which they were typed.
+        The overridden values as quantities, in the units in which they were typed.
     outputs
-        Every output of its steps that is a single value or a word, by its name in relations.
+        Every step output that is a single value or a word, by its name in relations.
     models
-        Its models with their parameters resolved, named as rows of a revision: `main_2.shell`.
+        The models with resolved parameters, named as in the revision: `main_2.shell`.
     shapes
-        The models of which all parameters are known, by their names in the design.
+        The models whose parameters are all known, by their names in the design.
     is_pending
-        Whether a step is still calculated, or a solid not built.
+        Whether a step is still being calculated, or a solid is not built.
     is_deferred
-        Whether nobody waited for a step.
+        Whether the caller does not wait for an expensive step.
     document, calculation
-        Where the variant is calculated as a design of its own, to be continued by a job.
+        The variant as a separate design, which a job can continue.
     faults
-        What is wrong with it, by names of the table: `variants.main_2.clearance`.
+        The faults of the variant, with their places in the table: `variants.main_2.clearance`.
     problem
-        Why it failed in the job of its revision, as an RFC 9457 problem.
+        Why the variant failed in the job of its revision, as an RFC 9457 problem.
     failures
-        Why models of it could not be built, by their names in the design.
+        Why models could not be built, by their names in the design.
     """
 
     name: str
@@ -203,7 +203,7 @@ class Outcome:
 
 
 def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
-    """Return every output of every step that is not an array, by its name in relations.
+    """Return every step output that is not an array, by its name in relations.
 
     A missing value is null with its reason.
     """
@@ -215,6 +215,6 @@ def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def _without_nan(quantity: JsonObject) -> JsonObject:
-    """Return a quantity fit for JSON."""
+    """Return a quantity with null in place of NaN, which JSON does not allow."""
     value: Json = quantity["value"]
     return {**quantity, "value": None} if value != value else quantity

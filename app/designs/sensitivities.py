@@ -33,16 +33,16 @@ from templates.core.errors import Fault, InvalidInputs, listed
 from templates.core.units.units import registry, unit
 
 MOST_SHOWN = 50
-MOST_VARIED = 500  # places; the rows of the call are twice as many
+MOST_VARIED = 500  # varied quantities; the call has twice as many rows
 STUDY = "a study of the method sensitivity computes them"
-STEP = 1e-4  # of the value of a place, or of its unit where it is 0
+STEP = 1e-4  # relative to the value of a quantity, or to its unit if the value is 0
 
 
 @dataclass(frozen=True)
 class SensitivityQuestion:
-    """The subject of the question: a value by its name, or the comparison of a criterion by its name.
+    """A value, or a criterion, whose sensitivities are requested, by its name.
 
-    Slopes are those between units of `system`.
+    Slopes have the units of `system`.
     """
 
     name: str
@@ -51,17 +51,17 @@ class SensitivityQuestion:
 
     @property
     def values(self) -> list[Reference]:
-        """Return the name if it is a value."""
+        """Return the name as a reference if it is a value; else nothing."""
         return [] if self.subject else [Reference.parse(self.name)]
 
     @property
     def criteria(self) -> list[str]:
-        """Return the name if it is a criterion."""
+        """Return the name if it is a criterion; else nothing."""
         return [self.name] if self.subject else []
 
     @property
     def wanted(self) -> Targets:
-        """Return all values that are needed."""
+        """Return the values that must be calculated."""
         return Targets.of(self.values, [self.subject] if self.subject else [])
 
     def unit(self, engine: DesignEngine) -> str:
@@ -69,7 +69,7 @@ class SensitivityQuestion:
         return self.subject.criterion.unit if self.subject else engine.unit(*self.values)
 
     def columns(self, table: Table) -> tuple[Array, Array | None]:
-        """Return the value [SI] of each row; for a criterion its margin, positive if it is met."""
+        """Return the value [SI] in each row; for a criterion also its margin, positive if it is met."""
         if self.subject is None:
             return table.columns[Reference.parse(self.name)], None
         judged = table.judged[self.name]
@@ -78,7 +78,7 @@ class SensitivityQuestion:
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """Those of one value, the largest elasticity first, and why all or some of them are missing."""
+    """The sensitivities of one value, largest elasticity first, and why some of them are missing."""
 
     items: Sequence[Sensitivity]
     reason: str | None = None
@@ -106,19 +106,19 @@ def sensitivities(
 
 
 def _of_solid(place: str, model: str) -> Sensitivity:
-    reason = f"it acts through the solid of {model}, which would have to be built for each value"
+    reason = f"it acts through the solid of {model}, which would have to be rebuilt for each value"
     return Sensitivity(name=place, reason=reason)
 
 
 def _rank(item: Sensitivity) -> tuple[int, float]:
-    """Return a sort key: the largest elasticity first, then slopes without one, then missing slopes."""
+    """Return a sort key: largest elasticity first, then slopes without an elasticity, then missing slopes."""
     if item.elasticity is not None:
         return 0, -abs(item.elasticity)
     return (2 if item.slope is None else 1), 0.0
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """Return a sentence on the places that the list omits; None if it is complete."""
+    """Return a sentence that the list of quantities is incomplete; None if it is complete."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
@@ -128,7 +128,7 @@ def _left_out(places: int, through: int, shown: int) -> str | None:
 
 @dataclass(frozen=True)
 class DifferenceRows:
-    """The rows around one design, and what comes out of them."""
+    """The rows around one design point, and the slopes that they give."""
 
     document: Document
     calculation: Calculation
@@ -137,7 +137,7 @@ class DifferenceRows:
     places: Sequence[Reference]
 
     def items(self) -> Iterator[Sensitivity]:
-        """Yield the sensitivity to each place, in the order of the places.
+        """Yield the sensitivity to each quantity, in the given order.
 
         Raises
         ------
@@ -168,7 +168,7 @@ class DifferenceRows:
         return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
 
     def _check_cost(self) -> None:
-        """Refuse rows that take too long, or too many operations in relations between lists."""
+        """Raise InvalidInputs if the rows would take too long, or need too many operations on lists."""
         count, wanted = self._points.count, self.asked.wanted
         seconds = self._engine.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
         values = count * sum(self._engine.design.sizes(wanted).values())
@@ -182,24 +182,24 @@ class DifferenceRows:
             )
 
     def _at(self) -> str:
-        """Return the levels of the steps that are calculated."""
+        """Return the levels of the calculated steps as words in brackets, for a message."""
         steps = [step.name for step in self._engine.design.steps(self.asked.wanted)]
         used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
         return f" ({', '.join(used)})" if used else ""
 
     def _check(self, value: Array, table: Table) -> None:
-        """Refuse a value that cannot have a slope."""
+        """Raise InvalidInputs if the value cannot have a slope."""
         if value.ndim > 1:
             raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 
     def _missing(self, table: Table) -> str:
-        """Return why the design itself has no value."""
+        """Return why the design has no value at the design point."""
         waiting = self._engine.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
-            return f"{self.asked.name} follows from {what}: its slopes are not computed"
+            return f"{self.asked.name} depends on {what}, so its slopes are not computed"
         if waiting:
             return f"{self.asked.name} waits for {listed(sorted(map(str, waiting)))}"
         refusal = table.refusals.get(0)
@@ -245,7 +245,7 @@ class DifferenceRows:
 
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
-    """Return why a slope is missing or one-sided."""
+    """Return why a slope is missing or one-sided; None if it is central."""
     missing = [row for row in (below, above) if not math.isfinite(value[row])]
     if not missing:
         return None
@@ -256,7 +256,7 @@ def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None
 
 
 def _is_temperature(*units: str) -> bool:
-    """Return whether any is a unit of temperature, whose ratios have no meaning.
+    """Return whether any unit is a temperature, whose ratios have no meaning.
 
     Ratios of temperature differences have a meaning.
     """

@@ -37,13 +37,13 @@ from app.storage.idempotency import Once
 from app.storage.tables import RevisionRow, canonical_json
 from templates.core.errors import Fault
 
-MEGABYTES = 32  # of calculations that wait for their job
+MEGABYTES = 32  # size of the cache of calculations that wait for their job
 BYTES = 128
-"""Taken for one character of a document: of the designs in the gallery 36 to 104 bytes of its calculation."""
+"""Bytes of a calculation for each character of its document; 36 to 104 for the designs of the gallery."""
 
 
 class DocumentCalculation(NamedTuple):
-    """A document as it was read, and what could be calculated of it."""
+    """A document as read, and its calculation as far as it is known."""
 
     document: Document
     calculation: Calculation
@@ -52,20 +52,20 @@ class DocumentCalculation(NamedTuple):
 class CalculationCache:
     """The latest calculations that wait for a solid, by their documents.
 
-    It belongs to one application: it counts on the catalogues and on the database of that. A calculation that
-    is not here any more, or that another process did, is done again from the document.
+    A cache belongs to one application and depends on its catalogues and database. If a calculation was
+    dropped, or was made by another process, it is repeated from the document.
     """
 
     def __init__(self, cache: Cache | None = None) -> None:
         self._cache = cache or Cache(MEGABYTES)
 
     def keep(self, plain: Mapping[str, Json], prepared: DocumentCalculation) -> None:
-        """Store the calculation of a document, which is also given as JSON."""
+        """Cache the calculation of a document, which is given as JSON."""
         text = canonical_json(plain).encode()
         self._cache.keep(_digest(text), prepared, BYTES * len(text))
 
     def find(self, plain: Mapping[str, Json]) -> DocumentCalculation | None:
-        """Return the calculation of a document that was saved lately."""
+        """Return the cached calculation of a document, or None."""
         prepared: DocumentCalculation | None = self._cache.get(_digest(canonical_json(plain).encode()))
         return prepared
 
@@ -76,40 +76,40 @@ def _digest(text: bytes) -> bytes:
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 CALCULATE = "calculate_and_regenerate"
-"""Kinds of jobs: the second is that of designs whose relations use finite elements, the third that of designs
+"""Kinds of jobs: the second is for designs whose relations use finite elements, the third for designs
 with steps for which the save did not wait."""
 
 
 @dataclass(frozen=True)
 class SaveResult:
-    """The result of a change: a revision, and the job that regenerates it if it needs one."""
+    """The result of a save: a revision, and the job that regenerates it if it needs one."""
 
     design: str
     revision: int
     job: str | None
     created: bool
-    fresh: bool = True  # saved by this request, not by an earlier one
-    is_deferred: bool = False  # the request has waited for steps as long as it does: the job calculates them
-    answer: Design | None = None  # as it was written, where no job changes it and no earlier request wrote it
+    fresh: bool = True  # whether this request saved it, not an earlier one
+    is_deferred: bool = False  # whether the job must calculate steps for which the request does not wait
+    answer: Design | None = None  # the saved design, if no job will change it and this request saved it
 
     def keep(self, session: Session, once: Once) -> None:
-        """Store the result of the request, in the unit that writes it."""
+        """Store the result of the request in the transaction that saves the revision."""
         location = {name: value for name, value in vars(self).items() if name != "answer"}
         once.keep(session, 201 if self.created else 200, location)
 
 
 @dataclass(frozen=True)
 class Draft:
-    """A revision to be written, and the job that completes it, should one have to."""
+    """A revision to be saved, and the kind of job that completes it if necessary."""
 
     written: StoredRevision
     kind: str
     is_deferred: bool
-    begun: PendingCalculations | None  # what the job takes over
+    begun: PendingCalculations | None  # running calculations that the job takes over
 
 
 class Designs:
-    """All changes of designs."""
+    """All operations on designs."""
 
     def __init__(
         self,
@@ -123,7 +123,7 @@ class Designs:
         self._solids = built(database), analysed(database)
 
     def show(self, id: str, number: int | None = None) -> Design:
-        """Return a design as of a revision, by default the newest.
+        """Return a design at a revision, by default the newest.
 
         Raises
         ------
@@ -148,15 +148,15 @@ class Designs:
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
     ) -> SaveResult:
-        """Return a new design.
+        """Create a design and return its first revision.
 
         Raises
         ------
         InvalidInputs
             With all faults; nothing is saved then.
         """
-        if saved_before := self._repeated(once):
-            return saved_before
+        if before := once.find_in(self.database):
+            return _saved_before(before)
         draft = self.draft(raw, note, action)
 
         def unit(session: Session) -> SaveResult:
@@ -172,9 +172,9 @@ class Designs:
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> SaveResult:
-        """Return a new revision with a merge patch applied; a patch without changes creates none.
+        """Apply a merge patch and return the new revision; a patch without changes creates none.
 
-        A new name alone keeps all results: nothing is calculated.
+        If only the name changes, the new revision keeps all results.
 
         Raises
         ------
@@ -193,7 +193,7 @@ class Designs:
         return self._append(id, base, merge(base.document, patch), note, once, "design.change")
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
-        """Return a new revision equal to an old one."""
+        """Create a revision with the document of an old one, and return it."""
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
@@ -204,18 +204,24 @@ class Designs:
         return self._append(id, base, document, words, once, "design.restore")
 
     def copy(self, id: str, name: str | None, once: Once) -> SaveResult:
-        """Return a new design with the newest document of another."""
+        """Create a design with the newest document of another one, and return it."""
         with self.database.read() as session:
             number, document, *_ = repository.newest(session, id)
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
         return self.create(named, f"copy of {id}, revision {number}", once, "design.copy")
 
     def delete(self, id: str) -> None:
-        """Delete a design from the lists; its revisions are kept. Raises DesignReleased."""
+        """Delete a design from the lists; its revisions are kept.
+
+        Raises
+        ------
+        DesignReleased
+            If one of its revisions was released.
+        """
         self.database.write(lambda session: repository.delete(session, id))
 
     def proposals(self, id: str) -> list[Proposal]:
-        """Return relations for the parameters of models that are not set."""
+        """Return relations that are proposed for unset model parameters."""
         with self.database.read() as session:
             document = repository.head(session, id).document
         return proposals(self._graph(resolved(read_document(document), self.catalogues)))
@@ -223,8 +229,9 @@ class Designs:
     def auto_map(
         self, id: str, apply: bool, expected: str | None, once: Once
     ) -> tuple[list[Proposal], SaveResult | None]:
-        """Return proposals for unset model parameters, and the revision with them if they are applied."""
-        repeated = self._repeated(once) if apply else None
+        """Return proposals for unset model parameters, and the new revision if they are applied."""
+        before = once.find_in(self.database) if apply else None
+        repeated = _saved_before(before) if before else None
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
             document = repository.revision(session, id, number).document
@@ -239,9 +246,14 @@ class Designs:
         return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
     def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
-        """Return a document, read and calculated with the existing solids.
+        """Return a document as read, and its calculation with the existing solids.
 
-        Faults are left in the calculation.
+        Faults in values are left in the calculation.
+
+        Raises
+        ------
+        InvalidInputs
+            If the document cannot be read, or its network has faults.
         """
         document = resolved(read_document(raw), self.catalogues)
         return document, calculate(self._graph(document), *self._solids, starts(document))
@@ -260,10 +272,7 @@ class Designs:
         once: Once,
         action: str,
     ) -> SaveResult:
-        """Return the revision after `base` with another document.
-
-        `base` itself if the document is unchanged.
-        """
+        """Return the revision after `base` with another document; `base` if the document is unchanged."""
         draft = self.draft(raw, note, action)
         is_changed = base.document != draft.written.document
 
@@ -286,8 +295,8 @@ class Designs:
     ) -> SaveResult | None:
         """Return a revision with another name and the same results; None if a normal save is necessary.
 
-        A normal save is necessary if the design has no results yet, already has this name, or the request is
-        a repetition.
+        A normal save is necessary if the design has no current results, the name does not change, or the
+        request is a repetition.
         """
 
         def unit(session: Session) -> SaveResult:
@@ -312,7 +321,7 @@ class Designs:
             return None
 
     def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
-        """Return the revision to write for a document; its results wait for a job if any part is pending.
+        """Return the revision to save for a document; a job adds its results if any value is pending.
 
         Raises
         ------
@@ -353,7 +362,7 @@ class Designs:
         return checked(document, base, Available(self.catalogues, *self._solids))
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
-        """Return all faults that would make a save refuse the variants of a document.
+        """Return all faults in the variants of a document that would make a save refuse it.
 
         Raises
         ------
@@ -366,7 +375,7 @@ class Designs:
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
     ) -> SaveResult:
-        """Return the job of a revision, if it needs one, and the record of the request, atomically."""
+        """Create the job of a revision if it needs one, and store the result of the request."""
         job, answer, written = None, None, draft.written
         if written.state == "regenerating":
             job = self.jobs.enqueue(
@@ -389,18 +398,11 @@ class Designs:
             self.jobs.wake(draft.kind)
         return saved
 
-    def _repeated(self, once: Once) -> SaveResult | None:
-        if not once.key:
-            return None
-        with self.database.read() as session:
-            before = once.find(session)
-        return _saved_before(before) if before else None
-
 
 def _with_builds(session: Session, draft: Draft) -> Draft:
-    """Return the draft with the ages of its builds renewed.
+    """Return the draft after marking its builds as recently used.
 
-    A build that was deleted in the meantime must be built again.
+    If a build was deleted in the meantime, the returned draft builds it again.
     """
     builds = [model.build for model in draft.written.models if model.build]
     if not builds or renew(session, builds):
@@ -420,11 +422,14 @@ def _saved_before(location: JsonObject) -> SaveResult:
 
 
 class _UsualWay(Exception):
-    """A patch of a name that calculates, or changes nothing, or has been carried out before."""
+    """Raised if a patch of the name alone needs a normal save.
+
+    This is the case if the design must be calculated, nothing changes, or the request is a repetition.
+    """
 
 
 def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> StoredRevision:
-    """Return the content of a revision under another name."""
+    """Return the content of a revision under a new name."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)
@@ -439,10 +444,10 @@ def _require_match(expected: str | None, head: int) -> None:
 
 
 def matches(expected: str, head: int) -> bool:
-    """Return whether an If-Match names the newest revision, or any."""
+    """Return whether an If-Match header names the newest revision, or is `*`."""
     return expected.strip() in ("*", f'"{head}"')
 
 
 def analyses_wanted(graph: Graph) -> bool:
-    """Return whether a design uses finite elements."""
+    """Return whether a design uses a finite-element analysis."""
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)

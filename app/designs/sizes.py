@@ -1,8 +1,8 @@
-"""Radial sizes where a template takes diametral ones, and the other way round, in a design and its variants.
+"""Convert radial sizes to diametral ones and vice versa, where a template declares the other one.
 
-A document keeps the name that the template declares: `radial_clearance` of 30 um becomes
-`diametral_clearance` of 60 um, a relation twice what it says. Where both are given, both stay, and the
-undeclared one is refused.
+A document stores a size under the name that the template declares: `radial_clearance` of 30 um becomes
+`diametral_clearance` of 60 um, and a relation is multiplied by 2. If a document gives both, both are kept,
+and the undeclared one is refused.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from templates.core.units.relation import is_relation
 
 
 def in_declared_sizes(document: Document, pairs: Mapping[str, str]) -> Document:
-    """Return the document with every size by the name that its step declares, `pairs` of `step.name`."""
+    """Return the document with every size under the name that its step declares.
+
+    `pairs` maps the other names to the declared ones, both as `step.name`.
+    """
     plain = document.model_copy(deep=True)
     for name, step in plain.steps.items():
         step.inputs = _renamed(step.inputs, _within(pairs, name))
@@ -37,7 +40,7 @@ def _within(pairs: Mapping[str, str], step: str) -> dict[str, str]:
 
 
 def _renamed(values: Mapping[str, Raw], pairs: Mapping[str, str]) -> dict[str, Raw]:
-    """Return values with sizes by their declared names, where these are not given as well."""
+    """Return values with sizes under their declared names, unless these are given as well."""
     changed = {}
     for name, raw in values.items():
         declared = pairs.get(name)
@@ -50,7 +53,7 @@ def _renamed(values: Mapping[str, Raw], pairs: Mapping[str, str]) -> dict[str, R
 
 
 def _multiple(raw: Raw, declared: str) -> Raw | None:
-    """Return a size as the declared one; None of what is no length, which is refused elsewhere."""
+    """Return a size converted to the declared one; None if it is not a length, which is refused later."""
     factor = factor_of(declared.rpartition(".")[2])
     if is_relation(raw):
         return f"= {factor:g} * ({str(raw).strip().removeprefix('=').strip()})"

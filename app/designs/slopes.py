@@ -1,4 +1,4 @@
-"""Slopes at a point: how much a value changes with each variable, by central differences."""
+"""Slopes at a point: the change of a value with each variable, by central differences."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from templates.core.units.units import unit
 
 @dataclass(frozen=True)
 class Local:
-    """The rows of central differences: the point itself, then each variable a step below and above it.
+    """The rows of central differences: the point itself, then one step below and above it in each variable.
 
     Attributes
     ----------
     at
         The point [SI], shape (d,).
     steps
-        How far each variable is moved [SI], shape (d,), above zero.
+        The step of each variable [SI], shape (d,), above zero.
     """
 
     at: Array
@@ -30,26 +30,27 @@ class Local:
 
     @property
     def count(self) -> int:
-        """Return 1 + 2 d rows."""
+        """Return the number of rows, 1 + 2 d."""
         return 1 + 2 * len(self.at)
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows `first` to `last`, with `last` excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         moved = np.diag(self.steps)
         with np.errstate(over="ignore"):
             return np.asarray(self.at + np.vstack([np.zeros_like(self.at), -moved, moved]))[first:last]
 
     def beside(self, variable: int) -> tuple[int, int]:
-        """Return the numbers of the rows below and above the point in one variable."""
+        """Return the numbers of the two rows in which one variable is below and above the point."""
         return 1 + variable, 1 + len(self.at) + variable
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes of one value [SI] and its elasticities, shape (d,): relative change for relative change.
+    """Slopes [SI] and elasticities of one value, shape (d,).
 
-    An elasticity is NaN where the value is zero; it is zero where the variable is. A slope is one-sided where
-    the value is missing on one side of the point, and NaN where it is missing on both.
+    An elasticity is the relative change of the value per relative change of a variable. It is NaN if the
+    value is zero, and zero if the variable is zero. A slope is one-sided if the value is missing on one side
+    of the point, and NaN if it is missing on both sides.
     """
 
     value: float
@@ -58,10 +59,7 @@ class Slopes:
 
 
 def slopes_at(points: Local, y: Array) -> Slopes:
-    """Return the slopes of a value at a point from its values [SI] at the rows of `points`.
-
-    NaN means no value.
-    """
+    """Return the slopes of a value from its values `y` [SI] in the rows of `points`; NaN means no value."""
     dimensions = len(points.at)
     value, below, above = float(y[0]), y[1 : 1 + dimensions], y[1 + dimensions :]
     with np.errstate(all="ignore"):
@@ -73,7 +71,7 @@ def slopes_at(points: Local, y: Array) -> Slopes:
 
 
 def slope_in(over: str, under: str, slope: float) -> Quantity | None:
-    """Return a slope [SI] in units `over` per `under`; None if it is not finite."""
+    """Return a slope [SI] as a quantity in the unit `over` per `under`; None if it is not finite."""
     name = quotient(over, under)
     value = slope / unit(name).factor
     return Quantity(value=value, unit=name) if math.isfinite(value) else None

@@ -1,7 +1,7 @@
-"""Fields that a revision has for the surface of a crankshaft: utilisation of fillets, torsional mode shapes.
+"""Fields on the surface of a crankshaft in a revision: utilisation of fillets, torsional mode shapes.
 
-They come from steps that use finite-element results of the model: a `fatigue_life` with the tensors of
-`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. They need no declaration, and the
+They are computed from steps that use finite-element results of the model: a `fatigue_life` with the tensors
+of `unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. They need no declaration, and the
 service does not store them.
 """
 
@@ -31,13 +31,13 @@ from cad.model import CadModel
 from templates.core.arrays import Array
 from templates.core.catalogue.discovery import Catalogue
 
-USE, MODES = "load_use", 3  # the output of a life that is painted; how many modes
-RIGID = 1e-6  # of the highest frequency: a mode below turns as a whole
+USE, MODES = "load_use", 3  # the output that is shown; the number of modes
+RIGID = 1e-6  # relative to the highest frequency; modes below are rigid rotations
 
 
 @dataclass(frozen=True)
 class SolidField:
-    """A field, before it is laid on a surface: its range is known."""
+    """A field with a known range, before its values on a surface are computed."""
 
     id: str  # `life.load_use`, `torsion.mode_1`
     title: str
@@ -46,7 +46,7 @@ class SolidField:
     high: float
 
     def on(self, glb: Glb) -> Field:
-        """Return values at the corners of a surface."""
+        """Return the field with its values at the vertices of a surface mesh."""
         return Field(self.title, self.unit, self._values(glb), self.low, self.high)
 
     def _values(self, glb: Glb) -> Array:
@@ -55,7 +55,7 @@ class SolidField:
 
 @dataclass(frozen=True)
 class FilletUse(SolidField):
-    """Share of the endurance limit that the points of the fillets use, under the loads of one throw."""
+    """Utilisation of the endurance limit at points of the fillets, under the loads of one throw."""
 
     sizes: Crank
     places: Sequence[tuple[float, float]]
@@ -81,7 +81,7 @@ class ModeShape(SolidField):
 def fields_of(
     session: Session, catalogue: Catalogue[CadModel], id: str, number: int, name: str
 ) -> dict[str, SolidField]:
-    """Return the fields of a model in a revision, by name; none if it is not a crank.
+    """Return the fields of a model in a revision, by name; empty if the model is not a crankshaft.
 
     Raises
     ------
@@ -103,12 +103,12 @@ def fields_of(
 
 
 def field_of(fields: Mapping[str, SolidField], id: str) -> SolidField:
-    """Return one of the fields.
+    """Return the field with this name.
 
     Raises
     ------
     NotFound
-        If there is none of this name.
+        If there is none.
     """
     if id not in fields:
         there = f"there are {', '.join(fields)}" if fields else "this model has none"
@@ -127,12 +127,12 @@ def _uses(
         if use is None or points is None or use.shape != points.shape[:1] or np.isnan(use).all():
             continue
         title = f"Share of the endurance limit that is used (1 / safety factor), {called}"
-        low, high = float(np.nanmin(use)), float(np.nanmax(use))  # a point that breaks has none
+        low, high = float(np.nanmin(use)), float(np.nanmax(use))  # the value is NaN at a point that breaks
         yield FilletUse(f"{called}.{USE}", title, "1", low, high, sizes, places, points, use)
 
 
 def _points(session: Session, model: RevisionModel) -> Array | None:
-    """Return the points of an analysis' tensors [mm], which are stored with the tensors."""
+    """Return the points of an analysis [mm], which are stored with its tensors; None if there are none."""
     if UNIT_LOADS not in model.analyses:
         return None
     stored = analysis_rows.outputs_of(session, model.analyses[UNIT_LOADS].id)
@@ -159,11 +159,11 @@ def _modes(revision: Revision, name: str, whole: WholeShaft) -> Iterator[ModeSha
 
 
 def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | None:
-    """Return the indices, from 0, of the inertias that are a shaft's throws, nose and flange.
+    """Return the indices, from 0, of the inertias of a shaft's throws, nose and flange.
 
     The throws are the excited inertias, in order. Nose and flange are the single inertias that an elastic
     shaft joins to the first and the last throw; if there is no such inertia, the throw itself is used. The
-    result is None unless exactly all throws are excited.
+    result is None unless the number of excited inertias equals the number of throws.
     """
     excited, stiffness = _given(step, "excited_inertias"), _given(step, "shaft_stiffness")
     start, end = _given(step, "shaft_from"), _given(step, "shaft_to")
@@ -184,9 +184,9 @@ def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | Non
 
 
 def _takes(step: RevisionStep, prefix: str) -> bool:
-    """Return whether a relation of a step uses a name with this prefix.
+    """Return whether a relation of a step uses a name that begins with this prefix.
 
-    The name `big_shaft.chain.` does not have the prefix `shaft.`.
+    The name `big_shaft.chain.` does not begin with the prefix `shaft.`.
     """
     begins = re.compile(rf"(?<![\w.]){re.escape(prefix)}")
     return any(begins.search(str(relation)) for relation in step.relations.values())

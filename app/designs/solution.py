@@ -1,4 +1,4 @@
-"""Answer a question of `solve`: read it, calculate it in a process, and return its answer."""
+"""Answer a request of `solve`: read it, calculate it in a process, and return the answer."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from templates.core.units.quantity import TypedQuantity, read, read_beside
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
 Named = Annotated[str, StringConstraints(pattern=_NAME)]
-MOST_OTHERS = 50  # values of the design that a question changes
-MOST_JUDGED = 8  # roots of which the criteria are judged: each is a calculation of the whole design
+MOST_OTHERS = 50  # values of the design that a request may replace
+MOST_JUDGED = 8  # roots whose criteria are judged; each needs a calculation of the whole design
 
 
 class SolveDesignIn(Bounded):
-    """The question which value of one parameter or input gives a wanted output."""
+    """Request for the values of one parameter or input that give a requested output."""
 
     model_config = ConfigDict(
         strict=True,
@@ -57,33 +57,34 @@ class SolveDesignIn(Bounded):
         },
     )
 
-    unknown: Named = Field(
-        description="a parameter, `step.input` or `model.parameter` that is not a relation"
-    )
+    unknown: Named = Field(description="a parameter, `step.input` or `model.parameter` that no relation sets")
     between: Annotated[list[Given], Field(min_length=2, max_length=2)] = Field(
         description="the lowest and the highest value to try"
     )
     target: Annotated[dict[Named, Given], Field(min_length=1, max_length=1), at_most(1)] = Field(
-        description="one output and its wanted value"
+        description="one output and its requested value"
     )
     tolerance: float | None = Field(
-        None, gt=0, lt=1, description="relative error at which solutions are confirmed; that of the design"
+        None,
+        gt=0,
+        lt=1,
+        description="relative error to which solutions are confirmed; by default that of the design",
     )
     others: Annotated[dict[Place, Given], Field(max_length=MOST_OTHERS), at_most(MOST_OTHERS)] = Field(
         {},
         alias="with",
-        description="other values than those of the revision, by parameter, `step.input` or model input",
+        description="values that replace those of the revision, by parameter, `step.input` or model input",
         examples=[{"film.speed": "7000 rpm"}],
     )
 
 
 def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
-    """Return every solution, in SI units.
+    """Return every solution of the request `body`, in SI units.
 
     Raises
     ------
     InvalidInputs
-        With the faults of the question or the design.
+        With the faults of the request or the design.
     Unreachable
         If no value between the bounds gives the target.
     """
@@ -116,7 +117,7 @@ def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: 
 
 
 class _SolutionText:
-    """The roots of a design, as the interface writes them."""
+    """The solutions of a design as a response."""
 
     def __init__(self, solution: DesignRoots, document: Document, catalogues: Catalogues) -> None:
         self.solution, self.document, self.catalogues = solution, document, catalogues
@@ -139,7 +140,7 @@ class _SolutionText:
                 *(
                     Warning(code=w.code, name=w.name, detail=w.detail)
                     for w in roots.warnings
-                    if w.code != "several_solutions"  # `roots` has them, and none is preferred
+                    if w.code != "several_solutions"  # `roots` lists them all
                 ),
                 *self._missed_tolerance(),
             ],
@@ -169,10 +170,10 @@ class _SolutionText:
         yield Warning(code="tolerance_unmet", name=self.curve.y.name, detail=f"{detail}{self._kept_level()}")
 
     def _kept_level(self) -> str:
-        """Return why the step of the target has no finer level: the design fixes its level."""
+        """Return the words that the design fixes the level of the target's step; empty if it does not."""
         step = self.document.steps.get(self.solution.scanned.target.block)
         level = step.level if step else None
-        return f": the design names level {level} for {self.solution.scanned.target.block}" if level else ""
+        return f": the design fixes level {level} for {self.solution.scanned.target.block}" if level else ""
 
     def _target(self) -> Target:
         value = float(np.asarray(self.curve.y.scale.from_si(self.curve.wanted)))
@@ -192,7 +193,7 @@ class _SolutionText:
         )
 
     def _judgements(self, value: float) -> list[Judgement]:
-        """Return every criterion as judged with one value of the unknown.
+        """Return the judgement of every criterion for one value of the unknown.
 
         Criteria that need a solid are not checked.
         """

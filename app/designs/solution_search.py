@@ -1,7 +1,7 @@
-"""Solve a design: find every value of an input between two bounds that gives a wanted output.
+"""Solve a design: find every value of an input between two bounds that gives a requested output.
 
 The curve between the bounds takes a few array calls of the whole design, with each step at one level. Each
-crossing is then confirmed at the levels of the design, or at those that a tolerance requires.
+crossing is then confirmed at the levels of the design, or at the levels that a tolerance requires.
 """
 
 from __future__ import annotations
@@ -22,15 +22,16 @@ from templates.core.language.roots import Roots, roots_of
 from templates.core.language.scan import Outputs, SampledCurve, evenly
 
 EXPLORED = 0.05
-"""The relative error at which the curve between the bounds is calculated."""
-PROBED = 33  # rows by which levels are chosen
+"""The relative error to which the curve between the bounds is calculated."""
+PROBED = 33  # number of rows from which levels are chosen
 
 
 @dataclass(frozen=True)
 class RootQuestion:
-    """A value of `target` [SI], by varying `unknown` between two bounds [SI].
+    """Request for the values of `unknown` between two bounds that give `target` the value `value` [SI].
 
-    `tolerance` is the relative error at which solutions are confirmed; None: that of the design.
+    `tolerance` is the relative error to which solutions are confirmed. None means the tolerance of the
+    design.
     """
 
     unknown: Reference
@@ -42,7 +43,7 @@ class RootQuestion:
 
 @dataclass(frozen=True)
 class DesignCurve(SampledCurve):
-    """An output of a design as a function of one of its values, each step at one level."""
+    """An output of a design as a function of one of its values, with each step at one level."""
 
     engine: DesignEngine
     unknown: Reference
@@ -56,7 +57,7 @@ class DesignCurve(SampledCurve):
 
     @property
     def chooses(self) -> bool:
-        """Return False: all levels are fixed."""
+        """Return False, because all levels are fixed."""
         return False
 
     @property
@@ -65,21 +66,27 @@ class DesignCurve(SampledCurve):
         return self.engine.rows_at_once([self.target], self.levels)
 
     def at_level(self, level: str) -> DesignCurve:
-        """Return the same curve, with the step of its output at one level."""
+        """Return the same curve with the step of its output at another level."""
         return replace(self, levels={**self.levels, self.target.block: level})
 
     def is_at_levels_of(self, other: Self) -> bool:
-        """Return whether every step has the same level along another curve."""
+        """Return whether every step has the same level as in another curve."""
         return self.levels == other.levels
 
     def level_at(self, x: float) -> str | None:
-        """Return the level at one value; raises InvalidInputs where the design is refused there."""
+        """Return the level at one value.
+
+        Raises
+        ------
+        InvalidInputs
+            If the design is refused there.
+        """
         if refusal := self._table(np.array([x])).refusals.get(0):
             raise InvalidInputs([Fault(refusal.place, refusal.code, refusal.detail)])
         return self.level
 
     def outputs(self, x: Array) -> Outputs:
-        """Return the output at values of the unknown [SI]."""
+        """Return the output for some values of the unknown [SI]."""
         table = self._table(x)
         values, error = table.columns[self.target], table.errors.get(self.target)
         return Outputs(values, self._reasons(table), self.level, error)
@@ -98,7 +105,7 @@ class DesignCurve(SampledCurve):
 
 @dataclass(frozen=True)
 class DesignRoots:
-    """All roots, and the curves on which they were sought and confirmed."""
+    """All roots, and the curves on which they were found and confirmed."""
 
     roots: Roots
     scanned: DesignCurve
@@ -114,7 +121,7 @@ def roots_of_design(engine: DesignEngine, wanted: RootQuestion) -> DesignRoots:
     InvalidInputs
         If the design is refused at every solution.
     Unreachable
-        If no value between the bounds gives the target, with the range that is reachable.
+        If no value between the bounds gives the target; the error contains the reachable range.
     """
     cheap, fine = _levels(engine, wanted)
     x, y = (_meaning(engine, reference) for reference in (wanted.unknown, wanted.target))
@@ -126,9 +133,9 @@ def roots_of_design(engine: DesignEngine, wanted: RootQuestion) -> DesignRoots:
 def _levels(
     engine: DesignEngine, wanted: RootQuestion
 ) -> tuple[dict[str, str | None], dict[str, str | None]]:
-    """Return the levels of the curve, and those of its solutions.
+    """Return the levels for the curve, and the levels for its solutions.
 
-    No level of the curve is finer than that of the solutions.
+    No level for the curve is finer than the one for the solutions.
     """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
     cheap = engine.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
@@ -147,5 +154,5 @@ def _coarser(engine: DesignEngine, step: str, one: str | None, other: str | None
 
 
 def _meaning(engine: DesignEngine, reference: Reference) -> Meaning:
-    """Return a name of the design as messages use it, with its declared unit."""
+    """Return the name of a value for messages, with its declared unit."""
     return Meaning(words=str(reference), unit=engine.unit(reference), name=str(reference))

@@ -1,4 +1,4 @@
-"""The stamp on a downloaded model file: its design, revision, date, materials and signatures."""
+"""The stamp of a downloaded model file: its design, revision, date, materials and signatures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from app.storage.tables import ApprovalRow, PrincipalRow, RevisionModelRow
 from cad.model import material_named
 from cad.stamp import Stamp
 
-_MM3 = 1e-9  # m³
+_MM3 = 1e-9  # 1 mm³ in m³
 
 
 def stamp(session: Session, model: RevisionModelRow) -> Stamp:
@@ -38,9 +38,9 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
 
 
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
-    """Return the stamp with the title-block entries of the approval, which change with every step.
+    """Return the stamp with the title-block entries of the approval, which change with every approval step.
 
-    After the submission the author's name no longer changes, as in a report.
+    After the submission, the name of the author no longer changes.
     """
     revision = repository.lean(session, model.design_id, model.number)
     of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number
@@ -59,7 +59,7 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
 def _materials(build: rows.Build) -> Mapping[str, str]:
     """Return the materials of a build's parts.
 
-    For a build of an older recipe it is one material, identified by its density.
+    A build of an older recipe has one material, identified by its density.
     """
     measured: Mapping[str, Json] = build.measurements
     if "materials" in measured:

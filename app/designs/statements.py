@@ -1,4 +1,4 @@
-"""SQL statements of designs and revisions, compiled once."""
+"""Compiled SQL statements for designs and revisions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NEW_REVISION = Statement(
     "author",
     "design",
 )
-"""`design` is that of which the revision supersedes the newest released one."""
+"""The revision supersedes the newest released one of the design `design`."""
 APPENDED = Statement(
     update(_DESIGNS)
     .where(

@@ -1,4 +1,4 @@
-"""A design as a calculation process receives it: its document and the files of its templates."""
+"""A design as sent to a calculation process: its document and the files of its templates."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ from templates.core.language.template import Template
 T = TypeVar("T", bound=Template)
 _Sources = tuple[tuple[str, int, Source], ...]
 Versions = set[tuple[str, int]]
-"""Versions by id and number."""
+"""Versions, given by id and number."""
 
 
 @dataclass(frozen=True)
 class CatalogueTask:
-    """Versions of templates and models, by their files; equal versions make equal tasks."""
+    """Versions of templates and models, given by their files; tasks with equal versions are equal."""
 
     templates: _Sources
     models: _Sources
 
     @classmethod
     def of(cls, templates: Versions, models: Versions, catalogues: Catalogues) -> CatalogueTask:
-        """Return the task of some versions.
+        """Return the task for some versions.
 
         Raises
         ------
         UnknownTemplate
-            The catalogue no longer has one of them.
+            If the catalogue no longer has one of them.
         """
         return cls(_sources(catalogues.templates, templates), _sources(catalogues.models, models))
 
     def read(self) -> Catalogues:
-        """Load the versions in this process."""
+        """Load the versions in this process, and return their catalogues."""
         templates = _catalogue(self.templates, Template, "template")
         return Catalogues(templates, _catalogue(self.models, CadModel, "model"))
 
@@ -55,12 +55,12 @@ class DesignTask:
 
     @classmethod
     def of(cls, document: JsonObject, catalogues: Catalogues) -> DesignTask:
-        """Return the task of a revision's document.
+        """Return the task for a revision's document.
 
         Raises
         ------
         UnknownTemplate
-            The catalogue no longer has a version that the design needs.
+            If the catalogue no longer has a version that the design needs.
         """
         read = Document.model_validate(document)
         steps = {(step.template, _number(step.version)) for step in read.steps.values()}
@@ -68,7 +68,7 @@ class DesignTask:
         return cls(canonical_json(document), CatalogueTask.of(steps, models, catalogues))
 
     def read(self) -> tuple[Document, Catalogues]:
-        """Load the design in this process, with its templates and models."""
+        """Load the design, its templates and its models in this process, and return them."""
         return Document.model_validate(from_json(self.document)), self.parts.read()
 
 

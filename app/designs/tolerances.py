@@ -1,7 +1,7 @@
-"""Tolerances that no calculation uses: those of the design's own parameters and of its models.
+"""Warn about tolerances that no calculation uses: of a design's own parameters, and of its models.
 
-A step warns about tolerances of its own inputs. Tolerances of model parameters appear in the STEP file on the
-faces that carry the dimension, and nowhere else.
+A step warns about tolerances of its own inputs. A tolerance of a model parameter only appears in the STEP
+file, on the faces that have the dimension.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ OF_A_MODEL = (
 
 
 def warnings(document: JsonObject) -> list[Warning]:
-    """Return a warning for every parameter of a design's document that has `plus` or `minus`."""
+    """Return a warning for every parameter in a design's document that has `plus` or `minus`."""
     listed = list(map(_warning, unused(document["parameters"])))
     for name, model in document["models"].items():
         listed += (

@@ -1,4 +1,4 @@
-"""Designs and revisions as the REST interface shows them."""
+"""Responses of the REST interface about designs and revisions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STEP = "step"
 
 
 def newest(session: Session, id: str, number: int | None = None) -> Design:
-    """Return a design as of a revision, by default the newest.
+    """Return a design at a revision, by default the newest.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def newest(session: Session, id: str, number: int | None = None) -> Design:
 
 
 def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
-    """Return a design at a revision that needs no regeneration."""
+    """Return a design at a revision whose state is `current`."""
     return _design(id, number, document, created, changed, "current", None)
 
 
@@ -68,10 +68,7 @@ def _design(
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """Return the overrides of the variants of a design, in their natural order.
-
-    The result is empty if it has no variants.
-    """
+    """Return the member `variants` of a design, in natural order of the names; empty if there are none."""
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -79,7 +76,7 @@ def _variants(document: JsonObject) -> JsonObject:
 def listed(
     row: DesignRow, revision: RevisionRow, tags: list[str], released: int | None = None
 ) -> DesignSummary:
-    """Return a design in a list."""
+    """Return a design as an entry of a list."""
     return DesignSummary(
         id=row.id,
         name=revision.document["name"],
@@ -133,18 +130,18 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """Return the revision that a released one replaces, and the progress of its approval, if any."""
+    """Return the released revision that this one replaces, and the state of its approval, if any."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Return the author of an action, by their present name; None if none is recorded."""
+    """Return the author of an action with their present name; None if no author is recorded."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """Return a step as typed, while it waits for a solid or a job."""
+    """Return a step as typed while it waits for a solid or a job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
@@ -162,7 +159,7 @@ def _model(session: Session, row: RevisionModelRow) -> JsonObject:
 
 
 def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
-    """Return measurements of the newest good model of every name."""
+    """Return the measurements of each model in its newest valid revision, by name."""
     head = repository.lean_head(session, id)
     measured: dict[str, ModelMeasurements] = {}
     for model in head.models:
@@ -183,12 +180,12 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
 
 
 def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, ModelAnalysis]]:
-    """Return the analyses in a revision by model; none in older revisions."""
+    """Return the analyses in a revision by model; empty in older revisions."""
     return results_of(session, repository.lean(session, id, number)).analyses
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """Return the model to serve: of one revision, or the newest valid one.
+    """Return the model to serve: from one revision, or from the newest valid one.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A revision as a worksheet shows it: the steps with their formulas written out, in one system of units."""
+"""A revision as a worksheet: its steps with written-out formulas, in one system of units."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def worksheet(
 ) -> RevisionWorksheet:
     """Return a revision with `formulas`, from the inputs and at the level that its job used.
 
-    With `only` it contains only this step; without formulas none is written out.
+    With `only` it contains only that step. Unless `has_formulas`, no formulas are written out.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def previewed(
 
 
 def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System) -> PreviewedStep:
-    """Return a step in a system of units, with inputs as typed."""
+    """Return a step with formulas in a system of units; its inputs stay as typed."""
     shown = step.in_units(system)
     fields = {name: getattr(shown, name) for name in shown.model_fields_set}
     return PreviewedStep.model_validate({**fields, "inputs": step.inputs, "formulas": rows})
@@ -76,14 +76,14 @@ def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System
 def checked(step: RevisionStep, catalogue: Catalogue[Template]) -> list[Check]:
     """Return every bound and rule of a revision's step, compared with its values.
 
-    It is None if the values are unknown.
+    The list is empty if the values are unknown.
     """
     template = _calculated(step, catalogue, with_arrays=True)
     return [] if template is None else list(checks(template))
 
 
 def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: System) -> list[WorkedFormula]:
-    """Return the formulas of a revision's step; none if their values are not known."""
+    """Return the formulas of a revision's step; none if their values are unknown."""
     template = _calculated(step, catalogue)
     return [] if template is None else _formulas(template, system, step.outputs)
 
@@ -91,7 +91,7 @@ def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: Sys
 def _calculated(
     step: RevisionStep, catalogue: Catalogue[Template], *, with_arrays: bool = False
 ) -> Template | None:
-    """Return the template of a step that has results, from its record or recalculated.
+    """Return the template of a step that has results, restored from its record or recalculated.
 
     It is recalculated if the revision has no record, if the version has changed since, or if arrays are
     requested that the record omits. It is None if the step has no results, if the calculation is deferred, or
@@ -110,19 +110,19 @@ def _calculated(
 
 
 def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
-    """Return whether a team has edited its file since it calculated a step."""
+    """Return whether a team has edited the template's file since the step was calculated."""
     return is_outside(cls) and step.template.digest not in (None, identity(cls)["digest"])
 
 
 def _retyped(used: UsedInput) -> Raw:
-    """Return a used input in a form in which it can be given again."""
+    """Return a used input in the form in which a user would type it."""
     if "unit" not in used.model_fields_set:
         return used.value
     return {name: getattr(used, name) for name in used.model_fields_set if name != "source"}
 
 
 class _Question(NamedTuple):
-    """The inputs and options of a revision's step, ready to be calculated again."""
+    """The inputs and options of a revision's step, in the form needed to recalculate it."""
 
     inputs: dict[str, Raw]
     outputs: tuple[str, ...]
@@ -133,20 +133,20 @@ class _Question(NamedTuple):
         used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
         given = {name: _retyped(value) for name, value in used.items() if value.source == "given"}
         level = step.level if isinstance(step.level, str) else None
-        return cls(given, tuple(sorted(step.outputs)), level)  # as the database has them
+        return cls(given, tuple(sorted(step.outputs)), level)  # sorted, as the database stores them
 
     def key(self, cls: type[Template]) -> Hashable:
         return (_Question, fingerprint(self.inputs), self.outputs, self.level, cls)
 
 
 def remember(answer: JsonObject, evaluation: Evaluation) -> None:
-    """Cache the evaluation of an expensive step, so that its worksheet does not calculate it again."""
+    """Cache the evaluation of an expensive step, so that its worksheet need not calculate it again."""
     question = _Question.of(RevisionStep.model_validate(answer))
     cache.keep(question.key(type(evaluation.template)), evaluation)
 
 
 def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:
-    """Return the formulas written out, from the cache if the values are equal."""
+    """Return the formulas written out; cached by the template's values."""
     key = _values_of(template)
     if key is None:
         return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
@@ -160,23 +160,20 @@ def _formulas(template: Template, system: System, names: Collection[str]) -> lis
     return written
 
 
-_written: LRUCache[Hashable, list[WorkedFormula]] = LRUCache(256)  # steps of some 40 kB each
+_written: LRUCache[Hashable, list[WorkedFormula]] = LRUCache(256)  # formulas of steps, about 40 kB each
 _writing = Lock()
 
 
 def _values_of(template: Template) -> Hashable | None:
-    """Return the single values of the template, which determine its formulas.
-
-    It is None if the template has arrays.
-    """
+    """Return the single values of the template, which determine its formulas; None if it has arrays."""
     values = [vars(template).get(attribute) for attribute in template.declarations]
     if any(isinstance(value, (np.ndarray, tuple)) for value in values):
         return None
-    return tuple("none" if value != value else value for value in values)  # NaN equals nothing
+    return tuple("none" if value != value else value for value in values)  # NaN does not equal itself
 
 
 def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:
-    """Return the evaluation of a step as its job calculated it, cached because a revision never changes."""
+    """Return the evaluation of a step as its job calculated it; cached, because a revision never changes."""
     question = _Question.of(step)
     kept: Evaluation | None = cache.get(question.key(cls))
     if kept is None:

@@ -1,1 +1,1 @@
-"""Checks common to all requests: hosts, keys, sizes, times, strict parsing, problems."""
+"""Checks that apply to all requests: hosts, keys, sizes, times, strict parsing; and problem responses."""

@@ -1,11 +1,11 @@
 """Identify who sends a request: the principal, the client, and the role that the route needs.
 
-Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
-If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the
-session of a page, else the address that the request came from.
+Every request acts for the principal of its key or session. Limits and turns are counted by client. If keys
+are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the session of
+a page, else the address that the request came from.
 
 A route declares the role that it needs; without a declaration its HTTP method decides. The role is checked
-before the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several
+before the route runs. A router or a route declares a role by `dependencies=[needs("author")]`; of several
 declarations the last one counts.
 """
 
@@ -33,36 +33,38 @@ from templates.core.errors import Fault, InvalidInputs
 SIGN_IN = "crankwright_sign_in"
 """The cookie of a browser in which somebody has signed in."""
 FORM_TOKEN = "crankwright.form_token"
-"""Key of an ASGI scope: the token that forms of the session carry."""
+"""Key of an ASGI scope: the token in forms of the session."""
 HEALTH = frozenset({"/healthz", "/readyz"})
-"""Answered to anybody, whether or not the database can be reached."""
+"""Paths that answer everyone, whether or not the database can be reached."""
 STILL = "crankwright.still"
-"""Key of an ASGI scope: asks whether the key or session of the request lets in the same roles as before."""
+"""Key of an ASGI scope: a function that checks whether the key or session still has the same roles."""
 _BEARER = re.compile(rb"bearer +([!-~]{1,200})", re.IGNORECASE)
 _SIGN_IN_COOKIE = re.compile(rb"(?:^|;) *" + SIGN_IN.encode() + rb"=([A-Za-z0-9_-]{43})(?:;|$)")
-_MOST_COOKIES = 8192  # bytes that are looked at
+_MOST_COOKIES = 8192  # bytes of the header that are searched
 _ESCAPED = b"%"
 
 
 async def identify(scope: Scope) -> Principal:
-    """Return who sends a request; if it carries a key, only the key counts, valid or not.
+    """Return the principal that sends a request; if the request has a key, only the key counts, valid or not.
 
-    Where keys are asked for, the scope keeps the principal and what its session needs.
+    If keys are required, the scope keeps the principal and the form token of its session.
 
     Raises
     ------
     KeyInAddress
-        If a key stands in path or query.
+        If the path or the query contains a key.
     LimitReached
         If the principal has sent too many requests.
     DatabaseUnavailable
-        If the database cannot be asked.
+        If the database cannot be reached.
     """
     if _has_key_in_address(scope):
         raise KeyInAddress
-    services = getattr(scope["app"].state, "services", None)  # none before the start: there is no data
+    services = getattr(
+        scope["app"].state, "services", None
+    )  # before the start there are no services and no data
     door: Door | None = services and services.identity.door
-    if door is None or scope["path"] in HEALTH:  # they need no role, and say so if the database is away
+    if door is None or scope["path"] in HEALTH:  # they need no role, and report an unreachable database
         return acting()
     if await door.is_open():
         return acting()
@@ -78,14 +80,14 @@ async def identify(scope: Scope) -> Principal:
 async def _is_still(door: Door, scope: Scope, who: Principal) -> bool:
     """Return whether a request would still be admitted as the same principal.
 
-    A stream may outlive its key.
+    It is needed for streams, which may outlive their key.
     """
     guest = await _guest(door, scope)
     return guest is not None and guest.principal == who
 
 
 async def _guest(door: Door, scope: Scope) -> Guest | None:
-    """Return whom the key or the session of a request lets in."""
+    """Return the guest whom the key or session of a request identifies."""
     cookies = b""
     for name, value in scope["headers"]:
         if name == b"authorization":
@@ -98,7 +100,7 @@ async def _guest(door: Door, scope: Scope) -> Guest | None:
 
 
 def _has_key_in_address(scope: Scope) -> bool:
-    """Return whether path or query contain a key."""
+    """Return whether the path or the query contains a key."""
     query: bytes = scope["query_string"]
     if len(scope["path"]) >= LENGTH and MARK in scope["path"] and holds_key(scope["path"]):
         return True
@@ -116,7 +118,7 @@ PRINCIPAL = "crankwright.principal"
 
 
 def is_session(text: str) -> bool:
-    """Return whether a cookie's value can be a session of a page."""
+    """Return whether a cookie's value has the form of a page's session."""
     return _SESSION.fullmatch(text) is not None
 
 
@@ -142,7 +144,7 @@ async def get_client(request: Request) -> str:
 
 
 def from_whom(scope: Scope) -> str:
-    """Return the client of a request like `get_client`; an invalid name is ignored."""
+    """Return the client of a request as `get_client` does, but ignore an invalid name."""
     if (who := scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
     headers = Headers(scope=scope)
@@ -163,13 +165,16 @@ OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})
 
 @dataclass(frozen=True)
 class Needs:
-    """The roles of which a caller needs one; without any, who has signed in, or anybody if `is_public`."""
+    """The roles that a route needs, one of which is enough.
+
+    Without roles, anyone who has signed in may use the route, or everyone if `is_public`.
+    """
 
     roles: tuple[Role, ...]
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route; `RoleGuard` has read the declaration."""
+        """Do nothing when called as a dependency; `RoleGuard` reads this declaration instead."""
 
     def check(self) -> None:
         """Check the role of the acting principal.
@@ -197,7 +202,7 @@ VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
 
 
 def needs(*roles: Role) -> params.Depends:
-    """Declare that a route needs one of these roles; without roles it only needs a signed-in sender."""
+    """Declare that a route needs one of these roles; without roles the sender only has to be signed in."""
     return params.Depends(Needs(roles))
 
 
@@ -223,13 +228,13 @@ def _only_reads(methods: Iterable[str]) -> bool:
 
 
 class RoleGuard:
-    """A route's or a router's way to handle a request, behind the check of the role."""
+    """A handler of a route or router that checks the role first."""
 
     def __init__(self, handle: ASGIApp, needed: Needs) -> None:
         self.handle, self.needed = handle, needed
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check, then handle."""
+        """Check the role, then handle the request."""
         self.needed.check()
         await self.handle(scope, receive, send)
 

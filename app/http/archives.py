@@ -1,4 +1,4 @@
-"""ZIP files written while they are sent: one file at a time is in memory; equal files give equal bytes."""
+"""Write ZIP files while they are sent: only one file is in memory at a time; equal files give equal bytes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import zipfile
 from collections.abc import Callable, Iterable, Iterator
 
 MEDIA_TYPE = "application/zip"
-DATE = (1980, 1, 1, 0, 0, 0)  # the first that a ZIP can hold, of every file
-_UNIX, _READABLE = 3, 0o100644 << 16  # made by, and who may read it
+DATE = (1980, 1, 1, 0, 0, 0)  # date of every file: the earliest that a ZIP can store
+_UNIX, _READABLE = 3, 0o100644 << 16  # creating system, permissions of each file
 
 Member = tuple[str, Callable[[], bytes]]
 """A file of a ZIP: its name, and what reads it."""
@@ -50,7 +50,7 @@ def _about(name: str) -> zipfile.ZipInfo:
 
 
 def distinct(names: Iterable[str]) -> list[str]:
-    """Return file names that differ on every file system; later duplicates get a number."""
+    """Return file names that are distinct on every file system; later duplicates get a number."""
     used, result = set[str](), list[str]()
     for name in names:
         stem, _, kind = name.rpartition(".")

@@ -1,4 +1,4 @@
-"""Downloads: the file name, whether the client already has the file, and bytes sent as a file."""
+"""Headers and responses of downloads: the file name, the ETag, and bytes sent as a file."""
 
 from __future__ import annotations
 
@@ -24,42 +24,42 @@ def disposition(plain: str, wide: str, how: str = "attachment") -> str:
 
 
 def named(design: str, revision: int, kind: str, how: str) -> str:
-    """Return the Content-Disposition of a file about a whole design: `{design}_r{revision}.{kind}`."""
+    """Return the Content-Disposition of a file for a whole design: `{design}_r{revision}.{kind}`."""
     tail = f"_r{revision}.{kind}"
     return disposition(plain_name(design) + tail, wide_name(design) + tail, how)
 
 
 def tag(file: bytes) -> str:
-    """Return a strong ETag: equal bytes have equal tags."""
+    """Return a strong ETag; equal bytes have equal tags."""
     return f'"{hashlib.sha256(file).hexdigest()}"'
 
 
 def is_at_hand(if_none_match: str | None, etag: str) -> bool:
-    """Return whether the client already has a file, by the ETags that it sent."""
+    """Return whether the client already has a file, judged by the ETags that the client sent."""
     tags = (one.strip().removeprefix("W/") for one in (if_none_match or "").split(","))
     return any(one in (etag, "*") for one in tags)
 
 
 def unchanged(headers: Mapping[str, str]) -> Response:
-    """Return 304 with the headers of a 200, except those about its body."""
+    """Return a 304 response with the headers of a 200, except those that describe its body."""
     kept = {name: value for name, value in headers.items() if name != "Content-Disposition"}
     return Response(status_code=304, headers=kept)
 
 
 def http_time(date: str) -> str:
-    """Return a time in UTC (ISO 8601, without a zone) in the format of HTTP."""
+    """Return a UTC time (ISO 8601, without a zone) in the format of HTTP."""
     return format_datetime(datetime.fromisoformat(date).replace(tzinfo=UTC), usegmt=True)
 
 
 class MemoryFile(FileResponse):
-    """Bytes in memory, sent as a file is: whole or in ranges."""
+    """Bytes in memory that are sent like a file, whole or in ranges."""
 
     def __init__(self, content: bytes, media_type: str, headers: Mapping[str, str]) -> None:
         super().__init__("", media_type=media_type, headers=headers)
         self._content = content
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send the content of an unnamed file, which is deleted when it is closed."""
+        """Send the content from an unnamed temporary file, which is deleted when it is closed."""
         with tempfile.TemporaryFile() as file:
             file.write(self._content)
             file.flush()

@@ -5,7 +5,7 @@ accepts headers of any length, and copies all of them again whenever another pie
 
 If the request target is more than a path, such as `GET http://evil.example/healthz`, uvicorn drops its host
 and serves the path, although RFC 9112 gives that host priority over the header `Host`. No client of this
-service sends such a target: the protocol marks the request, and the guard refuses it.
+service sends such a target, so the protocol marks the request, and the guard refuses it.
 """
 
 from __future__ import annotations
@@ -30,24 +30,24 @@ _NO_PATH = "crankwright.target"
 """Name of an extension in an ASGI scope whose target is no mere path."""
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
-_DEAD = 60.0  # how much longer than a slow reader a silent machine is waited for [s]
+_DEAD = 60.0  # extra time for a silent machine, compared with a slow reader [s]
 _USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
 
 
 @dataclass(frozen=True)
 class ConnectionLimits:
-    """Limits that one server sets to the connections of its clients.
+    """Limits that one server sets on the connections of its clients.
 
     Parameters
     ----------
     count
-        Connections at the same time.
+        Largest number of simultaneous connections.
     header_seconds
         Longest time from the first byte of a request to the end of its head [s].
     write_seconds
-        Longest time in which a client reads less than `rate` asks for [s].
+        Longest time in which a client may read more slowly than `rate` [s].
     rate
-        What a client must read on average [bytes/s].
+        Lowest average rate at which a client must read [bytes/s].
     """
 
     count: int
@@ -57,7 +57,10 @@ class ConnectionLimits:
 
 
 class TimedProtocol(HttpToolsProtocol):
-    """One connection. `limits` and `busy`, which answers beyond their count, are set by `protocol`."""
+    """One connection with its limits; `busy` answers connections beyond the limit.
+
+    `protocol` sets `limits` and `busy`.
+    """
 
     limits: ConnectionLimits
     busy: ASGIApp
@@ -65,12 +68,10 @@ class TimedProtocol(HttpToolsProtocol):
     _head_timer: asyncio.TimerHandle | None = None
     _write_timer: asyncio.TimerHandle | None = None
     _in_head = False
-    _pending = (
-        0  # bytes since the parser understood something: of a head, of a chunk's extension, of a trailer
-    )
+    _pending = 0  # unparsed bytes so far: of a head, a chunk extension or a trailer
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Begin to wait for the first request."""
+        """Start to wait for the first request."""
         super().connection_made(transport)
         self._drop_dead_peer()
         surplus = len(self.connections) - self.limits.count
@@ -82,23 +83,25 @@ class TimedProtocol(HttpToolsProtocol):
         self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _drop_dead_peer(self) -> None:
-        """Let the kernel close the connection of a dead machine, which the pings of a stream reveal."""
+        """Let the kernel close the connection of a dead machine, which does not acknowledge pings."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
-            milliseconds = int(1000 * (self.limits.write_seconds + _DEAD))  # a slow reader is judged before
+            milliseconds = int(
+                1000 * (self.limits.write_seconds + _DEAD)
+            )  # later than the check of slow readers
             sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the timers."""
+        """Cancel the timers."""
         for timer in (self._head_timer, self._write_timer):
             if timer is not None:
                 timer.cancel()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Parse data; while no answer is being sent, it must become a complete request in time.
+        """Parse data; unless an answer is being sent, the data must become a complete request in time.
 
-        This also holds for the rest of a body whose head was refused.
+        This also applies to the rest of a body after its head was refused.
         """
         before = self.cycle
         is_idle = before is None or before.response_complete
@@ -120,24 +123,24 @@ class TimedProtocol(HttpToolsProtocol):
         """Suppress a warning: upgrades are ignored, as HTTP permits."""
 
     def on_message_begin(self) -> None:
-        """Note the start of a request; the parser calls this at its first byte."""
+        """Record the start of a request; the parser calls this at its first byte."""
         self._in_head = True
         super().on_message_begin()
 
     def on_headers_complete(self) -> None:
-        """Note the end of a head; the parser calls this."""
+        """Record the end of a request's head; the parser calls this."""
         self._in_head, self._pending = False, 0
         if not self.url.startswith(b"/"):
             self.scope["extensions"] = {_NO_PATH: {}}
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
-        """Receive a piece of a body; the parser calls this for each."""
+        """Receive a piece of a body; the parser calls this for each piece."""
         self._pending = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Note the end of a request; the parser calls this."""
+        """Record the end of a request; the parser calls this."""
         self._pending = 0
         self.scope[WHOLE] = True  # type: ignore[literal-required]
         super().on_message_complete()
@@ -160,7 +163,7 @@ class TimedProtocol(HttpToolsProtocol):
         self._write_problem(status, about)
 
     def _write_problem(self, status: int, about: JsonObject) -> None:
-        """Answer without the application, and close."""
+        """Send a problem without the application, and close the connection."""
         if self.transport.is_closing():
             return
         id_ = logs.new_id()
@@ -193,7 +196,7 @@ class TimedProtocol(HttpToolsProtocol):
         self._write_timer = self.loop.call_later(self.limits.write_seconds, self._judge_reader, left)
 
     def _judge_reader(self, before: int) -> None:
-        """Close the connection unless its client has read enough in the meantime."""
+        """Close the connection unless its client has read enough since the last check."""
         read = before - self.transport.get_write_buffer_size()
         if read < self.limits.rate * self.limits.write_seconds:
             self._reset_on_close()
@@ -203,7 +206,7 @@ class TimedProtocol(HttpToolsProtocol):
 
     def _cut(self, why: str) -> None:
         metrics.CUT.labels(why).inc()
-        if self.cycle is not None:  # else it might write before it learns of the loss
+        if self.cycle is not None:  # otherwise it might write before it notices the loss
             self.cycle.disconnected = True
         self.transport.abort()
 
@@ -215,7 +218,7 @@ class TimedProtocol(HttpToolsProtocol):
 
 
 def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
-    """Return the protocol for a server with these limits; `busy` answers connections beyond their maximum."""
+    """Return the protocol class for a server with these limits; `busy` answers excess connections."""
     return type("Protocol", (TimedProtocol,), {"limits": limits, "busy": staticmethod(busy)})
 
 

@@ -1,9 +1,9 @@
-"""The gate: one layer that every request passes before the search for its route.
+"""The gate: one layer that every request passes before its route is looked up.
 
 It refuses requests that another site may have made a browser send (`guard`), requests that are too large or
-too slow (`limits`), and invalid keys where keys are required (`access`). It also answers unexpected errors,
-and requests that are cancelled when the service ends. Only uvicorn cancels requests: those that still run at
-the end of the drain time.
+too slow (`limits`), and invalid keys if keys are required (`access`). It also answers unexpected errors, and
+requests that are cancelled when the service ends. Only uvicorn cancels requests: those still running at the
+end of the drain time.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ Unexpected = Callable[[Request, Exception], Awaitable[Response]]
 
 
 class Gate:
-    """ASGI middleware with all checks that need no route.
+    """ASGI middleware with all checks that do not depend on the route.
 
     Parameters
     ----------
     app
         The application.
     hosts
-        The hosts that it answers to.
+        The hosts whose requests it accepts.
     body
         Limits on the body.
     refuse
-        Makes the answer to a refused request.
+        Function that returns the response to a refused request.
     unexpected
-        Makes the answer to an error that nobody expects; without it there is none.
+        Function that returns the response to an unexpected error; without it, the gate sends none.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Gate:
         self.refuse, self.unexpected = refuse, unexpected
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse, or pass on as the principal that sends the request; add the headers to what is answered."""
+        """Refuse a request, or pass it on as its principal; add the headers to the response."""
         if scope["type"] != "http":
             await self._passed(scope, receive, send)
             return
@@ -90,7 +90,7 @@ class Gate:
             ACTING.reset(token)
 
     async def _passed(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is no request of HTTP; refuse a WebSocket of another site."""
+        """Pass on whatever is not an HTTP request; refuse a WebSocket from another site."""
         if scope["type"] == "websocket":
             try:
                 guard.check(scope, self.hosts)
@@ -101,7 +101,7 @@ class Gate:
 
 
 class _Answer:
-    """The `send` of a request: it adds the headers that every answer carries."""
+    """The `send` of a request, which adds the headers that every response has."""
 
     __slots__ = ("_send", "has_begun")
 
@@ -116,9 +116,9 @@ class _Answer:
 
 
 def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refusal], Response]) -> None:
-    """Put the gate around all of an app, its middleware and its answers to errors.
+    """Put the gate around the whole app, including its middleware and its responses to errors.
 
-    It stands in the place of Starlette's layer for unexpected errors, which would be inside.
+    It replaces Starlette's layer for unexpected errors, which would be inside the gate.
     """
 
     def built() -> ASGIApp:

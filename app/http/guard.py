@@ -1,8 +1,8 @@
 """The guard stops other sites from reading, writing or framing pages.
 
-Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
+It applies three rules before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
-1. The header `Host` names a host that the service answers to.
+1. The header `Host` names a host of this service.
 2. A request that changes something must come from the service's own pages, or from no page at all. Other
    sites may link to a page; they may not load anything from here.
 3. Every answer forbids sniffing, framing and reading by other origins.
@@ -23,8 +23,13 @@ from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
 logger = logging.getLogger(__name__)
 
 SAFE = {"GET", "HEAD", "OPTIONS"}
-OWN = {b"same-origin", b"none"}  # of Sec-Fetch-Site: our own pages, and what the user typed
-SCHEMES = {"http": "http", "https": "https", "ws": "http", "wss": "https"}  # of connection: of its page
+OWN = {b"same-origin", b"none"}  # Sec-Fetch-Site of our own pages, and of typed addresses
+SCHEMES = {
+    "http": "http",
+    "https": "https",
+    "ws": "http",
+    "wss": "https",
+}  # scheme of a connection: scheme of its page
 POLICY = "default-src 'none'; frame-ancestors 'none'"
 PAGE_POLICY = (
     "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
@@ -49,7 +54,7 @@ class BadHost(HttpError):
 
 
 class HostNotAllowed(HttpError):
-    """The service does not answer to the host that the request names."""
+    """The request names a host that is not one of this service."""
 
 
 class CrossSite(HttpError):
@@ -60,7 +65,7 @@ _NAMES = frozenset(name for name, _ in HEADERS)
 
 
 def protected(given: Iterable[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    """Return the headers of an answer, with those of every answer that it does not have."""
+    """Return the headers of a response, plus the protective headers that it lacks."""
     headers = list(given)
     own = _NAMES.intersection([name.lower() for name, _ in headers])
     return [*headers, *(HEADERS if not own else (pair for pair in HEADERS if pair[0] not in own))]
@@ -74,7 +79,7 @@ def check(scope: Scope, hosts: Hosts) -> None:
     BadHost, HostNotAllowed
         If the host is not a name of this service.
     CrossSite
-        If it comes from another site and is not a plain link.
+        If the request comes from another site and is not a plain link.
     """
     try:
         _check(scope, hosts)
@@ -86,11 +91,11 @@ def check(scope: Scope, hosts: Hosts) -> None:
 def _check(scope: Scope, hosts: Hosts) -> None:
     looked = _looked_at(scope["headers"])
     scheme = SCHEMES[scope["scheme"]]
-    server = scope.get("server")  # a list, where a server of a test passes it on
+    server = scope.get("server")  # some test servers pass a list
     asked = _allowed(hosts, _host(looked, scope), scheme, server and tuple(server))
     if scope.get("method") in SAFE:
         _check_link(looked)
-        if b"upgrade" in looked:  # a WebSocket: browsers let pages of any site try one
+        if b"upgrade" in looked:  # browsers let pages of any site open a WebSocket
             _check_origin(looked, asked, scheme, hosts)
     else:
         _check_site(looked)
@@ -106,7 +111,7 @@ def _looked_at(headers: Iterable[tuple[bytes, bytes]]) -> Looked:
 
 
 def _host(looked: Looked, scope: Scope) -> bytes:
-    """Return the header that names the host."""
+    """Return the host that the request's header names."""
     given = looked.get(b"host", [])
     if len(given) != 1:
         raise BadHost(f"send exactly one header Host; there are {len(given)}")
@@ -121,9 +126,9 @@ def _no_host(given: bytes) -> str:
     return f"the header Host holds no host with or without a port: {_shown(given)}"
 
 
-@lru_cache(maxsize=1024)  # of short headers only; an error is not kept
+@lru_cache(maxsize=1024)  # only for short headers; errors are not cached
 def _allowed(hosts: Hosts, given: bytes, scheme: str, server: tuple[str, int | None] | None) -> Authority:
-    """Return the host that a request names, to which the service answers."""
+    """Return the host that a request names, if it is one of this service."""
     asked = parse(given.decode("latin-1"))
     if asked is None:
         raise BadHost(_no_host(given))
@@ -146,14 +151,14 @@ def _check_site(looked: Looked) -> None:
 
 
 def _check_link(looked: Looked) -> None:
-    """Allow links from other sites to a page, and refuse all their other requests."""
+    """Allow links from other sites to a page, and refuse all other requests from those sites."""
     modes, places = looked.get(b"sec-fetch-mode", ()), looked.get(b"sec-fetch-dest", ())
     if any(mode != b"navigate" for mode in modes) or any(place != b"document" for place in places):
         _check_site(looked)
 
 
 def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -> None:
-    """Refuse requests of pages from another origin; a client that is not a browser sends no Origin."""
+    """Refuse requests from pages of another origin; a client that is not a browser sends no Origin."""
     for origin in looked.get(b"origin", ()):
         if not _is_own(origin.decode("latin-1"), asked, scheme, hosts):
             raise CrossSite(
@@ -163,7 +168,7 @@ def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -
 
 
 def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
-    """Return whether an origin is that of the service's own pages, for the requested host."""
+    """Return whether an origin is that of the service's own pages under the requested host."""
     kind, _, rest = origin.partition("://")
     source = parse(rest)
     if source is None or kind not in ("http", "https"):
@@ -175,5 +180,5 @@ def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
 
 
 def _shown(value: bytes) -> str:
-    """Return a text of the client in a form that is safe in a message."""
+    """Return a text from the client in a form that is safe in a message."""
     return ascii(value[:LONGEST].decode("latin-1"))

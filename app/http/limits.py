@@ -1,8 +1,8 @@
 """Limits on every request: the sizes of head and body, and the speed of the body.
 
-FastAPI reads the cookies of every request by a function of the standard library whose time is quadratic in
-the length of a quoted cookie; none of ours is quoted, so quoted ones are dropped. FastAPI's own limit on
-bodies answers in plain text, not with a problem.
+FastAPI parses the cookies of every request by a function of the standard library whose time is quadratic in
+the length of a quoted cookie. The service sets no quoted cookies, so quoted ones are dropped. FastAPI's own
+limit on bodies answers in plain text, not with a problem.
 """
 
 from __future__ import annotations
@@ -18,41 +18,41 @@ from starlette.types import Message, Receive, Scope
 from app.http.connections import LONGEST_HEAD, WHOLE
 from app.http.strict_requests import HttpError
 
-MOST_HEADERS, MOST_FIELDS = 200, 1000  # headers, and fields in the address
+MOST_HEADERS, MOST_FIELDS = 200, 1000  # headers and query fields
 
 
 class HeadTooLarge(HttpError):
-    """The address and the headers are longer than the service takes."""
+    """The address and the headers are longer than the service accepts."""
 
 
 class BodyTooLarge(HttpError):
-    """The body is larger than the service takes."""
+    """The body is larger than the service accepts."""
 
 
 class BodyTooSlow(HttpError):
-    """The body comes more slowly than the service waits for."""
+    """The body arrives more slowly than the service allows."""
 
-    headers = {"Connection": "close"}  # what is left of the body may never come
+    headers = {"Connection": "close"}  # the rest of the body may never arrive
 
 
 class ServiceStopping(HttpError):
-    """The service stops before the answer to a request is ready."""
+    """The service stops before the response to a request is ready."""
 
-    headers = {"Retry-After": "5"}  # until the service is back, if it is started again [s]
+    headers = {"Retry-After": "5"}  # until a restarted service is ready [s]
 
 
 @dataclass(frozen=True)
 class BodyLimits:
-    """Limits on the body of a request, beside those on its head.
+    """Limits on the body of a request, in addition to those on its head.
 
     Parameters
     ----------
     size
         Largest body [bytes].
     seconds
-        Longest wait for the next piece of a body [s], and what the whole may take beside its size.
+        Longest wait for the next piece of a body [s], also added to the time that the size and `rate` allow.
     rate
-        What a body must bring on average [bytes/s].
+        Lowest average rate at which a body must arrive [bytes/s].
     """
 
     size: int
@@ -60,12 +60,12 @@ class BodyLimits:
     rate: float
 
     def admit(self, scope: Scope, receive: Receive) -> Receive:
-        """Return a `receive` that raises BodyTooLarge and BodyTooSlow; drop quoted cookies.
+        """Return a `receive` that raises BodyTooLarge and BodyTooSlow; drop quoted cookies from the request.
 
         Raises
         ------
         HeadTooLarge, BodyTooLarge
-            If the head, or the stated length of the body, is beyond the limits.
+            If the head, or the stated length of the body, exceeds the limits.
         """
         headers = dict(scope["headers"])
         length = headers.get(b"content-length", b"0")
@@ -77,7 +77,7 @@ class BodyLimits:
         return self._counted(receive) if length == b"0" else receive
 
     def _check(self, scope: Scope, length: bytes) -> None:
-        """Refuse a head or a stated length beyond the limits."""
+        """Refuse a head or a stated length that exceeds the limits."""
         headers, query = scope["headers"], scope["query_string"]
         size = sum(map(len, chain.from_iterable(headers))) + len(query) + len(scope.get("raw_path") or b"")
         if size > LONGEST_HEAD:
@@ -94,7 +94,7 @@ class BodyLimits:
         return BodyTooLarge(f"a body may have at most {self.size / 2**20:g} MiB")
 
     def _counted(self, receive: Receive) -> Receive:
-        """Raise once a body of unknown length exceeds the limit."""
+        """Return a `receive` that raises an error once a body of unknown length exceeds the limit."""
         size = 0
 
         async def counted() -> Message:
@@ -108,7 +108,7 @@ class BodyLimits:
         return counted
 
     def _timed(self, receive: Receive) -> Receive:
-        """Time only the waiting for the client, not the time in which the service is busy."""
+        """Return a `receive` that measures only the waiting for the client, not the service's own work."""
         waited, size, whole = 0.0, 0, False
 
         async def timed() -> Message:
@@ -132,7 +132,7 @@ class BodyLimits:
     def _too_slow(self, size: int) -> BodyTooSlow:
         pause, rate = self.seconds, self.rate
         wanted = f"it may pause for {pause:g} s and must bring {rate:g} bytes/s on average"
-        return BodyTooSlow(f"the body comes too slowly ({size} bytes came): {wanted}")
+        return BodyTooSlow(f"the body arrives too slowly ({size} bytes so far): {wanted}")
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:

@@ -1,10 +1,10 @@
 """The OpenAPI document at /openapi.json, corrected to match the service, and its page /docs.
 
-FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of a
-path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2. Some parts are written in the form that client generators understand.
-Problems that follow from an operation's parameters and body are added here too; a route declares only its
-own.
+FastAPI derives the document from the routes. Four points are corrected here: a parameter of a path, query or
+header cannot be null; a change needs If-Match; a name that does not fit the pattern of names is refused;
+`itemSchema` belongs to OpenAPI 3.2. Some parts are rewritten in a form that client generators understand.
+The problems that follow from an operation's parameters and body are added here too; a route declares only the
+others.
 
 FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
 """
@@ -30,8 +30,8 @@ REFERENCE = "#/components/schemas/{model}"
 def operation_id(route: APIRoute) -> str:
     """Return the name of an operation in a generated client.
 
-    Examples are `evaluate_template` and `show_report_of_revision_as`. It is the name of the route's function,
-    with a suffix if the function serves several paths.
+    It is the name of the route's function, such as `evaluate_template`, with a suffix if the function serves
+    several paths, such as `show_report_of_revision_as`.
     """
     if not route.name.endswith(("_report", "_worksheet", "_file", "show_variant", "show_variants")):
         return route.name
@@ -40,9 +40,9 @@ def operation_id(route: APIRoute) -> str:
 
 
 def include(app: FastAPI, router: APIRouter) -> None:
-    """Serve the routes of a router as routes of the app itself, with the app's responses and names.
+    """Add the routes of a router to the app itself, with the app's responses and names.
 
-    FastAPI keeps an included router as a whole, and searches it twice for each request.
+    FastAPI would keep an included router as a whole, and search it twice for each request.
     """
     for route in router.routes:
         if isinstance(route, APIRoute):
@@ -78,7 +78,7 @@ def _operations(described: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]
 
 
 def _name_bodies(operation: dict[str, Any], schemas: dict[str, Any]) -> None:
-    """Give an inline object of an operation its own name, from which generators create one class."""
+    """Name the inline objects of an operation, so that generators create one class for each."""
     for content in operation.get("requestBody", {}).get("content", {}).values():
         schema = content["schema"]
         if schema.get("type") == "object" and "title" in schema:
@@ -103,7 +103,7 @@ def _drop_nulls(operation: dict[str, Any]) -> None:
 
 
 def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
-    """Declare If-Match: PATCH and PUT need it, and every route compares it."""
+    """Declare If-Match: PATCH and PUT need it, and every other route compares it if it is sent."""
     matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
     if not matching:
         return
@@ -113,7 +113,7 @@ def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
 
 
 def _declare_problems(operation: dict[str, Any]) -> None:
-    """Declare the refusals of every operation that has a body or a parameter, or uses stored rows."""
+    """Declare the problems of every operation that has a body or a parameter, or uses stored rows."""
     if "requestBody" in operation:
         _refused(operation, 408, 413, 415, 422)
     if operation.get("parameters"):
@@ -171,9 +171,9 @@ def install(app: FastAPI) -> None:
 
 
 def policy(page: bytes) -> str:
-    """Return the policy of a page with inline scripts.
+    """Return the content security policy of a page with inline scripts.
 
-    Only inline scripts and content from this service are allowed.
+    It allows only these inline scripts and content from this service.
     """
     digests = (b64encode(hashlib.sha256(script).digest()).decode() for script in _INLINE.findall(page))
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests)

@@ -1,7 +1,7 @@
 """Transfer large bodies and large answers in pieces, one piece per turn of the event loop.
 
-Otherwise each of twenty simultaneous uploads would transfer a piece in every turn, and a short request would
-wait for all of them several times.
+Without this, each of twenty simultaneous uploads would transfer a piece in every turn, and a short request
+would wait for all of them several times.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from app.workers.pieces import Pieces
 
 
 class Pace:
-    """Lets those who move a large thing take turns; nobody holds a turn while it waits for a client."""
+    """Lets large transfers take turns; a transfer holds no turn while it waits for its client."""
 
     def __init__(self) -> None:
         self._turn = asyncio.Lock()
@@ -28,7 +28,7 @@ class Pace:
 
 
 class PiecesResponse(Response):
-    """An answer that is sent in pieces, each when the client has read most of those before."""
+    """A response that is sent in pieces, each after the client has read most of the previous ones."""
 
     def __init__(self, pieces: Pieces, pace: Pace, media_type: str = "application/json") -> None:
         length: Mapping[str, str] = {"Content-Length": str(len(pieces))}

@@ -10,7 +10,7 @@ from fastapi import Query
 from app.schemas.answers import Answer, Page
 
 T = TypeVar("T")
-Pages = TypeVar("Pages", bound=Page[Any])  # of whatever items: a page is invariant in them
+Pages = TypeVar("Pages", bound=Page[Any])  # a page of any items; the type is invariant
 
 Limit = Annotated[int, Query(ge=1, le=500, description="items in one page")]
 Cursor = Annotated[str | None, Query(max_length=200, description="`next` of the page before")]
@@ -19,7 +19,10 @@ Cursor = Annotated[str | None, Query(max_length=200, description="`next` of the 
 def page(
     kind: type[Pages], rows: Sequence[T], limit: int, show: Callable[[T], Answer], cursor: Callable[[T], str]
 ) -> Pages:
-    """Return one page from rows; one row more than `limit` was read to see if there are more."""
+    """Return one page from rows.
+
+    The caller read one row more than `limit`, which shows whether another page follows.
+    """
     items = rows[:limit]
     following = cursor(items[-1]) if len(rows) > limit else None
     return kind(items=[show(row) for row in items], next=following)
@@ -28,7 +31,7 @@ def page(
 def page_of(
     kind: type[Pages], everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Answer]
 ) -> Pages:
-    """Return one page of a short list that is completely known; the cursor is a position in it."""
+    """Return one page of a short list that is completely in memory; the cursor is a position in it."""
     start = int(after) if after and after.isdecimal() and len(after) < 9 else 0
     following = str(start + limit) if start + limit < len(everything) else None
     return kind(items=[show(row) for row in everything[start : start + limit]], next=following)

@@ -1,4 +1,4 @@
-"""Path parameters that are ids, beside fixed words of the same path, such as `/worksheets/check`."""
+"""Path parameters that are ids, as distinct from fixed words in the same place as `/worksheets/check`."""
 
 from __future__ import annotations
 

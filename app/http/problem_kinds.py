@@ -1,6 +1,6 @@
-"""The kinds of problems, and the table that maps errors to them; the domains know nothing of HTTP.
+"""The kinds of problems, and the table that maps errors to them; the domains do not depend on HTTP.
 
-A kind names its `type`, `/problems/<slug>`, its status, title and remedy.
+A kind has a `type`, `/problems/<slug>`, a status, a title and a remedy.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from templates.library.tables import UnknownTable
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of problem: its name in the type's link, its status, its title, and what to do."""
+    """A kind of problem: the last part of its `type`, its status, its title, and the remedy."""
 
     slug: str
     status: int
@@ -53,7 +53,9 @@ class Kind:
     remedy: str
 
 
-INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "correct each of `errors`; nothing was saved")
+INVALID = Kind(
+    "invalid-inputs", 422, "Some inputs are wrong", "correct each entry of `errors`; nothing was saved"
+)
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
 CANCELLED = Kind("cancelled", 409, "The work was cancelled", "send the change again")
 
@@ -71,28 +73,34 @@ TABLE: dict[type[Exception], Kind] = {
         "unreleased",
         404,
         "The version is a draft",
-        "release the worksheet first; until then only previews and `evaluate` take it",
+        "release the worksheet first; until then only previews and `evaluate` accept it",
     ),
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     UnknownTable: Kind("unknown-table", 404, "No such table", "GET /api/v1/library lists them"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
-    templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
-    storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
+    templates.TemplateError: Kind("refused", 422, "The calculation refuses these values", "see `detail`"),
+    storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what exists"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
     designs.DesignReleased: Kind(
-        "design-released", 409, "A released revision keeps its design", "archive the design instead"
+        "design-released",
+        409,
+        "A design with a released revision cannot be deleted",
+        "archive the design instead",
     ),
     approvals.Unacknowledged: Kind(
         "acknowledgement",
         409,
-        "What is said of unconfirmed criteria is missing, or needless",
-        "send `acknowledged` where the approvals list `unconfirmed`",
+        "The statement on unconfirmed criteria is missing, or not needed",
+        "send `acknowledged` only if the approvals list `unconfirmed` criteria",
     ),
     approvals.NotReady: Kind(
-        "not-ready-to-sign", 409, "The revision cannot be signed as it is", "see `detail`"
+        "not-ready-to-sign", 409, "The revision cannot be signed in its present state", "see `detail`"
     ),
     approvals.OutOfOrder: Kind(
-        "step-out-of-order", 409, "Another step is due", "calculated → checked → released; see `detail`"
+        "step-out-of-order",
+        409,
+        "Another step must be taken first",
+        "calculated → checked → released; see `detail`",
     ),
     approvals.SamePrincipal: Kind(
         "same-principal", 409, "Another principal has to act", "let somebody else take this step"
@@ -108,39 +116,47 @@ TABLE: dict[type[Exception], Kind] = {
         "own-review", 403, "Authors do not review their own worksheets", "let another person review it"
     ),
     worksheets.OtherText: Kind(
-        "other-text", 409, "The review is of another text", "read the worksheet again, then review it"
+        "other-text", 409, "The review refers to another text", "read the worksheet again, then review it"
     ),
     worksheets.TestsFailed: Kind(
-        "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
+        "tests-failed", 409, "The worksheet is not sound", "correct each entry of `errors`"
     ),
     worksheets.UnresolvedRegions: Kind(
-        "unresolved-import", 409, "Regions of the import are unresolved", "rewrite or remove each of `errors`"
+        "unresolved-import",
+        409,
+        "Regions of the import are unresolved",
+        "rewrite or remove each region in `errors`",
     ),
     worksheets.OutOfOrder: Kind(
         "out-of-order", 409, "The worksheet is in another state", "draft → test → review → release → withdraw"
     ),
-    storage.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
+    storage.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "send a new key"),
     designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
     NotSheet: Kind(
-        "not-sheet", 415, "The media type is that of no file", "send the file as application/octet-stream"
+        "not-sheet", 415, "The media type is not one of a file", "send the file as application/octet-stream"
     ),
     NotModel: Kind(
         "not-model",
         415,
-        "The media type is that of no model",
+        "The media type is not one of a model",
         "send the file as application/octet-stream",
     ),
     NotStep: Kind("not-step", 415, "The media type is not that of STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
-    BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
+    BadHost: Kind(
+        "bad-host",
+        400,
+        "The request names no host",
+        "send exactly one header Host, and only a path as the target",
+    ),
     HostNotAllowed: Kind(
         "host-not-allowed",
         421,
         "The service does not answer to this host",
-        "ask by localhost or the address it listens on, or ask the operator to set CRANKWRIGHT_ALLOWED_HOSTS",
+        "use localhost or the address it listens on, or ask the operator to set CRANKWRIGHT_ALLOWED_HOSTS",
     ),
     CrossSite: Kind(
         "cross-site",
@@ -150,11 +166,13 @@ TABLE: dict[type[Exception], Kind] = {
     ),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
-    TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
-    NoArray: Kind("no-array", 406, "The answer is not an array", "ask for application/json; see `detail`"),
-    TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
+    TooIntricate: Kind("body-too-intricate", 413, "The body is too complex", "send less at once"),
+    NoArray: Kind("no-array", 406, "The answer is not an array", "accept application/json; see `detail`"),
+    TooManyValues: Kind("too-many-values", 413, "Too many values", "request fewer points or outputs"),
     ServiceStopping: Kind("stopping", 503, "The service is stopping", "send the request again once it runs"),
-    BodyTooSlow: Kind("too-slow", 408, "The request arrives too slowly", "send it faster, or in parts"),
+    BodyTooSlow: Kind(
+        "too-slow", 408, "The request arrives too slowly", "send it faster, or split it into smaller requests"
+    ),
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     identity.NotSignedIn: Kind(
         "not-signed-in", 401, "A key is needed", "send `Authorization: Bearer cw_…`, or sign in at /sign-in"
@@ -172,22 +190,24 @@ TABLE: dict[type[Exception], Kind] = {
         "Your limit is used up",
         "retry after the time in Retry-After; without it, ask an administrator",
     ),
-    identity.Outlives: Kind("outlives-key", 403, "The key would live too long", "ask for a shorter life"),
+    identity.Outlives: Kind(
+        "outlives-key", 403, "The key would be valid for too long", "choose a shorter lifetime"
+    ),
     identity.TooManyKeys: Kind("too-many-keys", 409, "There are too many keys", "use or revoke an old one"),
-    ProviderRefused: Kind("provider-refused", 403, "The sign-in failed", "begin again, or sign in by a key"),
+    ProviderRefused: Kind(
+        "provider-refused", 403, "The sign-in failed", "start again, or sign in with a key"
+    ),
     identity.FirstByCommand: Kind(
-        "first-by-command", 409, "There are no keys yet", "the operator makes the first one; see `detail`"
+        "first-by-command", 409, "There are no keys yet", "the operator creates the first one; see `detail`"
     ),
     identity.NameTaken: Kind("name-taken", 409, "The name is taken", "choose another name"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
-    jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
-    jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
-    jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
+    jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "there is nothing left to cancel"),
+    jobs.JobShared: Kind("job-shared", 409, "Other clients wait for the job", "let it finish"),
+    jobs.QueueFull: Kind("queue-full", 429, "The queue is full", "retry after the time in Retry-After"),
     jobs.JobLost: Kind("lost", 422, "The work was lost", "simplify the model; ask the operator"),
-    Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
-    storage.ArtifactMissing: Kind(
-        "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
-    ),
+    Unprintable: Kind("unprintable", 422, "The report is too long for paper", "request text/html"),
+    storage.ArtifactMissing: Kind("no-such-artifact", 404, "No such artifact", "use a hash from a revision"),
     storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is rebuilt"),
     storage.ArtifactsUnreachable: Kind(
         "files-unreachable", 503, "The file store does not answer", "retry after the time in Retry-After"
@@ -196,7 +216,7 @@ TABLE: dict[type[Exception], Kind] = {
         "database-damaged", 503, "The database is damaged", "the operator restores a backup; see `detail`"
     ),
     CannotRebuild: Kind(
-        "artifact-gone", 410, "The file is lost", "see `detail` for why, and for what is left"
+        "artifact-gone", 410, "The file is lost", "see `detail` for the reason and the remaining data"
     ),
     RowsLost: REBUILDING,
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
@@ -214,7 +234,10 @@ TABLE: dict[type[Exception], Kind] = {
         "geometry", 422, "These values give no sound solid", "change the parameters in `errors`"
     ),
     AnalysisError: Kind(
-        "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
+        "analysis",
+        422,
+        "The solid could not be analysed",
+        "see `errors`; add fillets or accept less accuracy",
     ),
     SheetNotRead: Kind("unreadable-sheet", 422, "The file cannot be read as a Mathcad sheet", "see `detail`"),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
@@ -222,7 +245,7 @@ TABLE: dict[type[Exception], Kind] = {
     workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
     workers.JobCrashed: Kind("crashed", 422, "The process crashed", "change the inputs"),
     workers.JobCancelled: CANCELLED,
-    ClientDisconnect: CANCELLED,  # while its body came: nobody reads this
+    ClientDisconnect: CANCELLED,  # left while sending its body, so nobody reads this
 }
 HTTP = {
     404: Kind("no-such-path", 404, "No such path", "GET /openapi.json lists all paths"),
@@ -234,7 +257,7 @@ BEFORE_HTTP = (
     CROWDED,
     Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
 )
-"""Problems that `app.http.connections` answers before there is a request."""
+"""Problems that `app.http.connections` sends before there is a request."""
 
 
 SLUGS = {
@@ -245,5 +268,5 @@ SLUGS = {
 
 
 def kind_of(error: Exception) -> Kind:
-    """Return the kind of problem of an error: that of its nearest class in the table."""
+    """Return the kind of problem for an error: that of its nearest base class in the table."""
     return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)

@@ -1,6 +1,6 @@
-"""Turn errors into RFC 9457 problems, by the table of `app.http.problem_kinds`.
+"""Convert errors to RFC 9457 problems, by the table of `app.http.problem_kinds`.
 
-A problem's `type` is a relative link, `/problems/<slug>`, which answers with its meaning and remedy.
+A problem's `type` is a relative link, `/problems/<slug>`, to a page with its meaning and remedy.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from templates.core import errors as templates
 
 logger = logging.getLogger(__name__)
 
-LONGEST_PLACE = 200  # characters of where in a body something is wrong; its names come from the client
+LONGEST_PLACE = 200  # characters of a fault's location in a body; the client chose the names in it
 
 
 def describe(error: Exception) -> JsonObject:
-    """Return an error as a problem (RFC 9457), with all its data."""
+    """Return an error as a problem (RFC 9457) with all data of the error."""
     kind = kind_of(error)
     detail = kind.remedy if kind is INTERNAL else _detail(error)
     carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
@@ -46,9 +46,9 @@ def describe(error: Exception) -> JsonObject:
 
 
 def _detail(error: Exception) -> str:
-    """Return the text of an error. FastAPI's own text would quote the whole body.
+    """Return the text of an error.
 
-    `_validation` replaces it.
+    FastAPI's own text would quote the whole body, so `_validation` replaces it.
     """
     return "" if isinstance(error, RequestValidationError) else str(error)
 
@@ -145,13 +145,13 @@ def explain_problem(slug: str) -> ProblemKind:
 
 
 def answer(about: Mapping[str, Json], headers: Mapping[str, str] | None = None) -> Response:
-    """Return a problem as a response; it carries the id of the request."""
+    """Return a problem as a response, with the id of the request."""
     about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
     return ProblemResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
 
 
 class ProblemResponse(JSONResponse):
-    """A problem quotes what a client sent, but no key."""
+    """A response with a problem, which may quote what a client sent, but never a key."""
 
     def render(self, content: object) -> bytes:
         """Return the problem as JSON."""
@@ -159,7 +159,7 @@ class ProblemResponse(JSONResponse):
 
 
 def install(app: FastAPI) -> None:
-    """Let the app answer every error as a problem."""
+    """Make the app answer every error with a problem."""
     for cls in TABLE:
         app.add_exception_handler(cls, _handle)
     app.add_exception_handler(HTTPException, _handle_http)
@@ -171,7 +171,7 @@ _PASSING = (jobs.QueueFull, RowsLost, storage.ArtifactsUnreachable, storage.Data
 
 
 def refusal(error: Exception) -> Response:
-    """Return the answer to an error, with the headers that it names."""
+    """Return the response to an error, with the headers that the error states."""
     headers = getattr(error, "headers", {})
     if isinstance(error, _PASSING):
         headers = {"Retry-After": str(error.retry_after)}
@@ -212,6 +212,6 @@ def _takes(request: Request, method: str, root: str) -> bool:
     scope = {**request.scope, "method": method, "root_path": root}
     for route in request.app.router.routes:
         if route.matches(dict(scope))[0] is Match.FULL:
-            # what is mounted matches for every method; files are only read
+            # a mounted app matches every method, but files can only be read
             return method in ("GET", "HEAD") if isinstance(route, Mount) else True
     return False

@@ -1,4 +1,4 @@
-"""Check the names of query parameters: a misspelt name is refused, since the route would ignore it."""
+"""Check the names of query parameters: refuse a misspelt name, which the route would silently ignore."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def refuse_unknown(request: Request) -> None:
     Raises
     ------
     InvalidInputs
-        Naming the first few, their nearest matches, and all parameters of the route.
+        With the first few unknown names, their nearest matches, and all parameters of the route.
     """
     if not request.scope["query_string"]:
         return

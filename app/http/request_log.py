@@ -1,4 +1,4 @@
-"""Give every request an id, count and time it, and log one line for it."""
+"""Give every request an id, count and time requests, and log one line for each."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.observation import logs, metrics
 
 logger = logging.getLogger(__name__)
 
-CLIENT_LEFT = 499  # as nginx calls it: the client closed its connection before there was an answer
+CLIENT_LEFT = 499  # nginx's status for a client that disconnected before the answer
 _LONGEST = 200  # characters of a path in the log
 _METHODS = {"GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS"}
 
@@ -26,7 +26,7 @@ metrics.IN_FLIGHT.set_function(lambda: len(in_flight))
 
 
 class RequestLog:
-    """ASGI middleware; the outermost, so that refusals are seen as well."""
+    """ASGI middleware, installed outermost so that it also sees refused requests."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -50,7 +50,9 @@ class RequestLog:
         async def observed(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
-                status = CLIENT_LEFT if is_gone else message["status"]  # nobody gets this answer
+                status = (
+                    CLIENT_LEFT if is_gone else message["status"]
+                )  # the client will not receive this answer
                 message["headers"] = [*message.get("headers", ()), header]
                 metrics.REQUESTS.add(route_of(scope), method_of(scope), status, time.perf_counter() - start)
             await send(message)
@@ -66,7 +68,7 @@ class RequestLog:
 
 
 def what_is_in_flight() -> list[str]:
-    """Return the requests that are being answered, each in a few words."""
+    """Return a short description of each request that is being answered."""
     now = time.perf_counter()
     return [
         f"{method} {path[:_LONGEST]} for {now - start:.1f} s [{id_}]"
@@ -75,13 +77,13 @@ def what_is_in_flight() -> list[str]:
 
 
 def install(app: FastAPI) -> None:
-    """Wrap all of an app, including its answer to an unexpected error."""
-    build = app.build_middleware_stack  # `add_middleware` would leave Starlette's handler of those outside
+    """Wrap the whole app, including its response to an unexpected error."""
+    build = app.build_middleware_stack  # with `add_middleware`, Starlette's error handler would stay outside
     app.build_middleware_stack = lambda: RequestLog(build())  # type: ignore[method-assign]
 
 
 def route_of(scope: Scope) -> str:
-    """Return the path template of the route, of which there are few; never the path itself."""
+    """Return the path template of the route, never the path itself; the number of templates is small."""
     route = scope.get("route")
     if route is not None:
         return route.path  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""Record every request as a span. Imported only if traces are on, see `app.observation.traces`."""
+"""Record every request as a span; imported only if traces are on, see `app.observation.traces`."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _TRACEPARENT = re.compile(rb"[0-9a-f]{2}-[0-9a-f]{32}-[0-9a-f]{16}-[0-9a-f]{2}")
 
 
 class RequestSpans:
-    """ASGI middleware: a span with route, method, status and the id of the request, and nothing of its query.
+    """ASGI middleware that records a span with route, method, status and id of a request, without its query.
 
-    It continues the trace of the caller: a proxy's `traceparent`, or that of the page for which the service
-    asks itself.
+    The span continues the trace of the caller: the `traceparent` of a proxy, or the trace of the page for
+    which the service calls itself.
     """
 
     def __init__(self, app: ASGIApp, traces: Traces) -> None:
         self.app, self.traces = app, traces
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on within the span."""
+        """Pass the request on within a span."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -53,13 +53,13 @@ class RequestSpans:
 
 
 def install(app: FastAPI, traces: Traces) -> None:
-    """Wrap all of an app; other observers must be installed outside."""
+    """Wrap the whole app; other observers must be installed outside."""
     build = app.build_middleware_stack
     app.build_middleware_stack = lambda: RequestSpans(build(), traces)  # type: ignore[method-assign]
 
 
 def _of_caller(scope: Scope) -> str:
-    """Return the context that a caller sends, if it is well-formed."""
+    """Return the trace context that a caller sends, if it is well-formed."""
     for name, value in scope["headers"]:
         if name == b"traceparent" and _TRACEPARENT.fullmatch(value):
             return str(value.decode())

@@ -2,9 +2,9 @@
 
 SIGTERM and SIGINT start the shutdown. Requests in flight have most of the drain time to finish; then jobs are
 put back into the queue and all rows are committed. If the process still hangs, a thread kills it; if that
-thread cannot run because something holds the interpreter lock, the interpreter's own watchdog does. A second
-signal ends the process at once. The process exits without Python's own clean-up, which would wait for threads
-and run the destructors of the geometry kernel.
+thread cannot run because other code holds the interpreter lock, the interpreter's own watchdog kills it. A
+second signal ends the process at once. The process exits without Python's own clean-up, which would wait for
+threads and run the destructors of the geometry kernel.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _IDLE = ("threading.py", "queue.py", "selectors.py", "thread.py", "connection.py
 
 
 def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> uvicorn.Config:
-    """Return uvicorn's configuration with the service's limits, on the port of the settings or on another."""
+    """Return uvicorn's configuration with the service's limits; the port overrides that of the settings."""
     limits = ConnectionLimits(
         settings.connections,
         settings.header_seconds,
@@ -59,40 +59,40 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
         http=protocol(limits, RequestLog(_busy)),
         ws="none",
         timeout_keep_alive=settings.keep_alive_seconds,
-        timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # waits parts of seconds too
+        timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # fractions of a second work too
         log_config=None,
         access_log=False,
     )
 
 
 async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
-    """Answer a request on a connection beyond the limit."""
+    """Return the response to a request on a connection beyond the limit."""
     about = problems.problem(CROWDED, "too many connections are open; close some, or try again")
     await problems.answer(about, {"Retry-After": "5", "Connection": "close"})(scope, receive, send)
 
 
 def run(app: FastAPI, settings: Settings) -> NoReturn:
-    """Serve until a signal arrives; never return."""
+    """Run the server until a signal arrives; this function never returns."""
     flush = logs.configure(settings.log_level, settings.log_format)
     answer_promptly()
     server = Server(configuration(app, settings), settings.drain_seconds, flush)
     try:
         server.run()
-    finally:  # it has left already, unless it could not start
+    finally:  # reached only if the server could not start
         flush()
     sys.exit(0 if server.started else STARTUP_FAILURE)
 
 
 class Server(uvicorn.Server):
-    """uvicorn's server with a limit on the time of its end [s]; `flush` writes the last lines of the log."""
+    """uvicorn's server with a time limit on its shutdown [s]; `flush` writes the last lines of the log."""
 
     def __init__(self, config: uvicorn.Config, drain_seconds: float, flush: Callable[[], object]) -> None:
         super().__init__(config)
         self.drain_seconds, self.flush = drain_seconds, flush
         self._is_signalled = False
-        # An `Event` would not do: a second signal may come while the handler of the first holds its lock.
+        # Not an `Event`: a second signal may arrive while the handler of the first holds its lock.
         self._signals: SimpleQueue[int] = SimpleQueue()
-        # Made now, because a signal may come while the main thread holds the lock with which threads start.
+        # Started now, because a signal may arrive while the main thread holds the lock for starting threads.
         threading.Thread(target=self._guard, name="end", daemon=True).start()
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
@@ -103,11 +103,11 @@ class Server(uvicorn.Server):
         faulthandler.dump_traceback_later(self.drain_seconds + 1, exit=True)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Answer requests in flight, end the lifespan, and exit if a signal was the cause."""
+        """Answer requests in flight, end the lifespan, and exit if a signal started the shutdown."""
         await super().shutdown(sockets)
         if self._is_signalled:
             if running := what_runs():
-                logger.warning("stopped in order, but cut: %s", "; ".join(running))
+                logger.warning("shut down in order, but ended: %s", "; ".join(running))
             self._leave(0)
 
     def _guard(self) -> None:
@@ -128,20 +128,20 @@ class Server(uvicorn.Server):
     def _leave(self, code: int) -> NoReturn:
         """Kill the child processes, write the log, and end this process."""
         family.kill()
-        writer = threading.Thread(target=self.flush, daemon=True)  # standard error may take nothing any more
+        writer = threading.Thread(target=self.flush, daemon=True)  # standard error may be blocked
         writer.start()
         writer.join(1.0)
         os._exit(code)
 
 
 def what_runs() -> list[str]:
-    """Return the running requests, threads and processes."""
+    """Return a description of the running requests, threads and processes."""
     count = family.use().count
     return [*what_is_in_flight(), *_busy_threads(), *([f"{count} processes"] if count else [])]
 
 
 def _busy_threads() -> list[str]:
-    """Return the threads that are working, not waiting for work, and their positions in the code."""
+    """Return the threads that are not waiting for work, and their positions in the code."""
     frames, busy = sys._current_frames(), []
     for thread in threading.enumerate():
         frame = frames.get(thread.ident or 0)
@@ -155,15 +155,15 @@ def _busy_threads() -> list[str]:
 
 @contextmanager
 def on_stop_signal(act: Callable[[], None]) -> Iterator[None]:
-    """Act on SIGINT and SIGTERM before the server does; for use within its lifespan."""
-    if threading.current_thread() is not threading.main_thread():  # a server in a thread gets no signals
+    """Call a function on SIGINT and SIGTERM before the server reacts; for use within its lifespan."""
+    if threading.current_thread() is not threading.main_thread():  # a server in a thread receives no signals
         yield
         return
     loop = asyncio.get_running_loop()
     previous = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
 
     def close(number: int, frame: FrameType | None) -> None:
-        loop.call_soon_threadsafe(act)  # not here: a handler may interrupt who holds the lock
+        loop.call_soon_threadsafe(act)  # deferred, because a signal may interrupt the holder of a lock
         handler = previous[signal.Signals(number)]
         if callable(handler):
             handler(number, frame)

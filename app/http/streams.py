@@ -1,4 +1,4 @@
-"""Limits on open event streams: each holds memory and a connection until its client closes it."""
+"""Limits on open event streams, each of which holds memory and a connection until its client closes it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from app.http.strict_requests import HttpError
 
 
 class TooManyStreams(HttpError):
-    """The client, or all clients together, have as many streams open as there may be."""
+    """The client, or all clients together, have the maximum number of streams open."""
 
     headers = {"Retry-After": "5"}
 
 
 class Streams:
-    """The open streams, by client."""
+    """The number of open streams of each client."""
 
     def __init__(self, most: int, most_of_client: int) -> None:
         self.most, self.most_of_client = most, most_of_client
@@ -23,7 +23,7 @@ class Streams:
         self._lock = threading.Lock()
 
     def enter(self, client: str) -> None:
-        """Count a stream of a client.
+        """Count an opened stream of a client.
 
         Raises
         ------
@@ -38,7 +38,7 @@ class Streams:
             self.open[client] += 1
 
     def leave(self, client: str) -> None:
-        """Forget a stream."""
+        """Count a closed stream of a client."""
         with self._lock:
             self.open[client] -= 1
             if not self.open[client]:

@@ -1,7 +1,7 @@
 """Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
-`StrictRoute` replaces FastAPI's lenient parsing of bodies: pydantic's parser refuses lone surrogates and deep
-nesting, and a missing or wrong content type is refused. `PlainRoute` reads just as strictly, and calls its
+`StrictRoute` replaces FastAPI's lenient parsing of bodies: Pydantic's parser refuses lone surrogates and deep
+nesting, and a missing or wrong content type is refused. `PlainRoute` parses just as strictly, and calls its
 endpoint without FastAPI's machinery.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Container, Coroutine, Iterator, Mapping
 from itertools import islice
 from json import JSONDecodeError
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.types import Receive, Scope, Send
 
 from app.http.openapi import operation_id
@@ -50,19 +51,19 @@ MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 
 
 class HttpError(Exception):
-    """A request that is refused before its meaning is looked at."""
+    """A request that is refused for its form, before its meaning is examined."""
 
 
 class TooIntricate(HttpError):
-    """The body nests or names more than any design or table does."""
+    """The body has more nesting or more names than any design or table needs."""
 
 
 class NotJson(HttpError):
-    """The content type is not one that the path takes."""
+    """The content type is not one that the path accepts."""
 
 
 class NotForm(HttpError):
-    """The content type is not that of a form."""
+    """The content type is not that of an HTML form."""
 
 
 class NotCsv(HttpError):
@@ -74,15 +75,15 @@ class NotStep(HttpError):
 
 
 class NotSheet(HttpError):
-    """The content type is not one under which a sheet of Mathcad is sent."""
+    """The content type is not one that is accepted for a Mathcad sheet."""
 
 
 class NotModel(HttpError):
-    """The content type is not one under which a model is sent."""
+    """The content type is not one that is accepted for a model."""
 
 
 class PreconditionRequired(HttpError):
-    """A change without If-Match."""
+    """A change was sent without If-Match."""
 
 
 class StrictRequest(Request):
@@ -90,17 +91,22 @@ class StrictRequest(Request):
 
     @property
     def pace(self) -> Pace:
-        """Return the pace of all large bodies and answers of the app."""
+        """Return the pace that all large bodies and answers of the app share."""
         return self.app.state.pace  # type: ignore[no-any-return]
 
     async def parts(self) -> tuple[bytes, ...]:
-        """Return the body as received."""
+        """Return the pieces of the body as received."""
         if not hasattr(self, "_parts"):
-            self._parts = tuple([part async for part in self._received()])
+            parts: list[bytes] = []
+            await self._receive_all(parts.append)
+            self._parts = tuple(parts)
         return self._parts
 
     async def body(self) -> bytes:
-        """Return the body as one object; joining a large one holds the interpreter lock, see `parts`."""
+        """Return the body as one object.
+
+        Joining the pieces of a large body holds the interpreter lock; `parts` avoids that.
+        """
         if not hasattr(self, "_body"):
             parts = await self.parts()
             self._body = parts[0] if len(parts) == 1 else b"".join(parts)
@@ -108,14 +114,25 @@ class StrictRequest(Request):
 
     async def discard(self) -> None:
         """Receive and discard the body, because a client that is still sending may not read an answer yet."""
-        async for _ in self._received():
-            pass
+        await self._receive_all()
 
-    async def _received(self) -> AsyncIterator[bytes]:
-        size = 0
-        async for part in self.stream():
-            if part:
-                yield part
+    async def _receive_all(self, take: Callable[[bytes], object] | None = None) -> None:
+        """Receive the body and give each piece to a function, if there is one.
+
+        Raises
+        ------
+        ClientDisconnect
+            If the client leaves before the end.
+        """
+        size, is_complete = 0, False
+        while not is_complete:
+            message = await self.receive()
+            if message["type"] == "http.disconnect":
+                raise ClientDisconnect
+            part = message.get("body", b"")
+            if part and take is not None:
+                take(part)
+            is_complete = not message.get("more_body", False)
             size += len(part)
             if size > PIECE:
                 await self.pace.step()
@@ -126,7 +143,8 @@ class StrictRequest(Request):
         Raises
         ------
         JSONDecodeError
-            If it is not JSON, not UTF-8, or nested too deeply; FastAPI answers it as an invalid input.
+            If it is not JSON, not UTF-8, or nested too deeply; FastAPI answers this error as an invalid
+            input.
         """
         if not hasattr(self, "_json"):
             try:
@@ -137,18 +155,20 @@ class StrictRequest(Request):
 
 
 class StrictRoute(APIRoute):
-    """A route that checks precondition and content type, in this order, before anything else.
+    """A route that checks the precondition and the content type, in this order, before anything else.
 
-    Its answers leave out the fields that nobody has set.
+    Its responses leave out fields that were not set.
     """
 
-    def __init__(self, path: str, endpoint: Callable[..., object], **options: Any) -> None:  # as FastAPI
+    def __init__(
+        self, path: str, endpoint: Callable[..., object], **options: Any
+    ) -> None:  # signature of FastAPI
         own = {"response_model_exclude_unset": True, "generate_unique_id_function": operation_id}
         super().__init__(path, endpoint, **{**options, **own})
         self.takes = frozenset(self.methods or ())
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
-        """Return FastAPI's handler behind the checks."""
+        """Return FastAPI's handler, preceded by the checks."""
         handler = super().get_route_handler()
 
         async def strict(request: Request) -> Response:
@@ -159,7 +179,7 @@ class StrictRoute(APIRoute):
         return strict
 
     async def check(self, request: StrictRequest) -> None:
-        """Refuse formally wrong requests before their meaning is examined.
+        """Refuse requests with a wrong form, before their meaning is examined.
 
         Raises
         ------
@@ -175,7 +195,7 @@ class StrictRoute(APIRoute):
             raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
         if self.body_field is not None:
             check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
-            # here, because FastAPI answers whatever is raised in its reading with 400
+            # Read the body here, because FastAPI answers any error raised while it reads with 400.
             await self._admit(request)
             if await _check_intricacy(request) and has_nul(await request.body()):
                 refuse_nul_in(await _read(request))
@@ -188,11 +208,11 @@ class StrictRoute(APIRoute):
             raise
 
     async def admit(self, request: StrictRequest) -> None:
-        """Raise an error that follows from the head of a request, before its body arrives."""
+        """Raise an error that the head of a request implies, before its body arrives; none by default."""
 
 
 class _Parameter:
-    """A part of the path, of the query or a header, as an endpoint takes it."""
+    """A parameter of an endpoint that comes from the path, the query or a header."""
 
     def __init__(self, kind: str, field: ModelField) -> None:
         self.name, self.alias, self._place = field.name, field.alias, (kind, field.alias)
@@ -200,7 +220,7 @@ class _Parameter:
         self._is_required = field.field_info.is_required()
 
     def value(self, received: Mapping[str, str], faults: list[object]) -> object:
-        """Return the received value or its default; add its faults to the list."""
+        """Return the received value or the default; add any faults to the list."""
         if (text := received.get(self.alias)) is None:
             faults += [_missing(*self._place)] if self._is_required else ()
             return self._default
@@ -210,11 +230,11 @@ class _Parameter:
 
 
 class PlainRoute(StrictRoute):
-    """A route that reads a request and calls its endpoint by itself, for operations that are called most.
+    """A route that parses its requests and calls its endpoint itself, for the most frequent operations.
 
-    It is declared and described as any other, and refuses with the same errors. Its endpoint is a coroutine
-    that takes the request first, then path, query, headers and body, and returns a Response; it has no
-    dependencies but the role that it needs.
+    It is declared and described as any other route, and refuses requests with the same errors. Its endpoint
+    is a coroutine that takes the request first, then path, query, headers and body, and returns a Response;
+    it has no dependencies except the role that it needs.
     """
 
     def __init__(self, path: str, endpoint: Callable[..., Awaitable[Response]], **options: Json) -> None:
@@ -226,7 +246,7 @@ class PlainRoute(StrictRoute):
         self._body = declared.body_params[0].name if self.body_field else None
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Read the request, and send the answer of the endpoint."""
+        """Parse the request, and send the endpoint's response."""
         if scope["method"] not in self.takes:
             await super().handle(scope, receive, send)  # 405
             return
@@ -236,7 +256,7 @@ class PlainRoute(StrictRoute):
         await response(scope, receive, send)
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
-        """Return an answer for which the body need not be parsed here; None in general."""
+        """Return a response that does not need the parsed body; None by default."""
         return None
 
     async def _values(self, request: StrictRequest) -> dict[str, object]:
@@ -273,36 +293,36 @@ class PlainRoute(StrictRoute):
 
 
 def _missing(*place: str) -> dict[str, object]:
-    """Return the fault of something that is required and was not sent."""
+    """Return the fault for a required value that was not sent."""
     return {"type": "missing", "loc": place, "msg": "Field required", "input": None}
 
 
 def _not_json(error: JSONDecodeError) -> dict[str, object]:
-    """Return the fault of a body that is no JSON."""
+    """Return the fault for a body that is not JSON."""
     place, reason = ("body", error.pos), {"error": error.msg}
     return {"type": "json_invalid", "loc": place, "msg": "JSON decode error", "input": {}, "ctx": reason}
 
 
 async def _refreshed(request: Request) -> None:
-    """Check whether a team's files have changed."""
+    """Check whether a team's files have changed, before the request uses them."""
     services = getattr(request.app.state, "services", None)
     if services is not None:
         await services.catalogues.refresh()
 
 
 def check_type(request: Request, allowed: set[str], error: type[HttpError] = NotJson) -> None:
-    """Refuse a body that is of no allowed type.
+    """Refuse a body whose content type is not allowed.
 
     Raises
     ------
     HttpError
-        The given error, if there is a body whose type differs or is missing.
+        The given error, if there is a body whose type is missing or not allowed.
     """
     if request.headers.get("content-type") in allowed:
         return
     length = request.headers.get("content-length")
     if length in (None, "0") and "transfer-encoding" not in request.headers:
-        return  # an empty body is judged by what the route needs
+        return  # the route decides whether it accepts an empty body
     _require_type(request, allowed, error, " or ".join(sorted(allowed)))
 
 
@@ -313,40 +333,40 @@ def _require_type(request: Request, allowed: Container[str], error: type[HttpErr
 
 
 def require_step(request: Request) -> None:
-    """Refuse a body that is not declared as a STEP file; compressed ones (`+zip`) are not supported.
+    """Refuse a body that is not declared as a STEP file; compressed files (`+zip`) are not supported.
 
     Raises
     ------
     NotStep
-        If the content type differs or is missing.
+        If the content type is missing or not that of STEP.
     """
     _require_type(request, STEP_TYPES, NotStep, "the STEP file itself as model/step")
 
 
 def require_sheet(request: Request) -> None:
-    """Refuse a body that is not declared as a sheet of Mathcad.
+    """Refuse a body that is not declared as a Mathcad sheet.
 
     Raises
     ------
     NotSheet
-        If the content type differs or is missing.
+        If the content type is missing or not allowed.
     """
     _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
 
 
 def require_model(request: Request) -> None:
-    """Refuse a body that is not declared as a file of a model.
+    """Refuse a body that is not declared as the file of a model.
 
     Raises
     ------
     NotModel
-        If the content type differs or is missing.
+        If the content type is missing or not allowed.
     """
     _require_type(request, MODEL_TYPES, NotModel, "the file itself as application/octet-stream")
 
 
 async def _read(request: StrictRequest) -> object:
-    """Return the body as JSON, or nothing if it is invalid, which another check refuses."""
+    """Return the body as JSON, or nothing if it is not valid JSON, which another check refuses."""
     try:
         return await request.json()
     except JSONDecodeError:
@@ -354,14 +374,14 @@ async def _read(request: StrictRequest) -> object:
 
 
 async def _check_intricacy(request: StrictRequest) -> bool:
-    """Count the elements that make parsing expensive; a large body in pieces, so that other requests run.
+    """Check that the body has not too many nested or named parts; return whether a text may contain U+0000.
 
-    Returns whether a text may have U+0000.
+    A large body is checked in pieces, so that other requests run in between.
     """
     brackets = quotes = 0
     is_nul_possible, end = False, b""
     parts = await request.parts()
-    if len(parts) == 1 and len(parts[0]) <= MOST_BRACKETS:  # it cannot have as many
+    if len(parts) == 1 and len(parts[0]) <= MOST_BRACKETS:  # too short to have too many brackets
         return may_have_nul(parts[0])
     for number, part in enumerate(parts):
         if number:
@@ -379,7 +399,7 @@ async def _check_intricacy(request: StrictRequest) -> bool:
 
 
 async def fingerprint(request: Request) -> str:
-    """Return the SHA-256 of a request's body, including its query parameters."""
+    """Return the SHA-256 of a request's body and query parameters."""
     digest = hashlib.sha256(await request.body())
     if query := request.scope["query_string"]:
         digest.update(b"?" + query)
@@ -397,7 +417,7 @@ _JSON_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
 
 
 def refuse_nul_in_address(request: Request) -> None:
-    """Refuse an address with U+0000.
+    """Refuse an address that contains U+0000.
 
     Raises
     ------
@@ -415,7 +435,7 @@ def refuse_nul_in_address(request: Request) -> None:
 
 
 def may_have_nul(part: bytes) -> bool:
-    """Return whether a part of JSON may have U+0000 in a text."""
+    """Return whether a piece of JSON may contain a text with U+0000."""
     return _ESCAPED_NUL in part
 
 
@@ -425,7 +445,7 @@ def has_nul(body: bytes) -> bool:
 
 
 def refuse_nul_in(value: object) -> None:
-    """Refuse JSON with U+0000 in a text or a name.
+    """Refuse JSON that contains U+0000 in a text or a name.
 
     Raises
     ------
@@ -436,7 +456,7 @@ def refuse_nul_in(value: object) -> None:
 
 
 def _refuse_nul(texts: Mapping[str, str]) -> None:
-    """Refuse fields with U+0000, if there are any; each is named with its text or name."""
+    """Raise InvalidInputs if there are fields with U+0000; each is named with its text or name."""
     if texts:
         raise InvalidInputs(
             [
@@ -447,7 +467,7 @@ def _refuse_nul(texts: Mapping[str, str]) -> None:
 
 
 def _nul_position(text: str) -> str:
-    """Return line and column of the first U+0000 in a text, numbered as in editors."""
+    """Return the line and column of the first U+0000 in a text, numbered as in editors."""
     before = text[: text.index(NUL)]
     line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
     return f"line {line}, column {column}" if "\n" in text else f"character {column}"

@@ -1,1 +1,1 @@
-"""Identity: principals, keys, sessions, roles, approvals, audit and limits."""
+"""Identity: principals, keys, sessions, roles, audit and limits."""

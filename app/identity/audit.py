@@ -1,4 +1,4 @@
-"""The record of who did what: one row, written in the transaction of the change itself; and its listing."""
+"""Record who did what, in the same transaction as the change itself, and list these records."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def record(
     action
         The object's kind and the verb, such as `design.create`.
     object
-        Its path in the interface, without `/api/v1/`, such as `designs/<id>/revisions/3`.
+        The object's path in the interface, without `/api/v1/`, such as `designs/<id>/revisions/3`.
     digest
         SHA-256 of the written or signed content, if there is one.
     at
@@ -63,15 +63,15 @@ def record(
 
 @dataclass(frozen=True)
 class AuditFilter:
-    """Filter of a list of rows; a field that is None lets every row pass."""
+    """A filter of audit rows; a field that is None matches every row."""
 
-    object: str | None = None  # its path, or that of what it belongs to: designs/<id>
+    object: str | None = None  # the path of the object, or of the one it belongs to: designs/<id>
     principal: str | None = None  # id or name
-    action: str | None = None  # design.create, or all of a kind: design
+    action: str | None = None  # design.create, or design for all actions on designs
 
 
 def page(session: Session, limit: int, before: str | None, wanted: AuditFilter) -> list[AuditRow]:
-    """Return one page of rows, newest first, plus one row if there are more."""
+    """Return one page of rows, newest first, and one more row if another page follows."""
     query = select(AuditRow).where(*_conditions(wanted)).order_by(AuditRow.id.desc())
     if before:
         query = query.where(AuditRow.id < before)

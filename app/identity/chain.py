@@ -1,8 +1,7 @@
 """The hash chain of the audit: each sealed row has the next number and the hash of the previous row.
 
-A hash is the SHA-256 of a row's content, its number and the previous hash, as canonical JSON. Anybody who
-changes, removes or inserts a row must rewrite all later rows, and their hashes then differ from an exported
-hash.
+A hash is the SHA-256 of a row's content, its number and the previous hash, as canonical JSON. Anyone who
+changes, removes or inserts a row must rewrite all later rows, whose hashes then differ from an exported hash.
 """
 
 from __future__ import annotations
@@ -19,12 +18,12 @@ from app.storage.errors import DatabaseDamaged
 from app.storage.tables import AuditRow, Base, canonical_json
 from app.storage.units import Statement, Values
 
-AT_ONCE = 1000  # rows that are read together
-SOME = 100  # rows that one unit seals: others' writes wait a few milliseconds for it
-NO_NUMBER = 2**62  # no sealer comes so far: whoever writes such a number leaves room for those that follow
+AT_ONCE = 1000  # rows read in one query
+SOME = 100  # rows sealed in one transaction, which delays other writes by a few milliseconds
+NO_NUMBER = 2**62  # larger than any sealed number; an invalid number from here on does not stop the sealing
 _SAID = ("id", "at", "principal", "name", "action", "object", "digest")
 _TEXTS = (*_SAID, "previous", "hash")
-_DAMAGED = (DBAPIError, DatabaseDamaged)  # when SQLite reads a text that is none
+_DAMAGED = (DBAPIError, DatabaseDamaged)  # raised when SQLite reads a damaged text
 _ROWS = Base.metadata.tables[AuditRow.__tablename__]
 _UNSEALED = Statement(
     select(*(_ROWS.c[name] for name in _TEXTS))
@@ -46,7 +45,7 @@ _SEALED = Statement(
 
 @dataclass(frozen=True)
 class Link:
-    """The last row of a chain, or of a part of it."""
+    """The number and the hash of the last row of a chain, or of a part of it."""
 
     seq: int
     hash: str | None
@@ -58,15 +57,15 @@ START = Link(0, None)
 
 @dataclass(frozen=True)
 class ChainCheck:
-    """The result of a walk along the chain."""
+    """The result of verifying the chain."""
 
     head: Link  # the last sound row
     unsealed: int  # rows that have not been sealed yet
-    fault: str = ""  # what is wrong with the first broken row, or with the head that was looked for
+    fault: str = ""  # fault of the first broken row, or of the exported hash
 
 
 def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
-    """Return the hash of a row at a place in the chain."""
+    """Return the hash of a row, given its number and the previous hash."""
     return _hash(_said(row), seq, previous)
 
 
@@ -81,8 +80,8 @@ def _hash(row: Mapping[str, object], seq: int, previous: str | None) -> str:
 
 
 def head(session: Session) -> Link:
-    """Return the newest sealed row; a row whose number was replaced by an invalid one is skipped."""
-    is_number = cast(AuditRow.seq, BigInteger) == AuditRow.seq  # SQLite keeps what somebody wrote: 2.5 or 'x'
+    """Return the newest sealed row, ignoring rows with an invalid number."""
+    is_number = cast(AuditRow.seq, BigInteger) == AuditRow.seq  # SQLite would store even 2.5 or 'x'
     numbered = select(AuditRow.seq).where(AuditRow.seq < NO_NUMBER, is_number)
     seq = session.scalar(numbered.order_by(AuditRow.seq.desc()).limit(1))
     if seq is None:
@@ -102,8 +101,8 @@ def verify(session: Session, exported: str | None = None) -> ChainCheck:
     session
         A snapshot of the database.
     exported
-        A hash that was recorded earlier, which must match a row: a chain that was truncated or completely
-        rewritten is consistent in itself.
+        A hash that was recorded earlier and must match a row, because a chain that was truncated or
+        completely rewritten is consistent in itself.
     """
     unsealed = session.scalar(select(func.count()).where(AuditRow.seq.is_(None))) or 0
     last, met = START, exported is None
@@ -122,13 +121,13 @@ def verify(session: Session, exported: str | None = None) -> ChainCheck:
 
 
 def _sealed(session: Session) -> Iterator[AuditRow]:
-    """Yield the sealed rows in their order, a page at a time."""
+    """Yield the sealed rows in order, read one page at a time."""
     last = -(2**63)
     while True:
         query = select(AuditRow).where(AuditRow.seq > last).order_by(AuditRow.seq).limit(AT_ONCE)
         try:
             page = list(session.scalars(query))
-        except _DAMAGED:  # one of them is not text: those before it, one by one
+        except _DAMAGED:  # one value is not text: return the rows before it one by one
             page = list(session.scalars(query.limit(1)))
         if not page:
             return
@@ -140,7 +139,7 @@ def _sealed(session: Session) -> Iterator[AuditRow]:
 
 
 def _fault(row: AuditRow, last: Link) -> str:
-    """Return the fault of a row that follows a sound row; empty without a fault."""
+    """Return the fault of a row that follows a sound row; empty if the row is sound."""
     seq, name = row.seq, f"row {row.seq} ({row.action} of {row.object} by {row.name}, {row.at})"
     if not isinstance(seq, int):
         return f"{name} was changed: its number is none"
@@ -162,7 +161,7 @@ def _is_text(row: AuditRow) -> bool:
 
 
 def waiting(session: Session) -> list[AuditRow]:
-    """Return the oldest unsealed rows, without those whose values are not text, which `verify` names."""
+    """Return the oldest unsealed rows, except rows with values that are not text, which `verify` reports."""
     query = select(AuditRow).where(AuditRow.seq.is_(None)).order_by(AuditRow.id).limit(SOME)
     try:
         rows = list(session.scalars(query))
@@ -179,7 +178,7 @@ def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
 
 
 def _unsealed(session: Session) -> list[dict[str, object]]:
-    """Return the contents of the rows of `waiting`, without the ORM unless a row is damaged."""
+    """Return the contents of the rows for `waiting`; the ORM reads them only if a row is damaged."""
     session.flush()
     try:
         rows = _UNSEALED.run(session, {"most": SOME})
@@ -190,7 +189,7 @@ def _unsealed(session: Session) -> list[dict[str, object]]:
 
 
 def seal(session: Session) -> int:
-    """Number and chain waiting rows in a unit of work; return their number."""
+    """Number and chain waiting rows in a unit of work; return how many were sealed."""
     last, sealed = head(session), list[Values]()
     for row in _unsealed(session):
         before, last = last, Link(last.seq + 1, _hash(row, last.seq + 1, last.hash))

@@ -1,7 +1,7 @@
-"""Identify the sender of a request: by its key, or by the session of a browser.
+"""Identify the sender of a request by its key, or by the session of a browser.
 
 Before the first principal exists, every sender is LOCAL; from then on every request needs a key. A verified
-key is trusted for `FRESH` seconds, so a revoked key may work that long on another server.
+key is trusted for `FRESH` seconds, so a key revoked on one server may work that long on another.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from app.settings import Settings
 from app.storage.database import Database
 
 FRESH = 2.0  # s
-_KEEP = 10.0  # between two writings of how many requests there were [s]
-_MOST = 4096  # keys and sessions that are remembered
+_KEEP = 10.0  # time between two writes of the request counts [s]
+_MOST = 4096  # cached keys and sessions
 _NO_PREFIX = ""
 
 
@@ -39,7 +39,7 @@ class Door:
         self.forget()
 
     def forget(self) -> None:
-        """Verify every key and session again after a change."""
+        """Empty the cache after a change, so that every key and session is verified again."""
         self._by_key: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
         self._asked_at = -FRESH
 
@@ -63,25 +63,25 @@ class Door:
         return await self._guest(digest(key), lambda: self._holder(key))
 
     async def by_session(self, token: str) -> Guest | None:
-        """Return the guest who signed in with the session of this cookie; None if it is not valid."""
+        """Return the guest who signed in with this session cookie; None if the session is not valid."""
         hash = digest(token)
         return await self._guest(hash, lambda: self._signed_in(hash))
 
     def count(self, guest: Guest) -> None:
-        """Count a request.
+        """Count a request of a principal.
 
         Raises
         ------
         LimitReached
-            If there were too many.
+            If the principal has sent too many requests.
         """
         limits = limits_of(self._settings, guest.limits)
         self._rate.take(guest.principal, limits.requests_per_minute)
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
-        """Return the guest of this hash, from the cache or from `find`.
+        """Return the guest for this hash, from the cache or from `find`.
 
-        It is stored in the cache that existed before the search.
+        The result goes into the cache that existed before the search, so that `forget` also discards it.
         """
         cache = self._by_key
         if (guest := cache.get(hash)) is not None:
@@ -93,7 +93,7 @@ class Door:
         return guest
 
     async def _keep_counts(self) -> None:
-        """Store the number of requests now and then."""
+        """Store the request counts from time to time."""
         if (present := time.monotonic()) - self._kept_at >= _KEEP:
             self._kept_at = present
             await asyncio.to_thread(self._note, self._rate.counted())
@@ -118,29 +118,29 @@ class Door:
             return rows.signed_in(session, hash)
 
 
-_MOST_PRINCIPALS = 10_000  # principals that are remembered
+_MOST_PRINCIPALS = 10_000  # principals with a bucket
 
 
 class Rate:
-    """The buckets of all principals; it belongs to the event loop.
+    """A token bucket for each principal; only the event loop uses it.
 
-    `counts` is what was let through since it was taken last, by principal.
+    `counts` is the number of admitted requests of each principal since the last call of `counted`.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._buckets: LRUCache[str, tuple[float, float]] = LRUCache(
             _MOST_PRINCIPALS
-        )  # tokens, and when there were
+        )  # tokens left, and the time of that count
         self._counts: Counter[str] = Counter()
 
     def take(self, who: Principal, per_minute: float) -> None:
-        """Take a request from the bucket.
+        """Take one request from the principal's bucket.
 
         Raises
         ------
         LimitReached
-            The bucket is empty.
+            If the bucket is empty.
         """
         present = self._clock()
         left, at = self._buckets.get(who.id, (per_minute, present))
@@ -153,6 +153,6 @@ class Rate:
         self._counts[who.id] += 1
 
     def counted(self) -> Counter[str]:
-        """Return the requests let through since the last call."""
+        """Return the number of admitted requests of each principal since the last call."""
         counts, self._counts = self._counts, Counter()
         return counts

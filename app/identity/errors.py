@@ -1,4 +1,4 @@
-"""Errors of identity: a request is refused because of its sender."""
+"""Errors of identity: the service refuses a request because of its sender."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from app.identity.principal import Principal
 
 
 class IdentityError(Exception):
-    """A request that is refused because of who sends it."""
+    """Base class of errors that refuse a request because of its sender."""
 
     headers: dict[str, str] = {}
 
 
 class NotSignedIn(IdentityError):
-    """No key or session came, or one that is not valid; the answer does not say which."""
+    """The request has no valid key or session; the answer does not say whether it had an invalid one."""
 
     headers = {"WWW-Authenticate": "Bearer"}
 
     def __init__(self) -> None:
         super().__init__(
             "send a valid key in the header Authorization, as `Bearer cw_…`, or sign in at /sign-in; "
-            "the operator makes keys by `crankwright keys add`"
+            "the operator creates keys by `crankwright keys add`"
         )
 
 
 class RoleNeeded(IdentityError):
-    """The roles of whoever asks do not include the one that is needed."""
+    """The principal lacks the role that the request needs."""
 
     def __init__(self, who: Principal, roles: Iterable[str]) -> None:
         own = ", ".join(sorted(who.roles)) or "none"
@@ -34,39 +34,39 @@ class RoleNeeded(IdentityError):
 
 
 class NotOwn(IdentityError):
-    """Only the principal to whom it belongs, or an administrator, may do this."""
+    """Only the owner or an administrator may do this."""
 
 
 class KeyInAddress(IdentityError):
-    """The address contains a key, and logs and histories on the way keep addresses."""
+    """The address contains a key, which proxies' logs and browsers' histories would keep."""
 
     def __init__(self) -> None:
         super().__init__(
-            "a key stands in the address, where logs and histories keep it: revoke that key, and send the "
+            "the address contains a key, which logs and histories keep: revoke that key, and send the "
             "next one in the header Authorization, as `Bearer cw_…`"
         )
 
 
 class Outlives(IdentityError):
-    """A key would be valid for longer than the one that makes it."""
+    """The new key would be valid for longer than the key that creates it."""
 
     def __init__(self, latest: str) -> None:
         super().__init__(
-            f"a key ends at the latest with the one that makes it, {latest}: ask for less, or leave the life "
-            "away; an administrator makes one that lives longer"
+            f"a key ends at the latest with the key that creates it, {latest}: choose a shorter lifetime, or "
+            "omit it; an administrator can create a key that is valid for longer"
         )
 
 
 class TooManyKeys(IdentityError):
-    """A principal has as many keys as it may have."""
+    """The principal has the maximum number of keys."""
 
 
 class FirstByCommand(IdentityError):
-    """The first principal would lock everybody out who has no key."""
+    """The first principal would lock out everyone without a key, so only the command line may add it."""
 
     def __init__(self) -> None:
         super().__init__(
-            "this service asks for no keys yet; the operator adds the first principal, with a key, by "
+            "this service requires no keys yet; the operator adds the first principal, with a key, by "
             "`crankwright keys add NAME --role admin`"
         )
 
@@ -75,4 +75,4 @@ class NameTaken(IdentityError):
     """Another principal has this name."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(f"there is a principal {name!r} already; choose another name")
+        super().__init__(f"there is already a principal {name!r}; choose another name")

@@ -1,7 +1,7 @@
 """Keys of the interface: `cw_<prefix>_<secret>`. The database stores only their SHA-256.
 
-A secret has 256 random bits, so a fast hash is enough. A slow one protects only secrets that can be guessed,
-and would let anybody keep the server busy.
+A secret has 256 random bits, so a fast hash is sufficient. A slow hash only protects secrets that can be
+guessed, and would let anyone keep the server busy.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ NO_HASH = "0" * 64
 
 @dataclass(frozen=True)
 class NewKey:
-    """A key that has just been made; `text` is shown once and never stored."""
+    """A newly created key; `text` is shown once and never stored."""
 
     prefix: str
     text: str
@@ -34,7 +34,7 @@ class NewKey:
 
 
 def new_key() -> NewKey:
-    """Make a key."""
+    """Return a new random key."""
     prefix = "".join(secrets.choice(_LETTERS) for _ in range(PREFIX))
     secret = secrets.token_urlsafe(_BYTES)
     assert len(secret) == SECRET
@@ -47,7 +47,7 @@ def digest(text: str) -> str:
 
 
 def is_same(text: str, stored: str) -> bool:
-    """Return whether a text has a stored hash, in constant time."""
+    """Return whether a text has a given stored hash; the comparison takes constant time."""
     return hmac.compare_digest(digest(text), stored)
 
 

@@ -1,4 +1,4 @@
-"""Limits of a principal: those of the settings, or its own where they differ."""
+"""Limits of a principal: those of the settings, unless the principal has its own."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ class Limits:
     Parameters
     ----------
     requests_per_minute
-        Of one server [1/min].
+        Requests to one server [1/min].
     storage_mb
-        What it was the first to have stored: files of builds, surfaces of analyses, imported files, tables
-        and rows of studies, texts of worksheets. Deleted ones stay counted. Documents of designs, and answers
-        of jobs, which are kept for some days, do not count [MiB].
+        Content that the principal was the first to store: files of builds, surfaces of analyses, imported
+        files, tables and rows of studies, texts of worksheets. Deleted content still counts. Documents of
+        designs, and answers of jobs, which are kept for some days, do not count [MiB].
     calculation_seconds
-        Run time of its jobs on one day in UTC [s].
+        Run time of its jobs per day in UTC [s].
     queued_jobs
-        Jobs that wait at the same time.
+        Largest number of waiting jobs.
     """
 
     requests_per_minute: float
@@ -39,7 +39,7 @@ NAMES = tuple(field.name for field in fields(Limits))
 
 
 def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
-    """Return the limits of a principal, with its own values where its row has them."""
+    """Return the limits of a principal: its own values where it has them, else those of the settings."""
     general = {
         "requests_per_minute": settings.principal_rate,
         "storage_mb": settings.principal_storage_mb,
@@ -53,7 +53,7 @@ def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
 
 
 class LimitReached(IdentityError):
-    """A principal has used all that it may; `retry_after` says when there is more, if ever [s]."""
+    """A principal has reached a limit; `retry_after` is the time until it is reset [s], or None."""
 
     def __init__(self, what: str, retry_after: int | None) -> None:
         super().__init__(f"{what}; an administrator may raise the limit")
@@ -61,7 +61,7 @@ class LimitReached(IdentityError):
 
 
 def today() -> str:
-    """Return the present day in UTC, in the format of the rows of usage."""
+    """Return the present day in UTC, as text in the format of the usage rows."""
     return datetime.now(UTC).date().isoformat()
 
 

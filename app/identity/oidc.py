@@ -1,8 +1,7 @@
-"""Signing in by an OpenID provider: authorization code with state, nonce and PKCE.
+"""Sign in through an OpenID provider: authorization code with state, nonce and PKCE.
 
-OpenID Connect Core 1.0, section 3.1, and RFC 7636.
-
-It needs the extra `team`, whose packages are imported where they are used.
+The protocol is OpenID Connect Core 1.0, section 3.1, and RFC 7636. It needs the extra `team`, whose packages
+are imported where they are used.
 """
 
 from __future__ import annotations
@@ -22,18 +21,18 @@ from app.settings import Settings
 
 DISCOVERY = "/.well-known/openid-configuration"
 SIGNED_BY = ["RS256", "PS256", "ES256", "EdDSA"]
-_PATIENCE = 10.0  # for an answer of the provider [s]
+_PATIENCE = 10.0  # longest wait for the provider [s]
 _BYTES = 32
 _LONGEST_NAME = 90  # characters
 
 
 class ProviderRefused(IdentityError):
-    """The provider did not say who signs in, or not in a way that can be trusted."""
+    """The provider did not identify the person, or its statement cannot be trusted."""
 
 
 @dataclass(frozen=True)
 class Begun:
-    """A sign-in that has begun: what the browser keeps until the provider sends it back."""
+    """A sign-in that has begun: the values that the browser keeps until the provider redirects it back."""
 
     state: str
     nonce: str
@@ -41,21 +40,21 @@ class Begun:
 
     @property
     def challenge(self) -> str:
-        """Return the hash of the verifier that the provider receives (RFC 7636, S256)."""
+        """Return the hash of the verifier to send to the provider (RFC 7636, S256)."""
         hashed = hashlib.sha256(self.verifier.encode()).digest()
         return base64.urlsafe_b64encode(hashed).rstrip(b"=").decode()
 
 
 @dataclass(frozen=True)
 class Person:
-    """The person who the provider says has signed in; `subject` names them for ever, with the provider."""
+    """A person who has signed in, as the provider states; the provider and `subject` identify them."""
 
     subject: str
     name: str
 
 
 def begin() -> Begun:
-    """Begin a sign-in."""
+    """Return a new sign-in with random state, nonce and verifier."""
     return Begun(*(secrets.token_urlsafe(_BYTES) for _ in range(3)))
 
 
@@ -75,7 +74,7 @@ class Provider:
         Raises
         ------
         ProviderRefused
-            If the provider does not answer correctly.
+            If the provider does not answer, or not correctly.
         """
         async with self._http() as http:
             place = _text(await self._about(http), "authorization_endpoint")
@@ -92,12 +91,12 @@ class Provider:
         return f"{place}{'&' if '?' in place else '?'}{urlencode(query)}"
 
     async def person(self, begun: Begun, state: str, code: str, back: str) -> Person:
-        """Return the person who has signed in, by the code that the browser returned.
+        """Return the person who has signed in, by the code that the browser brought back.
 
         Raises
         ------
         ProviderRefused
-            If the state differs, the code is refused, or the token is not signed for this sign-in.
+            If the state differs, the code is refused, or the token was not signed for this sign-in.
         """
         if not hmac.compare_digest(state.encode(), begun.state.encode()):
             raise ProviderRefused("this sign-in did not start in this browser: sign in again")
@@ -128,7 +127,7 @@ class Provider:
         except ModuleNotFoundError:
             raise ProviderRefused("the service lacks a package: pip install crankwright[team]") from None
         try:
-            claims = jwt.decode(token, KeySet.import_key_set(keys), algorithms=SIGNED_BY).claims  # type: ignore[arg-type]  # checked by it
+            claims = jwt.decode(token, KeySet.import_key_set(keys), algorithms=SIGNED_BY).claims  # type: ignore[arg-type]  # the decoder checks them
             jwt.JWTClaimsRegistry(
                 leeway=60,
                 iss={"essential": True, "value": self.issuer},
@@ -143,9 +142,9 @@ class Provider:
         return claims
 
     def _require_own(self, claims: Mapping[str, object]) -> None:
-        """Refuse a token requested by another service: OpenID Connect Core 1.0, section 3.1.3.7, 4 and 5.
+        """Refuse a token that another service requested: OpenID Connect Core 1.0, section 3.1.3.7, 4 and 5.
 
-        A token for several services (`aud`) names the requesting one (`azp`), which must be this one.
+        A token for several services (`aud`) names the requesting service (`azp`), which must be this one.
         """
         audience = claims["aud"]
         if "azp" not in claims and isinstance(audience, list) and len(audience) > 1:
@@ -168,14 +167,14 @@ class Provider:
 async def _asked(
     http: httpx.AsyncClient, method: str, place: str, sent: Mapping[str, str] | None = None
 ) -> Mapping[str, object]:
-    """Return the provider's answer; no part of it is quoted in messages."""
+    """Return the provider's answer to a request; messages quote no part of it."""
     try:
         answer = await http.request(method, place, data=sent)
         content: object = answer.json() if answer.is_success else None
     except (httpx.HTTPError, httpx.InvalidURL, ValueError):
         content = None
     if not isinstance(content, dict):
-        raise ProviderRefused("the provider does not answer, or refuses")
+        raise ProviderRefused("the provider does not answer, or refuses the request")
     return content
 
 

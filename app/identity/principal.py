@@ -1,4 +1,4 @@
-"""The acting principal: set for each request and job, read where an action is recorded.
+"""The acting principal: set for each request and job, and read when an action is recorded.
 
 Units of work run in the context of their caller, so each row that they write has the right author.
 """
@@ -27,7 +27,7 @@ INCLUDED: dict[Role, frozenset[Role]] = {
 class Principal:
     """A person or a service; `roles` are those that the key or session of the request allows.
 
-    `key` is the prefix of the key that the request carries, or by which its session began.
+    `key` is the prefix of the key in the request, or of the key that started its session.
     """
 
     id: str
@@ -42,7 +42,7 @@ class Principal:
         return frozenset(role for own in self.roles for role in INCLUDED[own])
 
     def may(self, role: Role) -> bool:
-        """Return whether one of the roles includes a given role."""
+        """Return whether the principal has a role, directly or by inclusion."""
         return role in self.included
 
 
@@ -70,7 +70,7 @@ acting: Callable[[], Principal] = ACTING.get
 
 @contextmanager
 def acting_as(principal: Principal) -> Iterator[None]:
-    """Act on behalf of a principal."""
+    """Make a principal the acting one within a context."""
     token = ACTING.set(principal)
     try:
         yield

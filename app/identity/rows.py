@@ -1,4 +1,4 @@
-"""All SQL about principals, keys and sessions. Every function runs in the transaction of its caller."""
+"""All SQL for principals, keys and sessions. Every function runs in the transaction of its caller."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
 
 @dataclass(frozen=True)
 class Guest:
-    """Whom a key or a session lets in; `limits` are its own, `form_token` that of its session's forms."""
+    """The principal that a key or session admits; `limits` are its own, `form_token` protects its forms."""
 
     principal: Principal
     limits: Mapping[str, object] | None
@@ -26,14 +26,14 @@ class Guest:
 
 
 def any_principal(session: Session) -> bool:
-    """Return whether there is a principal, so that keys are required."""
+    """Return whether any principal exists, so that keys are required."""
     return bool(session.scalar(select(exists().where(PrincipalRow.id.is_not(None)))))
 
 
 def holder(session: Session, prefix: str, key: str) -> Guest | None:
     """Return the owner of a key; None if the key is not valid for any reason.
 
-    The same work is done whether or not the prefix exists.
+    The work is the same whether or not the prefix exists, so that response times reveal nothing.
     """
     pair = session.execute(
         select(ApiKeyRow, PrincipalRow).join(PrincipalRow).where(ApiKeyRow.prefix == prefix)
@@ -46,7 +46,7 @@ def holder(session: Session, prefix: str, key: str) -> Guest | None:
 
 
 def signed_in(session: Session, hash: str) -> Guest | None:
-    """Return the guest of a session; None if it, or the key with which it began, is not valid."""
+    """Return the guest of a session; None if the session, or the key that started it, is not valid."""
     query = select(SessionRow, PrincipalRow, ApiKeyRow).join(
         PrincipalRow, SessionRow.principal_id == PrincipalRow.id
     )
@@ -66,7 +66,7 @@ def principal(row: PrincipalRow) -> Principal:
 
 
 def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
-    """Return a principal with those of its roles that a key allows."""
+    """Return a principal with only those roles that a key allows."""
     whole = principal(row)
     scopes = cast(list[Role], key.scopes)
     allowed = frozenset(scope for scope in scopes if whole.may(scope)) if scopes else whole.roles
@@ -74,7 +74,7 @@ def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
 
 
 def is_over(moment: str | None) -> bool:
-    """Return whether a moment has passed; None never passes."""
+    """Return whether a moment has passed; None means that it never passes."""
     return moment is not None and moment <= now()
 
 
@@ -98,12 +98,12 @@ def named(session: Session, name: str) -> PrincipalRow | None:
 
 
 def of_subject(session: Session, subject: str) -> PrincipalRow | None:
-    """Return the person whom an OpenID provider calls so, or None."""
+    """Return the person with this subject at an OpenID provider, or None."""
     return session.scalar(select(PrincipalRow).where(PrincipalRow.subject == subject))
 
 
 def principals(session: Session, limit: int, after: str | None) -> list[PrincipalRow]:
-    """Return principals in the order of their creation, after a given one if any."""
+    """Return principals in the order of their creation, optionally only those after a given one."""
     query = select(PrincipalRow).order_by(PrincipalRow.id).limit(limit)
     return list(session.scalars(query.where(PrincipalRow.id > after) if after else query))
 
@@ -120,7 +120,7 @@ def keys_of(session: Session, principal: str) -> list[ApiKeyRow]:
 
 
 def find_key(session: Session, prefix: str, principal: str | None = None) -> ApiKeyRow:
-    """Return a key by its prefix, optionally of one principal.
+    """Return a key by its prefix, optionally only if it belongs to a given principal.
 
     Raises
     ------
@@ -134,12 +134,12 @@ def find_key(session: Session, prefix: str, principal: str | None = None) -> Api
 
 
 def keys_of_key(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
-    """Return a key, and the keys created by it, directly or indirectly.
+    """Return a key and all keys that were created with it, directly or indirectly.
 
-    A spared key and the keys created by it are left out.
+    `spared` and the keys created with it are left out.
     """
     keys = [session.get_one(ApiKeyRow, prefix)]
-    for row in keys:  # grows meanwhile
+    for row in keys:  # the list grows during the loop
         below = select(ApiKeyRow).where(ApiKeyRow.made_by == row.prefix)
         keys.extend(key for key in session.scalars(below) if key.prefix != spared)
     return keys
@@ -151,23 +151,23 @@ def end_sessions(session: Session, principal: str) -> None:
 
 
 def end_old_sessions(session: Session) -> None:
-    """Forget sessions that are over."""
+    """Delete sessions that have expired."""
     session.execute(delete(SessionRow).where(SessionRow.expires <= now()))
 
 
 def end_session(session: Session, hash: str) -> None:
-    """Forget a session."""
+    """Delete a session."""
     session.execute(delete(SessionRow).where(SessionRow.hash == hash))
 
 
 def asked_by(session: Session, id: str) -> Principal:
-    """Return the principal on whose behalf a job runs; LOCAL if it belongs to another database."""
+    """Return the principal that requested a job; LOCAL if the principal is not in this database."""
     row = session.get(PrincipalRow, id)
     return LOCAL if row is None else principal(row)
 
 
 def names(session: Session, ids: Collection[str]) -> dict[str, str]:
-    """Return the names of principals by id; one without a row has none."""
+    """Return the names of principals by id; principals without a row are left out."""
     wanted = set(ids) - BUILT_IN
     by_id = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
     if not wanted:

@@ -1,8 +1,8 @@
-"""The sealer of the audit: each second it numbers and chains the rows that units of work have added.
+"""The sealer of the audit: every second it numbers and chains the rows that units of work have added.
 
 Chaining each row in its own unit of work would make every commit wait for the previous one. If several
-servers share a database, only one seals at a time, under a lock that PostgreSQL holds until the end of its
-transaction.
+servers share a database, only one of them seals at a time, under a PostgreSQL lock that lasts until the end
+of its transaction.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from app.storage.units import Statement
 
 logger = logging.getLogger(__name__)
 
-PAUSE = 1.0  # between two looks [s]
-LOCK = 0x63775F7365616C  # of PostgreSQL's advisory locks, which are numbers: "cw_seal"
+PAUSE = 1.0  # time between two runs [s]
+LOCK = 0x63775F7365616C  # number of the PostgreSQL advisory lock: "cw_seal"
 _ROWS = Base.metadata.tables[AuditRow.__tablename__]
 _WAITING = Statement(select(_ROWS.c.id).where(_ROWS.c.seq.is_(None)).limit(1))
 
 
 class Sealer:
-    """Seals rows until it is stopped, and those that are there then."""
+    """A thread that seals rows until it is stopped; before it ends, it seals the remaining rows."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -35,7 +35,7 @@ class Sealer:
         self._thread = threading.Thread(target=self._work, name="audit-sealer", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
@@ -44,7 +44,7 @@ class Sealer:
         self._thread.join()
 
     def run(self) -> int:
-        """Seal all waiting rows and return their number; write only if there are any."""
+        """Seal all waiting rows and return their number; open no write transaction if there are none."""
         total = 0
         while self._is_wanted() and (count := self._database.write(self._unit)):
             total += count

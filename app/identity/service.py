@@ -1,4 +1,4 @@
-"""Principals, their keys and sessions: every change is audited and takes effect here at once."""
+"""Manage principals, their keys and sessions: every change is audited and takes effect here at once."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
 T = TypeVar("T")
 Kind = Literal["person", "service"]
 
-MOST_KEYS = 1000  # of one principal
+MOST_KEYS = 1000  # keys of one principal
 _TOKEN_BYTES = 32
 
 
 @dataclass(frozen=True)
 class Changes:
-    """A change of a principal; a field that is None stays."""
+    """A change of a principal; a field that is None stays unchanged."""
 
     name: str | None = None
     roles: Sequence[Role] | None = None
@@ -48,7 +48,7 @@ class Changes:
 
 
 class Identity:
-    """The principals of the service, with their keys."""
+    """The principals of the service, and their keys and sessions."""
 
     def __init__(self, database: Database, settings: Settings) -> None:
         self._database, self._settings = database, settings
@@ -67,12 +67,14 @@ class Identity:
         return self._write(lambda session: _added(session, name, roles, kind, subject))
 
     def add_another(self, name: str, roles: Iterable[Role], kind: Kind) -> PrincipalRow:
-        """Add a principal to existing ones; the first one makes the service require keys.
+        """Add a principal to existing ones.
+
+        The first principal makes the service require keys, so this method does not add it.
 
         Raises
         ------
         FirstByCommand, NameTaken
-            If it would be the first one, or another one has the name.
+            If it would be the first principal, or another principal has the name.
         """
 
         def unit(session: Session) -> PrincipalRow:
@@ -83,12 +85,12 @@ class Identity:
         return self._write(unit)
 
     def find(self, id: str) -> PrincipalRow:
-        """Return a principal.
+        """Return a principal by its id.
 
         Raises
         ------
         NotFound
-            If there is none with this id.
+            If there is none.
         """
         with self._database.read() as session:
             return rows.find(session, id)
@@ -104,7 +106,7 @@ class Identity:
             return rows.principals(session, limit, after)
 
     def change(self, id: str, changes: Changes) -> PrincipalRow:
-        """Change a principal; a disabled one is signed out everywhere.
+        """Change a principal; disabling it signs it out everywhere.
 
         Raises
         ------
@@ -134,7 +136,7 @@ class Identity:
     ) -> tuple[NewKey, ApiKeyRow]:
         """Create a key, which appears only in this answer.
 
-        A principal creates keys for itself with at most the roles and the life of its present key; an
+        A principal creates keys for itself with at most the roles and the lifetime of its present key; an
         administrator creates keys for others.
 
         Raises
@@ -163,7 +165,7 @@ class Identity:
         return new, self._write(unit)
 
     def keys(self, principal: str) -> list[ApiKeyRow]:
-        """Return the keys of a principal, for itself or an administrator; oldest first.
+        """Return the keys of a principal, oldest first; only the principal and administrators may read them.
 
         Raises
         ------
@@ -176,7 +178,7 @@ class Identity:
             return rows.keys_of(session, principal)
 
     def usage(self, principal: str) -> tuple[PrincipalUsage, Limits | None]:
-        """Return the usage and limits of a principal, for itself or an administrator.
+        """Return the usage and limits of a principal; only the principal and administrators may read them.
 
         Raises
         ------
@@ -191,10 +193,10 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """Revoke a key, optionally of one principal; an already revoked key stays unchanged.
+        """Revoke a key, optionally only of one principal; an already revoked key stays unchanged.
 
-        It also revokes the keys that were created with this key, except the one that makes the request: so a
-        user can change to a successor. The result lists the key first, then those others.
+        Keys that were created with this key are revoked too, except the key of this request, so that a user
+        can change to a successor. The result lists the key first, then the others.
 
         Raises
         ------
@@ -218,16 +220,16 @@ class Identity:
         return self._write(unit)
 
     def sign_in(self, principal: str, key: str | None = None, before: str = "") -> str:
-        """Start a session in a browser, by a key or a provider's statement; return the value of its cookie.
+        """Start a session in a browser, by a key or through a provider; return the value of its cookie.
 
         Parameters
         ----------
         principal
             The principal who signs in.
         key
-            The prefix of the key used: the session has at most its rights, and ends with it.
+            The prefix of the key used; the session has at most the roles of that key, and ends with it.
         before
-            The cookie that the browser sent: its session ends.
+            The cookie that the browser sent, whose session ends.
         """
         token, form_token = (secrets.token_urlsafe(_TOKEN_BYTES) for _ in range(2))
         expires = as_text(datetime.now(UTC) + timedelta(hours=self._settings.session_hours))
@@ -246,7 +248,7 @@ class Identity:
         return token
 
     def signed_in_as(self, subject: str, name: str) -> str:
-        """Return the principal that a provider identifies by a subject; a new one has no roles yet."""
+        """Return the principal with this provider and subject; create one without roles if there is none."""
 
         def unit(session: Session) -> str:
             if (principal := rows.of_subject(session, subject)) is not None:
@@ -257,11 +259,11 @@ class Identity:
         return self._write(unit)
 
     def sign_out(self, token: str) -> None:
-        """End the session of a cookie."""
+        """End the session with this cookie."""
         self._write(lambda session: rows.end_session(session, digest(token)))
 
     def _write(self, unit: Callable[[Session], T]) -> T:
-        """Run a unit of work, then verify every key and session of this server again."""
+        """Run a unit of work, then make this server verify every key and session again."""
         try:
             return self._database.write(unit)
         finally:
@@ -289,7 +291,7 @@ def _require_free(session: Session, name: str) -> None:
 def _require_own(principal: str) -> None:
     who = acting()
     if who.id != principal and not who.may("admin"):
-        raise NotOwn("only the principal or an administrator may see and change these keys and this usage")
+        raise NotOwn("only this principal or an administrator may see its usage and manage its keys")
 
 
 def _in_order(roles: Iterable[Role]) -> list[str]:
@@ -303,12 +305,12 @@ def _end(session: Session, key: ApiKeyRow) -> None:
 
 
 def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
-    """Return the key with which a principal creates another one for itself; None in other cases.
+    """Return the key that creates another key for its own principal; None if somebody else creates it.
 
     Raises
     ------
     NotSignedIn
-        If that key has just ended, and the access layer has not noticed yet.
+        If that key has just expired or been revoked, and the access layer has not noticed yet.
     """
     who = acting()
     if who.key is None or who.id != owner.id:
@@ -320,14 +322,14 @@ def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
 
 
 def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> list[str]:
-    """Return the scopes of a new key, limited by its owner's roles and its creator's."""
+    """Return the roles that a new key is limited to, within the roles of its owner and its creator."""
     for scope in scopes:
         if not owner.may(scope):
             raise RoleNeeded(owner, [scope])
     if maker is None or not maker.scopes:
         return _in_order(scopes)
     who = acting()
-    if not who.roles:  # the scope of the present key is not a role of its principal any more
+    if not who.roles:  # its principal no longer has the role that the key is limited to
         raise RoleNeeded(who, owner.roles)
     for scope in scopes:
         if not who.may(scope):
@@ -336,7 +338,7 @@ def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> li
 
 
 def _expires(asked: datetime | None, maker: ApiKeyRow | None) -> str | None:
-    """Return when a new key expires: as requested, at the latest with the key that creates it."""
+    """Return when a new key expires: as requested, but no later than the key that creates it."""
     wanted = None if asked is None else as_text(asked)
     latest = None if maker is None else maker.expires
     if wanted and latest and wanted > latest:

@@ -1,4 +1,4 @@
-"""Usage of principals: one row a day, updated in the unit of work that causes it. LOCAL has no limits."""
+"""Usage of principals: one row per day, updated in the unit of work that causes it. LOCAL has no limits."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def note(
     seconds: float = 0.0,
     bytes: int = 0,
 ) -> None:
-    """Add to the usage of a principal today; no usage is stored for a built-in one."""
+    """Add to today's usage of a principal; built-in principals have no usage."""
     if principal not in BUILT_IN:
         day = {"principal": principal, "day": today()}
         session.execute(
@@ -56,7 +56,7 @@ def note(
 
 
 def note_bytes(session: Session, size: int) -> None:
-    """Count bytes that are stored for the first time for the acting principal."""
+    """Count bytes that the acting principal is the first to store."""
     if (principal := ACTING.get().id) not in BUILT_IN:
         note(session, principal, bytes=size)
 
@@ -87,7 +87,7 @@ def admit(session: Session, limits: Limits) -> None:
     Raises
     ------
     LimitReached
-        If it has used up today's calculation time or its storage.
+        If the principal has used up its calculation time of today or its storage.
     """
     who = ACTING.get()
     check(limits, used(session, who.id), who.name)
@@ -100,7 +100,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
     Raises
     ------
     LimitReached
-        If it has.
+        If a limit is used up.
     """
     if used.seconds >= limits.calculation_seconds:
         amounts = f"{used.seconds:.0f} s of {limits.calculation_seconds:.0f} s of calculation today (UTC)"
@@ -112,7 +112,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
 
 @contextmanager
 def working_for(database: Database, principal: str | None) -> Iterator[None]:
-    """Act for a principal by its id, or for LOCAL, and record the time used."""
+    """Act for a principal by its id, or for LOCAL, and add the elapsed time to its usage."""
     if principal is None or principal in BUILT_IN:
         with acting_as(LOCAL):
             yield

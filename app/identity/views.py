@@ -1,4 +1,4 @@
-"""Principals, keys and usage as the interface shows them."""
+"""Convert principals, keys and usage to the schemas of the interface."""
 
 from __future__ import annotations
 

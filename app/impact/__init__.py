@@ -1,1 +1,1 @@
-"""The effect of a template version on designs that use another version; nothing is written."""
+"""Calculate how a template version would change designs that use another version, without saving anything."""

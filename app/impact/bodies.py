@@ -22,13 +22,13 @@ class ImpactIn(Bounded):
 
     designs: (
         Annotated[list[Annotated[str, StringConstraints(max_length=64)]], Field(max_length=10_000)] | None
-    ) = Field(None, description="by id; all that use another version, if not given")
+    ) = Field(None, description="ids of the designs to compare; by default all that use another version")
     name: Annotated[str, StringConstraints(max_length=200, pattern=PRINTABLE)] | None = Field(
-        None, description="part of the design's name, in upper or lower case"
+        None, description="part of the design's name; case does not matter"
     )
     tags: Annotated[list[Tag], Field(max_length=MOST_TAGS)] = Field(
-        [], description="all of which a design has"
+        [], description="tags, all of which a design must have"
     )
     limit: Annotated[int, Field(ge=1, le=MOST_SHOWN)] = Field(
-        100, description="designs that the answer lists"
+        100, description="largest number of designs in the answer"
     )

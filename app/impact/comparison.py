@@ -1,4 +1,4 @@
-"""Compare a design or variant, calculated with its own versions, with itself calculated with the new one."""
+"""Compare a design or variant, calculated with its present versions, with the same under a new version."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class Difference:
     Attributes
     ----------
     outputs
-        How many outputs change.
+        Number of outputs that change.
     size
-        The relative change of `output`; infinite where one side has no value.
+        The relative change of `output`; infinite if one side has no value.
     gone
         Outputs that only the old version has.
     """
@@ -89,7 +89,7 @@ def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[
 
 
 def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost | None:
-    """Return the criterion that loses the largest part of its margin; of those without margin, the first."""
+    """Return the criterion that loses the largest part of its margin; those without a margin rank last."""
     losses: list[tuple[float, MarginLost]] = []
     for name, old in before.judged.items():
         new = after.judged.get(name)
@@ -124,7 +124,7 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 
 
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
-    """Return whether a name has the same kind of quantity in both versions, whatever the units."""
+    """Return whether a name has the same kind of quantity in both versions, whatever its unit."""
     one, other = before.units[name], after.units[name]
     return one == other or misfit(kind_of(one), unit(other), one) is None
 
@@ -153,7 +153,7 @@ def change_size(old: Value, new: Value) -> float:
 
 
 def _together(old: Value, new: Value) -> tuple[Array, Array]:
-    """Return both values as arrays of the same shape, if one of them may be a single value."""
+    """Return both values as arrays of the same shape, even if one of them is a single value."""
     one, other = np.asarray(old, dtype=float), np.asarray(new, dtype=float)
     if one.ndim and other.ndim:
         return one, other
@@ -162,7 +162,7 @@ def _together(old: Value, new: Value) -> tuple[Array, Array]:
 
 
 def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> OutputChange:
-    """Return a change at its largest place, in the unit that the new version declares."""
+    """Return a change where it is largest, in the unit that the new version declares."""
     old, new = _together(before.values[name], after.values[name])
     is_alike = old.shape == new.shape and _is_one_kind(before, after, name)
     place = _place(old, new) if is_alike else ()
@@ -175,13 +175,13 @@ def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> O
 
 
 def _place(one: Array, other: Array) -> tuple[np.intp, ...]:
-    """Return the place where two arrays differ most; a missing value counts most."""
+    """Return the index at which two arrays differ most; a missing value counts as the largest difference."""
     steps = np.where(np.isnan(one) != np.isnan(other), INFINITE, np.abs(other - one))
     return np.unravel_index(int(np.argmax(np.nan_to_num(steps, nan=-1.0, posinf=INFINITE))), one.shape)
 
 
 def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) -> float | None:
-    """Return the change at a place divided by the largest old value."""
+    """Return the change at an index, divided by the largest old value."""
     largest = float(np.nanmax(np.abs(one))) if not np.isnan(one).all() else 0.0
     step = float(other[place] - one[place])
     if is_temperature(scale) or largest == 0 or not np.isfinite(step / largest):
@@ -190,7 +190,7 @@ def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) ->
 
 
 def _quantity(si: Value, scale: str) -> Quantity | None:
-    """Return a single value [SI] in a unit; None for an array, or if missing."""
+    """Return a single value [SI] in a unit; None for an array or a missing value."""
     if np.ndim(si) or not np.isfinite(si):
         return None
     return Quantity(value=float(unit(scale).from_si(float(si))), unit=scale)

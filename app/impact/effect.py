@@ -1,4 +1,4 @@
-"""The effect of a version on one design: every change, in the design itself and in its variants."""
+"""The effect of a version on one design: all changes in the design itself and in its variants."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def impact_of(
 
 
 def described(design: DesignAt, document: Document, template: str, version: int) -> dict[str, object]:
-    """Return the design, with its steps that use another version."""
+    """Return the description of a design, with its steps that use another version."""
     return {
         "design": design.id,
         "name": document.name,
@@ -73,11 +73,11 @@ def _moved(differences: list[Difference]) -> dict[str, object]:
 
 
 def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
-    """Yield why a save of the upgrade is refused; each reason once, at its first variant."""
+    """Yield the reasons for which a save of the upgrade is refused, each once, at its first variant."""
     listed = set[tuple[str, str, str]]()
     for variant, (before, after) in pairs.items():
         if before.faults and not after.faults:
-            continue  # the version corrects what is wrong now
+            continue  # the new version corrects this fault
         for fault in after.faults:
             key = fault.name, fault.code, fault.detail
             if key not in listed:
@@ -88,7 +88,7 @@ def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
 
 
 def _remedies(batch: Batch, document: Document, pairs: Pairs, catalogues: Catalogues) -> dict[str, list[str]]:
-    """Return the inputs that the version requires, and those that it lacks."""
+    """Return the inputs that the version requires, and the inputs that it does not have."""
     cls = catalogues.templates.get(batch.template, batch.version)
     steps = [use.step for use in used_steps(document, batch.template, batch.version)]
     remove = [name for step in steps for name in _left_over(step, document.steps[step], cls)]
@@ -117,16 +117,16 @@ def _written(parts: dict[str, object]) -> DesignImpact:
 
 
 def unusable(about: dict[str, object], absent: list[str]) -> DesignImpact:
-    """Return a design that uses a version that the catalogue lacks, so that it cannot be calculated.
+    """Return the impact on a design that uses a version missing from the catalogue.
 
-    Its upgrade cannot be calculated either.
+    Neither the design nor its upgrade can be calculated.
     """
     detail = f"the catalogue does not have {', '.join(absent)}, so that the design cannot be calculated"
     return _refused(about, "unknown_name", detail)
 
 
 def unfinished(about: dict[str, object], error: Exception) -> DesignImpact:
-    """Return a design whose calculation ended its process."""
+    """Return the impact on a design whose calculation crashed its process."""
     return _refused(about, "not_calculated", f"the calculation did not end: {error}")
 
 

@@ -2,7 +2,7 @@
 
 Two documents have the same form if they differ only in single quantities of the same kind: parameters, inputs
 of steps, parameters of models. Everything else, such as relations, choices, curves, limits and criteria, is
-part of the form as it is written.
+unchanged in the form.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Quantities = Mapping[Reference, float]
 
 @dataclass(frozen=True)
 class Form:
-    """A document without its single quantities, as text, and these."""
+    """A document as text without its single quantities, and these quantities."""
 
     text: str
     quantities: Quantities
@@ -50,12 +50,12 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
 
 @dataclass(frozen=True)
 class _PlaceRemoval:
-    """Leaves places open, and notes the values that stood there."""
+    """Replaces single quantities in a document by placeholders, and records their values."""
 
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """Return a parameter of the design, with the kind of its typed unit."""
+        """Return a parameter of the design; for a single quantity, a placeholder of the same kind."""
         if _is_written_out(raw):
             return raw
         try:
@@ -68,7 +68,7 @@ class _PlaceRemoval:
         return {"open": kind_of(typed.unit).unit}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
-        """Return the inputs of a step, or the parameters of a model."""
+        """Return the inputs of a step or parameters of a model, with placeholders for single quantities."""
         declared = cls.inputs if cls else {}
         return {name: self._input(block, name, raw, declared.get(name)) for name, raw in values.items()}
 

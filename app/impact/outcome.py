@@ -15,7 +15,7 @@ from templates.core.units.units import Value, registry, unit
 
 @dataclass(frozen=True, slots=True)
 class JudgedCriterion:
-    """A criterion as judged; the margin [`unit`] is None where there is none."""
+    """A criterion as judged; the margin [`unit`] is None if it is unknown."""
 
     verdict: Verdict
     unit: str
@@ -23,18 +23,18 @@ class JudgedCriterion:
 
     @classmethod
     def alone(cls, judgement: Judgement) -> JudgedCriterion:
-        """Return the judgement of one design."""
+        """Return a criterion as judged for one design calculated alone."""
         return cls(judgement.verdict, judgement.margin_unit or judgement.unit, _finite(judgement.margin))
 
     @classmethod
     def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> JudgedCriterion:
-        """Return the judgement of a row; the margin [SI] is NaN where there is none."""
+        """Return a criterion as judged in a row of a batch; a margin [SI] of NaN means that it is unknown."""
         scale = "K" if criterion.is_temperature else criterion.unit
         return cls(verdict, scale, _finite(margin / unit(scale).factor))
 
 
 def is_temperature(name: str) -> bool:
-    """Return whether a unit is one of temperature, whose ratios have no meaning."""
+    """Return whether a unit is one of temperature, for which ratios have no meaning."""
     return bool(unit(name).base == registry.kelvin)
 
 
@@ -44,22 +44,22 @@ def _finite(value: float | None) -> float | None:
 
 @dataclass(frozen=True)
 class Outcome:
-    """A design, or one variant of it, with one version.
+    """A design, or one of its variants, calculated with one version.
 
     Attributes
     ----------
     faults
-        Why a save is refused; then there is nothing else.
+        Reasons for which a save is refused; if there are any, the other attributes are empty.
     values
-        Outputs of steps that are quantities [SI], by their names in relations; NaN where there is none.
+        Outputs of steps that are quantities [SI], by their names in relations; NaN if a value is missing.
     parameters
-        Those of CAD models that are quantities [SI], as far as they are known: `shell.inner_diameter`.
+        Known parameters of CAD models that are quantities [SI], such as `shell.inner_diameter`.
     units
-        In which the outputs and parameters are declared.
+        The declared units of the outputs and parameters.
     judged
         Criteria by name.
     waiting
-        What waits for a solid that is not built.
+        Values that need a solid that is not built yet.
     """
 
     faults: tuple[Fault, ...] = ()

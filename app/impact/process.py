@@ -1,4 +1,4 @@
-"""The impact of a version in a calculation process: some designs are calculated with both versions."""
+"""Compare the designs of a batch with both versions, in a calculation process."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from templates.core.progress import report
 
 @dataclass(frozen=True)
 class BatchResult:
-    """The designs of a batch that move, or refuse; how many others there are, and how many variants."""
+    """The designs of a batch that change or refuse the version, and the counts of others and of variants."""
 
     designs: tuple[DesignImpact, ...]
     unchanged: int
@@ -34,7 +34,7 @@ class BatchResult:
 
 @dataclass(frozen=True)
 class Case:
-    """A design, or one of its variants, before and after."""
+    """A design, or one of its variants, before and after the upgrade."""
 
     design: DesignAt
     variant: str | None
@@ -46,7 +46,7 @@ Pair = tuple[Outcome, Outcome]
 
 
 def compared(batch: Batch) -> BatchResult:
-    """Return every design of a batch with its own versions and with the new one."""
+    """Return the comparison of every design of a batch between its present versions and the new one."""
     catalogues = batch.parts.read()
     documents = {design.id: design.read() for design in batch.designs}
     cases = [case for design in batch.designs for case in _cases(design, documents[design.id], batch)]
@@ -61,7 +61,7 @@ def compared(batch: Batch) -> BatchResult:
 
 
 def _cases(design: DesignAt, document: Document, batch: Batch) -> Iterator[Case]:
-    """Yield the design itself, then each of its variants."""
+    """Yield a case for the design itself, then one for each of its variants."""
     after = upgraded(document, batch.template, batch.version)
     yield Case(design, None, document, after)
     for variant, overrides in document.variants.items():
@@ -69,7 +69,7 @@ def _cases(design: DesignAt, document: Document, batch: Batch) -> Iterator[Case]
 
 
 def _outcomes(cases: Sequence[Case], catalogues: Catalogues, solids: Solids) -> dict[int, Pair]:
-    """Return both outcomes of every case, by its number; cases of one form are calculated together."""
+    """Return both outcomes of every case, by case number; cases of one form are calculated together."""
     groups: dict[tuple[str, str], list[_Member]] = {}
     for number, case in enumerate(cases):
         forms = form_of(case.before, catalogues), form_of(case.after, catalogues)
@@ -83,7 +83,7 @@ def _outcomes(cases: Sequence[Case], catalogues: Catalogues, solids: Solids) -> 
 
 @dataclass(frozen=True)
 class _Member:
-    """A case of a group, and its forms before and after."""
+    """A case in a group, with its forms before and after the upgrade."""
 
     number: int
     case: Case
@@ -119,6 +119,6 @@ def _together(
 
 
 def _columns(quantities: Sequence[Quantities]) -> Mapping[Reference, Array]:
-    """Return the values [SI] of the places in which the designs differ."""
+    """Return the values [SI] of the quantities in which the designs differ."""
     columns = {place: np.array([one[place] for one in quantities]) for place in quantities[0]}
     return {place: column for place, column in columns.items() if (column != column[0]).any()}

@@ -1,4 +1,4 @@
-"""All SQL of the impact of a version; it only reads."""
+"""All SQL for the impact of a version; it only reads."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from app.solids import analysis_rows
 from app.solids import rows as builds
 from app.storage.tables import RevisionModelRow, RevisionRow, canonical_json
 
-PAGE = 500  # designs of which the ids are read at once
+PAGE = 500  # ids of designs read in one query
 
 
 def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | None) -> list[str]:
-    """Return the designs that a filter selects, newest first, optionally among the chosen ones."""
+    """Return the ids of designs that a filter selects, newest first, optionally among given ids."""
     ids: list[str] = []
     cursor: str | None = None
     while page := designs.designs(session, PAGE, cursor, wanted)[:PAGE]:
@@ -32,7 +32,7 @@ def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | Non
 
 
 def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Document]]:
-    """Yield the designs of these ids at their newest revisions, without deleted ones."""
+    """Yield the designs with these ids at their newest revisions, except deleted ones."""
     heads = {row.id: row.head for row in designs.of_ids(session, ids)}
     query = select(RevisionRow.design_id, RevisionRow.number, RevisionRow.document)
     at = tuple_(RevisionRow.design_id, RevisionRow.number).in_(list(heads.items()))
@@ -46,7 +46,7 @@ def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Doc
 
 
 def _settled(session: Session, id: str, number: int) -> tuple[tuple[str, float], ...]:
-    """Return the values [SI] with which the iterations of a revision ended."""
+    """Return the final values [SI] of the iterations of a revision."""
     results = designs.revision(session, id, number).results
     return tuple((str(reference), value) for reference, value in settled(results).items())
 

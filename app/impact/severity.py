@@ -1,4 +1,4 @@
-"""The order of the affected designs and of the verdicts of one design, worst first."""
+"""The order of affected designs, and of the verdict changes of one design, worst first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def severity(moved: CriterionChange) -> int:
 
 
 def worst_first(moved: Iterable[CriterionChange]) -> list[CriterionChange]:
-    """Return changes of verdicts, the most important first."""
+    """Return changes of verdicts, sorted worst first."""
     return sorted(moved, key=lambda one: (severity(one), one.name, one.variant or ""))
 
 

@@ -1,4 +1,4 @@
-"""Calculate one design by itself, as a save does, but without building any solid."""
+"""Calculate one design by itself, as a save does, but without building solids."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def outcome_alone(
 ) -> Outcome:
     """Return the result of a document.
 
-    `settled` are the final values [SI] of its iterations; they are kept, because each round would need a
+    `settled` are the final values [SI] of its iterations; they are reused, because each round would need a
     solid.
     """
     graph, faults = build_graph(document, catalogues)
@@ -70,7 +70,7 @@ def _parameters(calculation: Calculation) -> Iterator[tuple[str, tuple[float, st
 
 
 def _waiting(calculation: Calculation) -> Iterator[str]:
-    """Yield everything that waits for solids: steps, dependent values, and iterations."""
+    """Yield everything that needs solids: steps, dependent values, and iterations."""
     for node in calculation.pending:
         if isinstance(node, Cell) or (isinstance(node, Block) and not node.is_model):
             yield node.name

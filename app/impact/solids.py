@@ -14,17 +14,17 @@ from cad.regenerate import build_key
 
 @dataclass(frozen=True)
 class Solids:
-    """Measures by key of build, and outputs of analyses by key of question; others are not known."""
+    """Measurements by key of build, and outputs of analyses by key of request; nothing else is known."""
 
     builds: Mapping[str, Measures] = field(default_factory=dict)
     analyses: Mapping[str, Outputs] = field(default_factory=dict)
 
     def measured(self, shape: CadModel) -> Measures | None:
-        """Return the measurements of a model, if its solid is among these."""
+        """Return the measurements of a model, if they are available."""
         return self.builds.get(build_key(shape))
 
     def analysed(self, shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
-        """Return the finite-element results of a model, if all requested results are among these."""
+        """Return the finite-element results of a model, if all requested results are available."""
         outputs = self.analyses.get(question.key(build_key(shape)), {})
         if not set(wanted) <= outputs.keys():
             return None

@@ -37,7 +37,7 @@ At = tuple[DesignAt, Document]
 
 @dataclass(frozen=True)
 class ImpactQuestion:
-    """A version of a template, which designs are held against it, and the units of the answer."""
+    """A version of a template, the designs to compare with it, and the units of the answer."""
 
     template: str
     version: int
@@ -64,7 +64,7 @@ def check(asked: ImpactQuestion, database: Database, catalogues: Catalogues) -> 
 def impact(
     asked: ImpactQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ImpactQuestion, Impact]:
-    """Return the impact of a version; only a job calls this, since it takes long."""
+    """Return the impact of a version; only a job calls this, because it takes long."""
     catalogues.to_try(asked.template, asked.version)
     drafts = catalogues.with_drafts([(asked.template, asked.version)])
     return Reply(Survey(asked, database, drafts).impact().in_units(asked.units))
@@ -72,7 +72,7 @@ def impact(
 
 @dataclass
 class _Tally:
-    """The result so far: the worst designs, and how many there are of each kind."""
+    """The intermediate result: the worst designs, and the number of designs of each kind."""
 
     limit: int
     worst: list[DesignImpact] = field(default_factory=list)
@@ -82,7 +82,7 @@ class _Tally:
     variants: int = 0
 
     def add(self, batch: BatchResult) -> None:
-        """Add the designs of a batch; at most the limit are kept."""
+        """Add the results of a batch, keeping only the worst `limit` designs."""
         for impact in batch.designs:
             self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
         self.worst = sorted([*self.worst, *batch.designs], key=rank)[: self.limit]
@@ -93,14 +93,14 @@ class _Tally:
 
 @dataclass(frozen=True)
 class Survey:
-    """One question, with the templates as they are when it is asked."""
+    """One request, with the templates as they were when it arrived."""
 
     asked: ImpactQuestion
     database: Database
     catalogues: Catalogues
 
     def impact(self) -> Impact:
-        """Return the effect of the version on these designs."""
+        """Return the impact of the version on these designs."""
         asked = self.asked
         chosen = None if asked.body.designs is None else set(asked.body.designs)
         tags = tuple(dict.fromkeys(map(key_of, asked.body.tags)))
@@ -136,7 +136,7 @@ class Survey:
         ]
 
     def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[BatchResult]:
-        """Yield the comparisons of some designs, batch by batch."""
+        """Yield the results for one page of designs, batch by batch."""
         concerned = self._concerned(ids)
         usable: list[At] = []
         for design, document in concerned:
@@ -149,7 +149,7 @@ class Survey:
             yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
 
     def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[BatchResult]:
-        """Yield the comparisons of a batch; if its process dies, of smaller batches, down to one design."""
+        """Yield the result for a batch; if its process dies, split the batch, down to single designs."""
         try:
             yield self._compared(batch, share)
         except LOST as error:
@@ -163,7 +163,7 @@ class Survey:
             yield from self._of_batch(batch[half:], share)
 
     def _compared(self, batch: Sequence[At], share: _Share) -> BatchResult:
-        """Return a batch, calculated in the pool for its job."""
+        """Return the result for a batch, which the pool calculates on behalf of the job."""
         templates, models = uses(document for _, document in batch)
         parts = CatalogueTask.of(
             {*templates, (self.asked.template, self.asked.version)}, models, self.catalogues
@@ -185,18 +185,18 @@ class Survey:
 
 @dataclass(frozen=True)
 class _Share:
-    """The part of a job that a page is: where it begins and how much it is, 0 to 1, of so many designs."""
+    """The part of a job that one page of designs takes: its beginning and its width, as fractions of 1."""
 
     begin: float
     width: float
     total: int
 
     def at(self, fraction: float) -> float:
-        """Return the progress of the job when so much of the page is done."""
+        """Return the progress of the job when this fraction of the page is complete."""
         return self.begin + self.width * fraction
 
     def text(self, fraction: float) -> str:
-        """Return the same as a sentence."""
+        """Return the progress as a text, such as `3 of 10 designs`."""
         return f"{int(self.at(fraction) * self.total)} of {self.total} designs"
 
 
@@ -206,7 +206,7 @@ def _pages(ids: Sequence[str]) -> Iterator[Sequence[str]]:
 
 
 def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
-    """Yield designs in batches of at most this many designs and variants; each has at least one design."""
+    """Yield designs in batches of limited numbers of designs and variants; each has at least one design."""
     batch: list[At] = []
     count = 0
     for at in designs:

@@ -18,7 +18,7 @@ from app.reference import Reference
 class DesignAt:
     """A design at its newest revision.
 
-    `settled` are the values [SI] with which its iterations ended, by name.
+    `settled` are the final values [SI] of its iterations, by name.
     """
 
     id: str
@@ -27,7 +27,7 @@ class DesignAt:
     settled: tuple[tuple[str, float], ...] = ()
 
     def read(self) -> Document:
-        """Return the document of the revision."""
+        """Return the parsed document of the revision."""
         return Document.model_validate(from_json(self.document))
 
     def assumed(self) -> dict[Reference, float]:
@@ -37,7 +37,7 @@ class DesignAt:
 
 @dataclass(frozen=True)
 class Batch:
-    """Designs that are held against version `version` of a template."""
+    """Designs that are compared with version `version` of a template."""
 
     template: str
     version: int
@@ -47,7 +47,7 @@ class Batch:
 
 
 def uses(documents: Iterable[Document]) -> tuple[set[tuple[str, int]], set[tuple[str, int]]]:
-    """Return the templates and the models of some documents, which pin every version."""
+    """Return the versions of templates and models that some documents use; documents fix every version."""
     templates, models = set[tuple[str, int]](), set[tuple[str, int]]()
     for document in documents:
         templates |= {(step.template, int(step.version or 0)) for step in document.steps.values()}
@@ -56,7 +56,7 @@ def uses(documents: Iterable[Document]) -> tuple[set[tuple[str, int]], set[tuple
 
 
 def upgraded(document: Document, template: str, version: int) -> Document:
-    """Return the document with one version in every step that uses the template.
+    """Return a copy of the document with a version in every step that uses the template.
 
     The original is not changed.
     """
@@ -68,7 +68,7 @@ def upgraded(document: Document, template: str, version: int) -> Document:
 
 
 def missing(document: Document, catalogues: Catalogues) -> list[str]:
-    """Return the versions of a document that the catalogues do not have: `oil_film 1`."""
+    """Return the versions that a document uses and the catalogues lack, such as `oil_film 1`."""
     templates, models = uses([document])
     absent = [key for key in sorted(templates) if key not in catalogues.templates.versions]
     absent += [key for key in sorted(models) if key not in catalogues.models.versions]

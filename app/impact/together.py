@@ -1,8 +1,7 @@
 """Calculate designs of the same form together: each is one row of the same array calls.
 
-`single` calculates the other designs: those with steps whose level follows from a tolerance, values that are
-measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
-refused.
+`single` calculates all other designs: those with steps whose level depends on a tolerance, values measured on
+solids, iterations, or inputs at several points. It also takes over if a whole array call is refused.
 """
 
 from __future__ import annotations
@@ -38,9 +37,9 @@ class Together:
     Attributes
     ----------
     design
-        Its places vary in which the designs differ.
+        The network whose placeholders receive the quantities in which the designs differ.
     outputs, parameters
-        What is asked for: outputs of steps, parameters of CAD models.
+        The requested outputs of steps and parameters of CAD models.
     """
 
     design: RowDesign
@@ -51,7 +50,7 @@ class Together:
 
     @classmethod
     def of(cls, document: Document, catalogues: Catalogues, varied: Collection[Reference]) -> Together | None:
-        """Return a form from the document of one of its designs; None if they must be calculated alone."""
+        """Return the form of a document; None if its designs must be calculated alone."""
         if document.iterations:
             return None
         try:
@@ -68,7 +67,7 @@ class Together:
         return cls(engine.design, outputs, parameters, subjects, units)
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
-        """Return the outcome of each row; None if they must be calculated alone."""
+        """Return the outcome of each row; None if the designs must be calculated alone."""
         listed: list[Outcome] = []
         try:
             with np.errstate(all="ignore"):
@@ -130,7 +129,7 @@ class Together:
             )
 
     def _parameter(self, part: Calculation, reference: Reference) -> Array:
-        """Return a parameter of a model in the form that the model needs."""
+        """Return a parameter of a model in the type that the model needs."""
         return part.taken(reference).spread(part.count)
 
 
@@ -148,7 +147,7 @@ def _is_measured(graph: Graph) -> bool:
 
 
 def _outputs(graph: Graph) -> Iterator[Reference]:
-    """Yield the outputs that the steps compute, without words."""
+    """Yield the outputs that the steps compute, except texts."""
     for block in graph.blocks.values():
         if not block.is_model:
             computed = graph.computed(block)
@@ -169,7 +168,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 def _is_incomplete(block: Block) -> bool:
     """Return whether a model lacks parameters, or no output of a step is requested.
 
-    Such a design is checked alone.
+    `single` checks such a design.
     """
     if not block.is_model:
         return block.outputs == ()
@@ -181,7 +180,7 @@ def _is_incomplete(block: Block) -> bool:
 
 
 def _by_levels(part: Calculation) -> list[Indices]:
-    """Return the rows in groups that would start at the same levels as single designs."""
+    """Return the rows in groups that start at the same levels as the designs would alone."""
     keys: list[list[str]] = [[] for _ in range(part.count)]
     for step in part.steps.values():
         cls = step.block.cls

@@ -1,1 +1,1 @@
-"""Models that a team imports: FreeCAD files, Creo sessions, and STEP files as fixed parts."""
+"""Models that a team imports: FreeCAD files, models in Creo, and STEP files as fixed parts."""

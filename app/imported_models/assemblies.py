@@ -1,7 +1,7 @@
-"""Build the description of an assembly from its manifest: find, pin and pack each fixed part.
+"""Build the description of an assembly from its manifest: find, fix and pack each fixed part.
 
-The package holds the STEP file of every fixed part. So an assembly can be rebuilt even if the models and
-designs of its parts are gone.
+The package holds the STEP file of every fixed part, so an assembly can be rebuilt even if the models and
+designs of its parts no longer exist.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _BEGINNING_OF_TIME = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True)
 class _Source:
-    """Where a fixed part comes from: its file, where it comes from in words, and what it is made of."""
+    """The source of a fixed part: its file, its origin in words, and its component models."""
 
     sha: str
     origin: str
@@ -79,13 +79,13 @@ def described_assembly(
 
 
 class AssemblyFiles:
-    """Gives an assembly the STEP files of its fixed parts."""
+    """Provides an assembly with the STEP files of its fixed parts."""
 
     def __init__(self, store: Artifacts) -> None:
         self._store = store
 
     def draw(self, described: Description, values: Mapping[str, float], cancelled: object) -> ProgramResult:
-        """Return the files, by hash; see `Drawing.draw`."""
+        """Return the files by hash; see `Drawing.draw`."""
         try:
             packed = self._store.read(described.file)
         except (ArtifactMissing, ArtifactDamaged):
@@ -98,7 +98,7 @@ class AssemblyFiles:
 
 
 def _packed(files: Mapping[str, bytes]) -> bytes:
-    """Return one package of files, by hash; equal files give equal bytes."""
+    """Return one package of files, named by their hashes; equal files give equal bytes."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as package:
         for sha in sorted(files):
@@ -118,7 +118,7 @@ def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
     if is_outside(cls):
         detail = (
             f"base: {base.model} is no model of this program, so it cannot be the base. Name it as a "
-            "component: a STEP file by `model`, any other by a design that has it"
+            "component: a STEP file by `model`, any other model by a design that has it"
         )
         raise UnreadableModel("base", detail)
     assert base_of((cls.id, cls.version)) is cls, "the models of this program are those of every process"
@@ -155,7 +155,7 @@ def _of_model(session: Session, fixed: FixedPart) -> _Source:
 
 
 def _of_design(session: Session, fixed: FixedPart) -> _Source:
-    """Return the STEP file of a model of a design: of one revision, or of the newest that has one."""
+    """Return the STEP file of a model in a design, at one revision or at the newest that has a solid."""
     design, row = fixed.design or "", RevisionModelRow
     there = session.get(DesignRow, design)
     if there is None or there.deleted:
@@ -186,7 +186,7 @@ def _of_design(session: Session, fixed: FixedPart) -> _Source:
 
 
 def _held(session: Session, id: str, number: int) -> tuple[str, ...]:
-    """Return the ids of the models that an assembly contains; none for other models."""
+    """Return the ids of the models that an assembly contains; empty for other models."""
     try:
         about = description_of(repository.version(session, id, number).description)
     except NotFound:
@@ -212,7 +212,7 @@ def _component(fixed: FixedPart, source: _Source) -> Component:
 def _require_distinct(
     base: type[CadModel] | None, components: Mapping[Component, Mapping[str, float]]
 ) -> None:
-    """Refuse components whose parameters would have the name of others, such as `wall` with `wall_x`."""
+    """Refuse components whose parameters would have the same names, such as `wall` with `wall_x`."""
     taken = {*base.inputs, *base.formulas} if base else set[str]()
     for one in components:
         names = {parameter.name for parameter in one.parameters({})}

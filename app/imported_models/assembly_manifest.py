@@ -1,4 +1,4 @@
-"""The manifest of an assembly: its base model, and the fixed parts with their positions."""
+"""Parse the manifest of an assembly: its base model, and the fixed parts with their positions."""
 
 from __future__ import annotations
 
@@ -20,27 +20,31 @@ _DATUM = r"^[^\x00-\x1f\x7f]{1,200}$"
 
 
 class Base(Bounded):
-    """The model of this program that the assembly stands on; its parameters are those of the assembly."""
+    """The base model of the assembly, one of this program; its parameters are those of the assembly."""
 
     model_config = STRICT
 
     model: str = Field(max_length=64, pattern=NAME)
-    version: int | None = Field(None, ge=1, le=10**6, description="the newest if it is not given")
+    version: int | None = Field(None, ge=1, le=10**6, description="version of the model; default: the newest")
 
 
 class FixedPart(Bounded):
-    """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
+    """A fixed part: an imported STEP file, or a model of a design at one of its revisions."""
 
     model_config = STRICT
 
     name: str = Field(max_length=40, pattern=NAME)
-    model: str | None = Field(None, max_length=64, pattern=NAME, description="a STEP file, or an assembly")
-    version: int | None = Field(None, ge=1, le=10**6, description="of `model`; the newest if not given")
+    model: str | None = Field(
+        None, max_length=64, pattern=NAME, description="id of an imported STEP file or assembly"
+    )
+    version: int | None = Field(None, ge=1, le=10**6, description="version of `model`; default: the newest")
     design: str | None = Field(None, min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")
-    revision: int | None = Field(None, ge=1, le=10**9, description="of `design`; the newest if not given")
-    part: str | None = Field(None, max_length=200, pattern=LINE, description="which model of `design`")
+    revision: int | None = Field(
+        None, ge=1, le=10**9, description="revision of `design`; default: the newest"
+    )
+    part: str | None = Field(None, max_length=200, pattern=LINE, description="name of the model in `design`")
     datum: str = Field(
-        "origin", pattern=_DATUM, description="`origin`, or a part and a place on it: `cap.low_y`"
+        "origin", pattern=_DATUM, description="`origin`, or a part and one of its datums: `cap.low_y`"
     )
     x: str = Field("0 mm", max_length=60)
     y: str = Field("0 mm", max_length=60)
@@ -49,43 +53,43 @@ class FixedPart(Bounded):
     turn_y: str = Field("0 deg", max_length=60)
     turn_z: str = Field("0 deg", max_length=60)
     may_overlap: list[Annotated[str, Field(max_length=200, pattern=LINE)]] = Field(
-        [], max_length=50, description="parts whose space it may take: a press fit"
+        [], max_length=50, description="parts that it may overlap, as in a press fit"
     )
     density: str = Field(f"{STEEL_DENSITY:g} kg/m**3", max_length=60)
     material: str = Field("", max_length=100, pattern=LINE)
 
     @model_validator(mode="after")
     def is_one_thing(self) -> Self:
-        """Require exactly one source with its own fields, and valid numbers.
+        """Require exactly one source, only the fields of that source, and valid numbers.
 
         Raises
         ------
         ValueError
-            If it names no source or both, or a number is invalid.
+            If the part names no source or both, or a number is invalid.
         """
         if (self.model is None) == (self.design is None):
             raise ValueError("give either `model`, an imported STEP file, or `design`")
         if self.model and (self.revision or self.part):
             raise ValueError("`revision` and `part` belong to `design`")
         if self.design and self.version:
-            raise ValueError("`version` belongs to `model`; of a design give `revision`")
+            raise ValueError("`version` belongs to `model`; for a design give `revision`")
         self.place()
         self.density_si()
         return self
 
     def place(self) -> dict[str, float]:
-        """Return its shifts [mm] and rotations [deg], by parameter.
+        """Return the part's shifts [mm] and rotations [deg], by parameter.
 
         Raises
         ------
         ValueError
-            If one of them is not such a quantity, or is too large.
+            If a text is not a length or an angle, or is too large.
         """
         shifts = {name: _number(name, getattr(self, name), "mm", FARTHEST) for name in SHIFTS}
         return shifts | {name: _number(name, getattr(self, name), "deg", 360.0) for name in TURNS}
 
     def density_si(self) -> float:
-        """Return its density [kg/m³].
+        """Return the part's density [kg/m³].
 
         Raises
         ------
@@ -99,7 +103,7 @@ class FixedPart(Bounded):
 
 
 class AssemblyManifest(Bounded):
-    """An assembly."""
+    """An assembly of a base model and fixed parts."""
 
     model_config = STRICT
 
@@ -121,14 +125,14 @@ class AssemblyManifest(Bounded):
         if twice := sorted({name for name in names if names.count(name) > 1}):
             raise ValueError(f"two components are called {', '.join(twice)}")
         if "origin" in names:
-            raise ValueError("origin is a datum; choose another name")
+            raise ValueError("`origin` is the name of a datum; choose another name")
         return self
 
 
 def is_assembly(content: bytes) -> bool:
     """Return whether a JSON text claims to be the manifest of an assembly."""
     if len(content) > LONGEST:
-        return False  # whoever reads it says that it is too large
+        return False  # its reader reports that it is too large
     try:
         said = json.loads(content)
     except (ValueError, RecursionError):
@@ -142,7 +146,7 @@ def read(content: bytes) -> AssemblyManifest:
     Raises
     ------
     UnreadableModel
-        Naming all faults.
+        With all faults.
     """
     return read_manifest(AssemblyManifest, content, "the manifest of the assembly")
 

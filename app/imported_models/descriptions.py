@@ -24,7 +24,7 @@ READING = Limits(deadline=20.0, memory_mb=512)
 
 
 class Deadline:
-    """One deadline for all drawings of an import: what one of them takes, the others do not have."""
+    """One deadline for all drawings of an import: the time of one drawing reduces that of the others."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits, self._end = limits, time.monotonic() + limits.deadline
@@ -48,7 +48,7 @@ class Deadline:
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the remaining time."""
+        """Raise `DeadlineExceeded` with the deadline of the whole import instead of the remaining time."""
         try:
             yield
         except DeadlineExceeded:
@@ -95,7 +95,7 @@ def described_freecad(
 def described_creo(
     content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
-    """Return the description of a model in Creo by a manifest, after Creo has drawn it once as stored.
+    """Return the description of a model in Creo by a manifest, after Creo has drawn the stored model once.
 
     Raises
     ------
@@ -134,7 +134,9 @@ def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
         name = parameter_name(str(key), str(label), parameters)
         number, most = float(value), _BOUNDS[str(unit)]
         if not isfinite(number):
-            raise UnreadableModel("not_finite", f"{thing}.{key} is {number} {unit}: give it a finite number")
+            raise UnreadableModel(
+                "not_finite", f"{thing}.{key} is {number} {unit}: set it to a finite number"
+            )
         parameters[name] = Parameter(
             name=name,
             words=name.replace("_", " "),
@@ -156,7 +158,7 @@ def _trials(
     context: JobContext,
     deadline: Deadline,
 ) -> dict[str, Role]:
-    """Find how each length is measured on the solid: change it alone and compare the sizes."""
+    """Find how each length shows on the solid: change only this length, draw, and compare the sizes."""
     before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
     lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
     for number, one in enumerate(lengths):
@@ -170,7 +172,7 @@ def _trials(
             sizes = context.run(trial_sizes, drawn, limits=deadline.limits)
             roles[one.name] = role_of(one.value, value, before, sizes)
         except GeometryError:
-            continue  # it shows nowhere, as far as anybody can say
+            continue  # no size of the solid shows this length unambiguously
     return roles
 
 

@@ -1,5 +1,5 @@
-"""Errors of a model import, beyond those of its file and of its program."""
+"""Errors of a model import, in addition to those of its file and of its program."""
 
 
 class ModelIdTaken(Exception):
-    """Something else has the id."""
+    """Another object already has this id."""

@@ -1,4 +1,4 @@
-"""Find FreeCAD on this machine: the Python that it is built for, and the folders of its modules."""
+"""Find FreeCAD on this machine: the Python version that it is built for, and the folders of its modules."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def missing(reason: str) -> ProgramMissing:
 
 @cache
 def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCad:
-    """Return FreeCAD in a folder, or where Linux distributions install it.
+    """Return FreeCAD in a folder, or in the places where Linux distributions install it.
 
     Raises
     ------
     ProgramMissing
-        If it is missing, or this machine cannot isolate it.
+        If FreeCAD is missing, or this machine cannot isolate it.
     """
     if sys.platform != "linux" or platform.machine() not in _MACHINES:
         reason = f"FreeCAD is isolated on Linux of {' and '.join(_MACHINES)} only, and this is another system"

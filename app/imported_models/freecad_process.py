@@ -1,7 +1,7 @@
 """The server's side of the process in which FreeCAD opens one file.
 
-The process is isolated as `cad.freecad.drawing_process` says: no network, no other programs, only the files
-of one folder, limited memory and processor time. It is killed at its deadline in any case.
+`cad.freecad.drawing_process` describes how the process is isolated: no network, no other programs, only the
+files of one folder, limited memory and processor time. It is killed at its deadline in any case.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ LARGEST_ANSWER = 512 * 2**20
 _ENDING = 1.0
 """Time in which a process that no longer answers has to end [s]."""
 _GLANCE = 0.05  # [s]
-_LEAST = 0.1  # for which a drawing is let run, however little is left of a deadline [s]
+_LEAST = 0.1  # shortest time given to a drawing, even if less is left [s]
 _PIECE = 2**20
 
 
 class About(TypedDict, total=False):
-    """The answer of the process beside the shapes: the fields of a refusal, and those of a drawing."""
+    """The process's answer apart from the shapes: the fields of a refusal, or those of a drawing."""
 
     refused: str
     detail: str
@@ -54,14 +54,14 @@ class About(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class FreeCadAnswer:
-    """An answer of FreeCAD: what it says, and what it drew."""
+    """FreeCAD's answer: its message, and the shapes that it drew."""
 
     about: About
     drawn: ProgramResult
 
 
 class FreeCadProcess:
-    """FreeCAD with one file."""
+    """A process of FreeCAD for one file."""
 
     def __init__(self, program: FreeCad, content: bytes, limits: Limits) -> None:
         self._limits, self.answers, self.is_sound = limits, 0, False
@@ -94,16 +94,16 @@ class FreeCadProcess:
         cancelled: threading.Event,
         seconds: float = math.inf,
     ) -> FreeCadAnswer:
-        """Have FreeCAD open the file again, set some parameters, and draw, within this number of seconds.
+        """Let FreeCAD open the file again, set some parameters and draw, within this number of seconds.
 
         Raises
         ------
         DeadlineExceeded, MemoryExceeded, JobCancelled
-            If the process was ended, or exited by itself.
+            If the process exceeded a limit, or the job was cancelled.
         GeometryError
             If FreeCAD refuses or crashed.
         ProgramMissing
-            If it did not start.
+            If FreeCAD did not start.
         """
         self.is_sound = False
         if not self._is_ready:
@@ -207,7 +207,7 @@ class FreeCadProcess:
     def _crash(self) -> Exception:
         try:
             code = self._process.wait(_ENDING)
-        except subprocess.TimeoutExpired:  # it is killed, as is every process that gave no sound answer
+        except subprocess.TimeoutExpired:  # killed below, like every process without a valid answer
             return GeometryError(
                 "program_answer", "FreeCAD gave no answer that can be read: try other values"
             )

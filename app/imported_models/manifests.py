@@ -1,4 +1,4 @@
-"""Manifests of models, JSON that users write: how strictly they are read, and the patterns of their texts."""
+"""Read manifests of models, JSON files that users write, and define the patterns of their texts."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 
 
 def read_manifest(kind: type[M], content: bytes, words: str) -> M:
-    """Return a manifest from its JSON; `words` name it in the error.
+    """Return a manifest from its JSON; errors call it by `words`.
 
     Raises
     ------
     UnreadableModel
-        Naming all faults.
+        With all faults.
     """
     if len(content) > LONGEST:
         raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")

@@ -23,7 +23,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     Raises
     ------
     InvalidInputs
-        If the id means something else.
+        If the id is reserved, or ends like a version.
     ModelIdTaken
         If a template or another model has it.
     """
@@ -45,7 +45,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
     """Return an API name for a parameter: `boreDiameter` → `bore_diameter`.
 
-    Prefixed by its object if it is in use.
+    If that name is in use, the name of the parameter's object is put in front.
     """
     name = snake(key) or "parameter"
     if name in taken:

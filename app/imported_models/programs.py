@@ -24,7 +24,7 @@ Values = dict[str, float]
 
 
 class Drawing(Protocol):
-    """A program that draws."""
+    """The interface of a program that draws models."""
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the solids of a model for some values.
@@ -32,26 +32,28 @@ class Drawing(Protocol):
         Raises
         ------
         GeometryError
-            If it cannot draw them; `ProgramMissing` if it is missing.
+            If the program cannot draw them.
+        ProgramMissing
+            If the program is missing.
         DeadlineExceeded, MemoryExceeded, JobCancelled
-            If it was stopped.
+            If it exceeded a limit, or the job was cancelled.
         """
         ...
 
 
 class StepFiles:
-    """Draws a fixed part: its STEP file, as it was sent."""
+    """Provides the STEP file of a fixed part, unchanged."""
 
     def __init__(self, store: Artifacts) -> None:
         self._store = store
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
-        """Return the STEP file; there are no values."""
+        """Return the STEP file; a fixed part has no parameter values."""
         return ProgramResult(step=self._store.read(described.file))
 
 
 class CreoModels:
-    """Draws by a running Creo what manifests describe."""
+    """Draws models of Creo manifests with a running Creo."""
 
     def __init__(self, store: Artifacts, drawing: CreoDrawing) -> None:
         self._store, self.drawing = store, drawing
@@ -60,13 +62,13 @@ class CreoModels:
         """Return the STEP file that Creo exports; see `Drawing.draw`."""
         try:
             manifest = read(self._store.read(described.file))
-        except UnreadableModel as error:  # an older program took it
+        except UnreadableModel as error:  # an older version of the program accepted the file
             raise GeometryError(error.code, error.detail) from None
         return self.drawing.draw_manifest(manifest, described, values, cancelled)
 
 
 class FreeCadDrawing:
-    """Draws by FreeCAD, in a warm process of each file."""
+    """Draws with FreeCAD, in a warm process for each file."""
 
     def __init__(self, store: Artifacts, find: Callable[[], FreeCad], limits: Limits) -> None:
         self._store, self.warm = store, WarmProcesses(find, limits)
@@ -80,12 +82,15 @@ class FreeCadDrawing:
 
 
 def _changed(described: Description, values: Values) -> list[Parameter]:
-    """Return the parameters that differ from the file; setting the others again would change last digits."""
+    """Return the parameters that differ from the file.
+
+    Setting the others again would change their last digits.
+    """
     return [one for one in described.parameters if values.get(one.name, one.value) != one.value]
 
 
 def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
-    """Return a value in the form of the FreeCAD process: object, kind, key, value, unit."""
+    """Return a value in the form that the FreeCAD process expects: object, kind, key, value, unit."""
     thing, kind, key = one.source.split(".", 2)
     return [thing, kind, key, value, one.unit]
 
@@ -98,7 +103,7 @@ SET_CREO = (
 
 @dataclass(frozen=True)
 class Programs:
-    """The programs of this service, by name."""
+    """The drawing programs of this service, by name."""
 
     freecad: FreeCadDrawing
     by_name: dict[Program, Drawing]
@@ -108,7 +113,7 @@ class Programs:
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
         values = (
             {} if shape.imported.program == "assembly" else values_of(shape)
-        )  # it has words and lists too
+        )  # it may also contain texts and lists
         return self.drawn(shape.imported, values, cancelled)
 
     def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
@@ -124,7 +129,7 @@ class Programs:
 
 
 def values_of(shape: ImportedModel) -> Values:
-    """Return a model's parameters in their declared units, rounded to the twelve digits of its key."""
+    """Return a model's parameters in their declared units, rounded to twelve digits as in its key."""
     return {
         name: float(f"{shape.inputs[name].meaning.scale.from_si(float(si)):.12g}")
         for name, si in shape.inputs_si().items()

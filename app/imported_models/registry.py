@@ -1,4 +1,4 @@
-"""Keep the imported models of the database in the catalogue."""
+"""Publish the imported models of the database in the catalogue."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import threading
 from collections.abc import Iterable, Iterator
 
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.follower import Follower
 from app.catalogue.sheets import Key
 from app.imported_models import repository
 from app.storage.database import Database
@@ -16,12 +17,9 @@ from cad.model_classes import class_of
 
 logger = logging.getLogger(__name__)
 
-EVERY = 1.0
-"""Time between two looks of a server for what another one on its database has imported [s]."""
-
 
 def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
-    """Yield the classes of rows; an unreadable row does not affect the others."""
+    """Yield the classes of rows; an unreadable row is skipped."""
     for row in rows:
         try:
             yield (row.id, row.number), class_of(row.description, row.id, row.number)
@@ -30,38 +28,20 @@ def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[Impor
 
 
 class ImportedModelRegistry:
-    """Publishes imported models; a version is read once."""
+    """Publishes imported models, and reads each version only once."""
 
     def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
         self.database, self.catalogues = database, catalogues
-        self._is_shared, self._ending = is_shared, threading.Event()
         self._looking, self._count = threading.Lock(), 0
-        self._thread = threading.Thread(target=self._watch, name="imported models", daemon=True)
+        self.follower = Follower("imported models", self.look, lambda: is_shared)
+        """Looks for the models that other servers import, if the database may have other servers."""
         self.look()
 
-    def start(self) -> None:
-        """Start looking for models that other servers import, if the database may have other servers."""
-        if self._is_shared:
-            self._thread.start()
-
-    def stop(self) -> None:
-        """Stop looking."""
-        self._ending.set()
-        if self._thread.is_alive():
-            self._thread.join()
-
     def look(self) -> None:
-        """Look for new versions."""
+        """Publish new versions in the database."""
         with self._looking, self.database.read() as session:
             if (count := repository.count(session)) == self._count:
                 return
             rows = repository.all_rows(session)
             self.catalogues.bring(dict(_classes(rows)))
             self._count = count
-
-    def _watch(self) -> None:
-        while not self._ending.wait(EVERY):
-            try:
-                self.look()
-            except Exception:
-                logger.exception("The imported models could not be looked at")

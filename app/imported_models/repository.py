@@ -1,4 +1,4 @@
-"""All SQL of imported models; every function runs in its caller's transaction."""
+"""All SQL for imported models; every function runs in its caller's transaction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def all_rows(session: Session) -> list[Row]:
 
 
 def count(session: Session) -> int:
-    """Return the number of versions: rows never change and are never deleted."""
+    """Return the number of versions, which only grows: rows never change and are never deleted."""
     return session.scalar(select(func.count()).select_from(Row)) or 0
 
 
@@ -37,19 +37,19 @@ def version(session: Session, id: str, number: int) -> Row:
 
 
 def numbers(session: Session, id: str) -> list[int]:
-    """Return the versions of an imported model, ascending."""
+    """Return the version numbers of an imported model, ascending."""
     return list(session.scalars(select(Row.number).where(Row.id == id).order_by(Row.number)))
 
 
 def add(session: Session, id: str, described: Description, sent: str) -> int:
-    """Add the next version of a model; return the number of an identical one if it exists."""
+    """Add the next version of a model, unless an identical one exists, and return its number."""
     rows = list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
     for row in rows:
         if row.description == described.text:
             return row.number
     number = (rows[-1].number if rows else 0) + 1
     while not insert_new(session, _row(id, number, described, sent)):
-        number += 1  # another server was quicker
+        number += 1  # another server was faster
     return number
 
 

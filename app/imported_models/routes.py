@@ -1,4 +1,4 @@
-"""`/models/import`: models from FreeCAD, and STEP files as fixed parts."""
+"""`/models/import` and related paths: import models, and show where they come from."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ async def import_model(
 
 @router.get("/{id}/versions/{number}/origin", responses=refusals(404))
 def read_origin(id: Id, number: Number, database: TheDatabase) -> ModelOrigin:
-    """Return the file from which a model was imported, its parameters there, and the trust in its solids."""
+    """Return the origin of an imported model: its file, its parameters there, and its solids' checks."""
     return origin(database, id, number)
 
 

@@ -1,4 +1,4 @@
-"""Models that a team has imported, as the interface shows them."""
+"""Response schemas for models that a team has imported."""
 
 from __future__ import annotations
 
@@ -8,37 +8,37 @@ from app.schemas.answers import Answer
 
 
 class ImportedParameter(Answer):
-    """The place of a parameter in its file, and whether the solid shows it."""
+    """A parameter's location in the imported file, and how the solid shows it."""
 
     name: str
     unit: str
-    value: float = Field(description="in the file as it was sent, in `unit`")
+    value: float = Field(description="value in the original file, in `unit`")
     source: str = Field(description="object, kind and name in the file: `Sizes.cell.bore`")
     read_back: str | None = Field(
-        description="`diameter`, `radius` or `distance`: as what it is read back from every solid and checked"
+        description="`diameter`, `radius` or `distance`: the size of every solid that is compared with it"
     )
 
 
 class ModelOrigin(Answer):
-    """The origin of an imported model, and how far its solids are to be trusted."""
+    """The origin of an imported model, and how far its solids can be trusted."""
 
-    program: str = Field(description="`freecad`, `creo`, `step` or `assembly`")
-    file: str = Field(description="the name under which it was sent")
-    sha256: str = Field(description="of the file as it was sent, which is kept")
-    made_with: str = Field(description="the program and version that examined it")
-    trust: str = Field(description="which checks its solids pass, and which they do not have")
+    program: str = Field(description="program that draws it: `freecad`, `creo`, `step` or `assembly`")
+    file: str = Field(description="name of the original file")
+    sha256: str = Field(description="SHA-256 of the original file, which is kept")
+    made_with: str = Field(description="program and version that examined the file")
+    trust: str = Field(description="which checks its solids pass, and which are not made")
     author: str | None = None
     created: str
     parameters: list[ImportedParameter]
 
 
 class DrawingProgram(Answer):
-    """A program that draws imported models, and whether it is here."""
+    """A program that draws imported models, and whether it is installed."""
 
     name: str
-    files: str = Field(description="what it takes")
+    files: str = Field(description="kinds of files that it accepts")
     available: bool
-    detail: str = Field(description="where it is; or why it cannot be used, and how to install it")
+    detail: str = Field(description="where it is installed, or why it cannot be used and how to install it")
 
 
 class DrawingPrograms(Answer):

@@ -1,4 +1,4 @@
-"""Import models as jobs: store the file by its hash, examine it, and make it a version of a model."""
+"""Import models by jobs: store the file by its hash, examine it, and create a version of a model from it."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ FAILURES = (
 
 
 class ModelImports:
-    """Queues imports of models, and is the handler of such jobs.
+    """Queues imports of models, and handles the jobs that run them.
 
-    A failed import leaves nothing behind, and retention takes its file.
+    A failed import leaves only its file, which retention deletes.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class ModelImports:
         self.programs, self.registry = programs, registry
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
-        """Queue the import of a file as a model and return the id of the job.
+        """Queue the import of a file as a model, and return the id of the job.
 
         Raises
         ------
@@ -66,9 +66,9 @@ class ModelImports:
         ProgramMissing
             If the program that draws it is missing.
         ModelIdTaken, InvalidInputs
-            If no imported model may have the id.
+            If an imported model cannot have this id.
         QueueFull
-            Too many jobs are waiting.
+            If too many jobs are waiting.
         """
         require_free(id, self.catalogues)
         kind = kind_of(content)
@@ -82,17 +82,17 @@ class ModelImports:
         return queue_upload(self.jobs, self.store, IMPORT, content, about, once)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Import the file of a job; its result is the version of the model.
+        """Import the file of a job; the job's result is the version of the model.
 
         Raises
         ------
         JobFailed
-            If the file is refused, or the id is in use by now.
+            If the file is refused, or the id was taken in the meantime.
         """
         id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
         try:
             described = self._described(kind, self.store.read(sha), id, name, context)
-            class_of(described.text, id, 1)  # it can be published
+            class_of(described.text, id, 1)  # check that it can be published
             require_free(id, self.catalogues)
         except FAILURES as error:
             raise JobFailed(error) from error
@@ -105,7 +105,7 @@ class ModelImports:
         return completion
 
     def available(self) -> tuple[str | None, str | None]:
-        """Return the reason why FreeCAD cannot draw here, or None; and its folder."""
+        """Return the reason for which FreeCAD cannot draw here, or None; and the folder of FreeCAD."""
         try:
             return None, self.programs.freecad.warm.find().modules
         except ProgramMissing as error:
@@ -122,7 +122,7 @@ class ModelImports:
 
 
 def kind_of(content: bytes) -> Kind:
-    """Return the kind of a file, by its first bytes.
+    """Return the kind of a file, judged by its first bytes.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Imported models as the interface shows them."""
+"""Convert imported models to the schemas of the interface."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Idle FreeCAD processes, one for each file drawn recently, so that its next drawing is quick.
+"""Idle FreeCAD processes, one for each recently drawn file, so that its next drawing is fast.
 
 FreeCAD takes seconds to start, but only a tenth of a second to draw. A process serves only one file, so a
 harmful file affects no other. The process ends after a number of drawings, after any failure, and when other
@@ -23,7 +23,7 @@ MOST_DRAWINGS = 100
 
 
 class WarmProcesses:
-    """Processes of FreeCAD that wait, by the hash of their file."""
+    """Idle FreeCAD processes by the hash of their file."""
 
     def __init__(self, find: Callable[[], FreeCad], limits: Limits) -> None:
         self.find, self.limits = find, limits
@@ -45,7 +45,7 @@ class WarmProcesses:
         try:
             return process.ask(do, given, cancelled, seconds)
         except GeometryError:
-            if self._is_closed:  # it was killed
+            if self._is_closed:  # the process was killed
                 raise JobCancelled from None
             raise
         finally:

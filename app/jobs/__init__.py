@@ -1,1 +1,1 @@
-"""Long work: jobs are rows in the database, run outside the server's process, and report progress."""
+"""Jobs for long work: rows in the database, run outside the server's process, with progress reports."""

@@ -20,18 +20,18 @@ Ts = TypeVarTuple("Ts")
 
 logger = logging.getLogger(__name__)
 
-_LINES = 200  # of the log that are kept
+_LINES = 200  # lines of the log that are kept
 
 
 Keep = Callable[[Job, float, list[str]], object]
-"""Takes how far a claimed job is (0 to 1) and its log, to be stored soon; never blocks."""
+"""Accept the progress [0 to 1] and the log of a claimed job, to be stored soon; never blocks."""
 
 
 class JobContext:
-    """Runs functions in the worker, and reports and stores how far the job is.
+    """Runs functions in the worker, and reports and stores the progress of the job.
 
-    All functions of a job share a process, as long as each comes to its end: a job that builds a hundred
-    solids pays once for what the kernel loads at first use.
+    All functions of a job share a process as long as each returns normally. So a job that builds a hundred
+    solids loads the kernel's resources only once.
     """
 
     def __init__(
@@ -58,16 +58,18 @@ class JobContext:
 
     @property
     def cancelled(self) -> threading.Event:
-        """Set once the job is cancelled or the server stops."""
+        """Return the event that is set once the job is cancelled or the server stops."""
         return self._cancelled
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """Run a function in the worker, within the limits of jobs or others; it reports progress by `report`.
+        """Run a function in the worker, within these limits or those of jobs.
+
+        The function reports progress by `report`.
 
         Raises
         ------
         JobCancelled
-            If somebody cancelled the job, or the server stops.
+            If the job was cancelled, or the server stops.
         WorkerError
             See `Worker.run`.
         """
@@ -80,22 +82,22 @@ class JobContext:
         )
 
     def quietly(self) -> Runner:
-        """Run several functions without reporting the progress of each; the job counts them."""
+        """Return a runner for several functions that do not report their progress; the job counts them."""
         return _Quietly(self._batch, self._limits, self._cancelled)
 
     def close(self) -> None:
-        """End the process of the job; called when its handler has ended."""
+        """End the process of the job; called when the job's handler has returned."""
         self._batch.close()
 
     def progress(self, fraction: float, text: str) -> None:
-        """Publish and store the progress of the job (0 to 1) and its next action."""
+        """Publish and store the progress of the job [0 to 1], and a text on its next action."""
         self.log = [*self.log, text][-_LINES:]
         publish(self._events, self._job, fraction, text)
         self._keep(self._job, fraction, self.log)
 
 
 class _Quietly:
-    """Runs functions of a job without progress; see `Runner`."""
+    """Runs functions of a job without reporting progress; see `Runner`."""
 
     def __init__(self, batch: Batch, limits: Limits, cancelled: threading.Event) -> None:
         self._batch, self._limits, self._cancelled = batch, limits, cancelled
@@ -106,13 +108,13 @@ class _Quietly:
 
 
 def publish(events: Events, job: Job, fraction: float, text: str) -> None:
-    """Send the progress of a job to all its listeners, or those of its design, in this process."""
+    """Send the progress of a job to everyone in this process who listens to the job or to its design."""
     data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
     events.publish(*map(partial(Event, name="progress", data=data), job.topics))
 
 
 def note(session: Session, events: Events, job: Job, name: str, **more: object) -> None:
-    """Record an event of a job, in the same unit of work, for those who watch the job or its design."""
+    """Record an event of a job, in the same unit of work, for those who listen to the job or its design."""
     after_commit(session, partial(_record, job, name))
     data = {"job": job.id, "revision": job.revision, **more}
     events.note(session, *[Event(topic, name, data) for topic in job.topics])

@@ -1,4 +1,4 @@
-"""Threads that take jobs from the queue, have them executed, and record their outcomes."""
+"""Threads that take jobs from the queue, execute them, and record their outcomes."""
 
 import logging
 import secrets
@@ -38,14 +38,14 @@ FAST, SLOW = "fast", "slow"
 WORKER_LANES: Mapping[str, WorkerLane] = {FAST: GEOMETRY, SLOW: ANALYSIS}
 """Where the worker needs a place before a job is claimed; jobs of other lanes may never ask for one."""
 MAX_CRASHES = 2
-MAX_LOSSES = 5  # of machines, or servers, that ran a job
-_GLANCE = 0.1  # how often a thread looks whether the worker has a place again [s]
-_PAUSE = 1.0  # before the queue is looked at again after the database has failed [s]
+MAX_LOSSES = 5  # largest number of lost machines or servers for one job
+_GLANCE = 0.1  # time between two checks whether the worker has room [s]
+_PAUSE = 1.0  # time before the next look at the queue after a database error [s]
 
 
 @dataclass(frozen=True)
 class RunningJob:
-    """A job that this server has claimed, and what is set to stop it."""
+    """A job that this server has claimed, and the event that stops it."""
 
     job: Job
     cancelled: threading.Event
@@ -53,7 +53,7 @@ class RunningJob:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of jobs: the function that runs them, and their lane."""
+    """A kind of jobs: the function that runs them, and the lane in which they wait."""
 
     handler: Handler
     on_failure: FailureHook
@@ -61,9 +61,9 @@ class Kind:
 
 
 class Dispatcher:
-    """Runs the queued jobs, as many at a time as there are threads; every lane has threads of its own.
+    """Runs the queued jobs. Every lane has its own threads, whose number limits its simultaneous jobs.
 
-    So whoever changes a bearing does not wait until somebody's analysis is done.
+    So a change of a bearing does not wait for somebody else's analysis.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class Dispatcher:
         self._threads: list[threading.Thread] = []
 
     def start(self, beside: Mapping[str, int]) -> None:
-        """Start taking jobs from the queue, with extra threads for the lanes `beside` the usual two."""
+        """Start to take jobs from the queue; `beside` has the numbers of threads of additional lanes."""
         self._progress.start()
         self._counts |= beside
         self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
@@ -115,22 +115,22 @@ class Dispatcher:
         return self._counts[self._lane_name(kind)]
 
     def wake(self, kind: str | None = None) -> None:
-        """Wake a thread of each lane, or of the lane of one kind, to look at the queue."""
+        """Wake a thread of each lane, or of the lane of one kind, to check the queue."""
         for lane in self._awake if kind is None else (self._lane_name(kind),):
             self._awake[lane].release()
 
     def interrupt(self, id: str, attempt: int | None = None) -> None:
-        """Kill the process of a job, if it runs and is at this attempt."""
+        """Kill the process of a job, if the job is running at this attempt."""
         running = self._running.get(id)
         if running and attempt in (None, running.job.attempt):
             running.cancelled.set()
 
     def running(self) -> list[Job]:
-        """Return the jobs that this server runs, as they were claimed."""
+        """Return the jobs that this server runs, as they were when it claimed them."""
         return [running.job for running in list(self._running.values())]
 
     def requeue_all(self, owner: str | None = None) -> None:
-        """Queue again all jobs marked as running, or those of an owner, when none of them can be alive."""
+        """Queue again all running jobs, or only those of an owner; none of them may still be alive."""
 
         def unit(session: Session) -> None:
             for job in repository.requeue_all(session, owner):
@@ -143,9 +143,9 @@ class Dispatcher:
         self._stopping.set()
 
     def stop(self, patience: float = 10.0) -> None:
-        """Kill running jobs, put them back into the queue, and wait for the threads for this time [s].
+        """Kill running jobs, put them back into the queue, and wait this long for the threads [s].
 
-        A thread that calculates by itself cannot be stopped: its job is put back at the next start.
+        A thread that calculates in this process cannot be stopped; its job is put back at the next start.
         """
         self.drain()
         for id in list(self._running):
@@ -165,7 +165,7 @@ class Dispatcher:
             try:
                 self._empty_queue(lane)
             except DatabaseClosed:
-                return  # this thread was left behind when the server stopped
+                return  # this thread outlived the stop of the server
             except Exception:
                 logger.exception("The queue of jobs could not be read or written; trying again")
                 self._stopping.wait(_PAUSE)
@@ -179,11 +179,13 @@ class Dispatcher:
                     self._execute(job)
             finally:
                 self.durations.note(self.lane(job.kind), time.monotonic() - start)
-                if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
+                if (
+                    self._running.get(job.id) is mine
+                ):  # once given back, the job may already run in another thread
                     del self._running[job.id]
 
     def _has_place(self, lane: str) -> bool:
-        """Wait until the worker has room for a job of a lane; False if no more jobs are started."""
+        """Wait until the worker has room for a job of a lane; return False if no more jobs are to start."""
         while not self._stopping.is_set():
             if lane not in WORKER_LANES or self._worker.capacity(WORKER_LANES[lane]) > 0:
                 return True
@@ -200,7 +202,7 @@ class Dispatcher:
         return job
 
     def _register(self, job: Job) -> None:
-        self.interrupt(job.id)  # if its lease was lost here, and this is the next attempt
+        self.interrupt(job.id)  # in case this server lost the lease, and this is the next attempt
         self._running[job.id] = RunningJob(job, threading.Event())
 
     def _lane_name(self, kind: str) -> str:
@@ -214,9 +216,9 @@ class Dispatcher:
         return Lane(tuple(name for name, its in beside.items() if its == lane), is_common=False)
 
     def _execute(self, job: Job) -> None:
-        """Run a claimed job until it ends in any way."""
+        """Run a claimed job until it ends, and handle every outcome."""
         cancelled = self._running[job.id].cancelled
-        if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
+        if self._stopping.is_set():  # claimed while `stop` went through the running jobs
             cancelled.set()
         logger.info("job %s (%s) begins", job.id, job.kind, extra={"job": job.id})
         batch = self._worker.batch(WORKER_LANES.get(self._lane_name(job.kind), GEOMETRY))
@@ -229,7 +231,7 @@ class Dispatcher:
                 self._progress.forget(job)
             self._complete(job, context, completion)
         except JobCancelled:
-            self._requeue(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
+            self._requeue(job, job.crashes)  # has no effect if the job was cancelled meanwhile
         except JobRests:
             self._rest(job)
         except (ArtifactsUnreachable, DatabaseUnavailable) as error:
@@ -257,7 +259,10 @@ class Dispatcher:
         self._database.write(unit)
 
     def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
-        """Try again: another process may be the cause, such as one that used the machine's memory."""
+        """Queue a crashed job again, because another process may have caused the crash by using all memory.
+
+        After several crashes the job fails.
+        """
         if self._stopping.is_set():  # its process was ended with the others
             self._requeue(job, job.crashes)
             return
@@ -269,7 +274,7 @@ class Dispatcher:
             self._fail(job, context, self._describe(error), crashes=crashes)
 
     def _lost(self, job: Job, context: JobContext, error: WorkerLost) -> None:
-        """Retry on another machine: only repeated losses of machines indicate a fault of the job."""
+        """Queue a job again whose machine was lost; it fails only after repeated losses."""
         losses = job.losses + 1
         logger.warning("Job %s (%s) was lost, time %d: %s", job.id, job.kind, losses, error)
         if losses < MAX_LOSSES:

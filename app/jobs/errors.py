@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 
 
 class JobError(Exception):
-    """An error of jobs."""
+    """Base class of errors of jobs."""
 
 
 class JobNotFound(JobError):
@@ -45,7 +45,7 @@ class JobShared(JobError):
 
 
 class QueueFull(JobError):
-    """Too many jobs are waiting, of the client (`own`) or of all; a try is worthwhile after some time [s]."""
+    """The client (`own`) or all clients have too many waiting jobs; retry after the stated time [s]."""
 
     def __init__(self, retry_after: int, own: int | None = None) -> None:
         whose = "Too many jobs are" if own is None else f"{own} jobs of yours, as many as may be, are"
@@ -55,19 +55,21 @@ class QueueFull(JobError):
 
 
 class JobLost(JobError):
-    """Whatever ran the job was lost, time after time."""
+    """The servers or workers that ran the job were lost repeatedly."""
 
     def __init__(self, losses: int) -> None:
-        super().__init__(f"What ran the job ended without a word {losses} times, so it is not tried again.")
+        super().__init__(
+            f"The server or worker that ran the job was lost {losses} times, so the job is not retried."
+        )
         self.losses = losses
 
 
 class JobRests(JobError):
-    """A handler lets the jobs of others go first: its own is queued again, in its client's next turn."""
+    """A handler lets other clients' jobs run first; its own job is queued for its client's next turn."""
 
 
 class JobFailed(JobError):
-    """A handler's verdict: the job ends by an error, and `completion` runs in the same transaction."""
+    """A handler raises this to end its job with an error; `completion` runs in the same transaction."""
 
     def __init__(self, cause: Exception, completion: Callable[[Session], None] | None = None) -> None:
         super().__init__(cause)

@@ -1,9 +1,9 @@
 """Events of designs and jobs: rows, written in the transaction of the change and sent to subscribers.
 
-The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
-its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a
-reader who sees a number also sees all lower ones. A database sequence does not guarantee that, because it
-assigns numbers before the commit.
+The topics are `design:<id>` and `job:<id>`; the numbers of events within a topic have no gaps. An event gets
+its number under the lock of its design's or job's row, in the unit of work that makes the change. So a reader
+who sees a number also sees all lower ones. A database sequence does not guarantee that, because it assigns
+numbers before the commit.
 
 The rows are authoritative. A subscriber receives a hint together with the event; see `Subscription`.
 """
@@ -29,7 +29,7 @@ from app.storage.units import Statement
 
 Data = Mapping[str, object]
 
-PAGE = 500  # events that are read at once
+PAGE = 500  # events read in one query
 _EVENTS = Base.metadata.tables["event"]
 _OWNERS: dict[str, Table] = {kind: Base.metadata.tables[kind] for kind in ("design", "job")}
 _OPERATED = select(CounterRow.value).where(CounterRow.name == NAME).scalar_subquery()
@@ -49,7 +49,7 @@ _NOTED = Statement(insert(_EVENTS).values(operated=_OPERATED), "topic", "number"
 
 @dataclass(frozen=True)
 class Event:
-    """An event of a topic; one without a number is stored nowhere, such as progress."""
+    """An event of a topic; an event without a number, such as progress, is not stored."""
 
     topic: str
     name: str
@@ -58,7 +58,7 @@ class Event:
 
     @property
     def message(self) -> dict[str, object]:
-        """Return the event in the form that readers get: a JSON object with its name."""
+        """Return the event as readers receive it: a JSON object with its name."""
         return {"event": self.name, **self.data}
 
 
@@ -66,14 +66,14 @@ TOPIC: Callable[[Event], str] = attrgetter("topic")
 
 
 def note_events(session: Session, *events: Event) -> list[Event]:
-    """Write events in the unit of work that makes them true; return them with their numbers.
+    """Write events in the unit of work of the change, and return them with their numbers.
 
-    No listener is informed: services use `app.jobs.events.Events.note` instead. The rows of jobs are locked
+    This informs no listener; services use `app.jobs.events.Events.note` instead. The rows of jobs are locked
     before those of designs, as everywhere.
     """
     counts = Counter(map(TOPIC, events))
     numbers = dict[str, int]()
-    session.flush()  # the rows of which these events tell
+    session.flush()  # write the rows that these events are about
     for topic in sorted(counts, reverse=True):
         kind, _, id = topic.partition(":")
         (raised,) = _RAISED[kind].run(session, {"of": id, "more": counts[topic]})
@@ -108,7 +108,7 @@ def newest_numbers(session: Session, topics: Iterable[str]) -> dict[str, int]:
 
 
 def events_above(session: Session, topic: str, number: int, most: int = PAGE) -> list[Event]:
-    """Return the events of a topic above a number, in their order; not more than `most`."""
+    """Return the events of a topic above a number, in order, at most `most`."""
     row = EventRow
     later = select(row.name, row.data, row.number).where(row.topic == topic, row.number > number)
     rows = session.execute(later.order_by(row.number).limit(most))
@@ -116,9 +116,9 @@ def events_above(session: Session, topic: str, number: int, most: int = PAGE) ->
 
 
 def are_events_kept(session: Session, topic: str, number: int, newest: int) -> bool:
-    """Return whether all events of a topic after a number are stored.
+    """Return whether all events of a topic after a number are still stored.
 
-    False if the number is not reached yet.
+    The result is False if the topic has not reached the number yet.
     """
     if number >= newest:
         return number == newest
@@ -130,14 +130,14 @@ __all__ = ["Event", "Events", "Subscription"]
 
 @dataclass
 class _Topic:
-    """Those who listen to a topic, and the newest number that they were sent."""
+    """The subscribers of a topic, and the newest number that was sent to them."""
 
     subscribers: set[Subscription] = field(default_factory=set)
     newest: int | None = None
 
 
 class Events:
-    """Topics and their subscribers. Who comes later reads the state first, or goes on from a number."""
+    """Topics and their subscribers. A new subscriber first reads the state, or continues from a number."""
 
     def __init__(self, database: Database) -> None:
         self.tell: Callable[[Iterable[str]], object] = list
@@ -148,12 +148,12 @@ class Events:
         self._closed = False
 
     def note(self, session: Session, *events: Event) -> None:
-        """Write events in the unit of work that makes them true; send them once they are durable."""
+        """Write events in the unit of work of the change, and send them once they are durable."""
         noted = note_events(session, *events)
         after_commit(session, partial(self._share, noted))
 
     def publish(self, *events: Event) -> None:
-        """Send events to all listeners in this process; never blocks."""
+        """Send events to all listeners in this process without blocking."""
         for event in events:
             with self._lock:
                 if (topic := self._topics.get(event.topic)) is None:
@@ -165,9 +165,9 @@ class Events:
                 subscriber.send(event)
 
     def look(self, topics: Iterable[str] | None = None) -> None:
-        """Send events of other servers for topics with listeners, or for all topics.
+        """Send events of other servers, for topics with listeners among these or among all topics.
 
-        The newest page of rows is enough: subscribers read earlier missing events themselves.
+        The newest page of rows is enough, because subscribers read earlier missing events themselves.
         """
         with self._lock:
             heard = {topic: its.newest for topic, its in self._topics.items()}
@@ -182,13 +182,13 @@ class Events:
                     self.publish(*events_above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
-        """Return those of the given topics, or of all, that have listeners on this server."""
+        """Return the topics with listeners on this server, among the given ones or among all."""
         with self._lock:
             return set(self._topics) if topics is None else self._topics.keys() & set(topics)
 
     @asynccontextmanager
     async def subscribe(self, topic: str) -> AsyncIterator[Subscription]:
-        """Subscribe from now on; the subscription ends when the server closes."""
+        """Return a subscription to a topic from now on; it ends when the server closes."""
         subscriber = Subscription(topic, self._above)
         self._add(topic, subscriber)
         try:
@@ -197,7 +197,7 @@ class Events:
             self._remove(topic, subscriber)
 
     def close(self) -> None:
-        """End all subscriptions, present and future."""
+        """End all present and future subscriptions."""
         with self._lock:
             self._closed = True
             everyone = [subscriber for topic in self._topics.values() for subscriber in topic.subscribers]
@@ -205,7 +205,7 @@ class Events:
             subscriber.send(None)
 
     def _share(self, noted: list[Event]) -> None:
-        """Send events that this server has written, and notify other servers."""
+        """Send events that this server has written to its listeners, and notify other servers."""
         self.publish(*noted)
         self.tell(map(TOPIC, noted))
 
@@ -230,32 +230,32 @@ class Events:
 Read = Callable[[str, int], list[Event]]
 """Reads the events of a topic above a number: a page of them."""
 
-_ROOM = 100  # events that may wait for a slow reader before the oldest are dropped
+_ROOM = 100  # events queued for a slow reader before the oldest are dropped
 
 
 class Subscription:
-    """The events of a topic in the order of their numbers, none twice and none missing.
+    """The events of a topic in the order of their numbers, each exactly once.
 
-    They come through a queue in the event loop of the reader; None in it is the end. Events may get lost on
-    the way there, overtake each other or come twice: the number after `number` is the next one, and what
-    lies between is read from the rows. Events without a number are handed over as they come.
+    They arrive through a queue in the event loop of the reader; None marks the end. On the way to the queue
+    events may get lost, overtake each other or arrive twice. The number after `number` is the next one; if
+    it is missing, it is read from the rows. Events without a number are passed on as they arrive.
     """
 
     def __init__(self, topic: str, read: Read) -> None:
         self.number: int | None = None
         """The newest event that the reader has; None: take them as they come."""
         self._topic, self._read = topic, read
-        self._is_behind = False  # events above `number` came, and are not in the queue
+        self._is_behind = False  # whether events above `number` have arrived but are not in the queue
         self._loop = asyncio.get_running_loop()
         self._queue: asyncio.Queue[Event | None] = asyncio.Queue(_ROOM)
 
     def resume(self, number: int) -> None:
-        """Continue after the reader's last event with all later ones."""
+        """Continue after the reader's last event, with all later events."""
         self.number, self._is_behind = number, True
 
     def send(self, event: Event | None) -> None:
-        """Deliver an event; may be called from any thread and never blocks."""
-        with suppress(RuntimeError):  # the loop has ended, and the reader with it
+        """Deliver an event; this may be called from any thread and never blocks."""
+        with suppress(RuntimeError):  # the event loop and the reader have ended
             self._loop.call_soon_threadsafe(self._put, event)
 
     async def __aiter__(self) -> AsyncIterator[Event]:
@@ -278,7 +278,7 @@ class Subscription:
     async def _missed(self) -> AsyncIterator[Event]:
         """Yield the events above `number`, page by page, if some are missing."""
         while self._is_behind and self.number is not None:
-            self._is_behind = False  # unless more is dropped from now on
+            self._is_behind = False  # true again if more events are dropped
             page = await asyncio.to_thread(self._read, self._topic, self.number)
             self._is_behind |= len(page) == PAGE
             for event in page:

@@ -22,11 +22,11 @@ logger = logging.getLogger(__name__)
 
 
 class Leases:
-    """Prolongs the leases of what this server runs, and queues again what other servers have left behind.
+    """Renews the leases of this server's jobs, and queues again the jobs that dead servers have left.
 
-    What is no longer this server's is interrupted: somebody has cancelled it on another server, or this one
-    was silent for too long. It also has the queue looked at now and then, as hints of other servers may be
-    missed.
+    A job that no longer belongs to this server is interrupted: somebody cancelled it on another server, or
+    this server was silent for too long. A thread also checks the queue from time to time, because hints of
+    other servers may get lost.
     """
 
     def __init__(
@@ -53,11 +53,11 @@ class Leases:
         return self._thread.ident is not None
 
     def start(self) -> None:
-        """Start: queue again at once the jobs of dead servers whose leases have expired."""
+        """Start the thread, and queue again at once the jobs of dead servers whose leases have expired."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop, and give back the jobs that this server still has."""
+        """Stop the thread, and give back the jobs that this server still has."""
         self._stopping.set()
         self._thread.join()
         try:
@@ -66,7 +66,7 @@ class Leases:
             logger.exception("Jobs could not be given back; other servers take them when their leases end")
 
     def beat(self) -> None:
-        """Renew the leases once, and interrupt lost jobs."""
+        """Renew the leases once, and interrupt jobs that this server has lost."""
         jobs = self._dispatcher.running()
         if not jobs:
             return
@@ -78,9 +78,9 @@ class Leases:
                 self._dispatcher.interrupt(job.id, job.attempt)
 
     def reap(self) -> None:
-        """Queue jobs with expired leases again, once."""
+        """Queue again the jobs whose leases have expired."""
         for job in self._database.write(self._reaped):
-            logger.warning("job %s (%s) was left behind by its server, loss %d", job.id, job.kind, job.losses)
+            logger.warning("job %s (%s) was abandoned by its server, loss %d", job.id, job.kind, job.losses)
 
     def _reaped(self, session: Session) -> list[Job]:
         jobs = repository.reap(session)
@@ -105,6 +105,6 @@ class Leases:
                     self.beat()
                     self.reap()
             except Exception as error:
-                logger.warning("The leases of jobs could not be prolonged; trying again: %s", error)
+                logger.warning("The leases of jobs could not be renewed; trying again: %s", error)
             self._dispatcher.wake()
             pause = min(self._poll, max(0.0, beaten + self._beat - time.monotonic()))

@@ -1,6 +1,6 @@
-"""Progress of running jobs for other servers: stored in the rows of the jobs.
+"""Store the progress of running jobs in their rows, for other servers.
 
-Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
+Progress is not an event: only the latest value counts, and it costs at most one small write per second.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
 
-SUBJECT = "progress"  # of the hints by which other servers look at the row of a job
-GRACE = 0.15  # a job that ends sooner has no progress stored [s]
-ALONE, SHARED = 0.5, 1.0  # between two writes for one job, where servers share the database or not [s]
-_PATIENCE = 5.0  # for the end of the thread [s]
+SUBJECT = "progress"  # subject of hints, which make other servers read a job's row
+GRACE = 0.15  # progress of a shorter job is not stored [s]
+ALONE, SHARED = 0.5, 1.0  # time between two writes for a job, on an own or a shared database [s]
+_PATIENCE = 5.0  # longest wait for the end of the thread [s]
 
 
 class ProgressKeeper:
-    """Stores the latest progress of the jobs that this server runs, in a thread of its own.
+    """Stores the latest progress of this server's running jobs, in a separate thread.
 
-    The first is stored after `GRACE` [s], what comes within `interval` [s] of it at the end of that: so the
-    row is never behind for longer, however long the job's next step is silent. Other servers get a hint each
-    time. Of a job that has ended by then nothing is stored: a small solid takes less, and a write costs as
-    much as a tenth of it.
+    The first value is stored after `GRACE` [s]. Values that arrive within `interval` [s] of a write are
+    stored at the end of that interval, so the row never lags by more, even if the job's next step reports
+    nothing for long. Each write sends a hint to other servers. Nothing is stored for a job that has ended by
+    then: a small solid takes less time than that, and a write costs a tenth of it.
     """
 
     def __init__(self, database: Database, events: Events, interval: float | None = None) -> None:
@@ -42,11 +42,11 @@ class ProgressKeeper:
         self._thread = threading.Thread(target=self._work, name="progress", daemon=True)
 
     def start(self) -> None:
-        """Begin to store."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop; unstored progress is lost, and a server that resumes the job starts from zero."""
+        """Stop the thread; unstored progress is lost, and a server that resumes the job starts from zero."""
         self._stopping.set()
         self._some.set()
         if self._thread.ident is not None:
@@ -59,7 +59,7 @@ class ProgressKeeper:
         self._some.set()
 
     def forget(self, job: Job) -> None:
-        """Drop the unstored progress of an ended job."""
+        """Discard the unstored progress of an ended job."""
         with self._lock:
             self._latest.pop(job.id, None)
 
@@ -74,9 +74,9 @@ class ProgressKeeper:
                 self._stopping.wait(self._interval)
 
     def _store(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Store the progress of a job that is still held here.
+        """Store the progress of a job that this server still holds.
 
-        An error is ignored, since nothing depends on it.
+        An error is ignored, because nothing depends on the stored progress.
         """
         try:
             unit = partial(repository.note_progress, job=job, progress=fraction, log=log)
@@ -87,14 +87,14 @@ class ProgressKeeper:
 
 
 class ProgressFollower:
-    """Publishes how far jobs of other servers are, to those who listen here to them or to their designs."""
+    """Publishes the progress of jobs on other servers to local listeners of these jobs or their designs."""
 
     def __init__(self, database: Database, events: Events, owner: str) -> None:
         self._database, self._events, self._owner = database, events, owner
         self._shown: dict[str, tuple[int, float, str]] = {}  # by job: attempt, progress, text
 
     def look(self, hints: Iterable[str] | None = None) -> None:
-        """Read the rows of jobs that other servers name, or of all jobs with listeners."""
+        """Read the rows of the jobs that other servers name, or of all jobs with listeners."""
         if hints is None:
             heard = self._events.heard()
         else:
@@ -108,11 +108,11 @@ class ProgressFollower:
             )
         for job in running:
             self._show(job)
-        if hints is None:  # of what has ended nothing comes any more
+        if hints is None:  # nothing arrives for an ended job
             self._shown = {job.id: self._shown[job.id] for job in running if job.id in self._shown}
 
     def _show(self, job: Job) -> None:
-        if not job.log:  # it has just begun
+        if not job.log:  # the job has just begun
             return
         stands = job.attempt, job.progress, job.log[-1]
         if self._shown.get(job.id) != stands:
@@ -121,7 +121,7 @@ class ProgressFollower:
 
 
 def _topics(hint: str) -> Collection[str]:
-    """Return the topics to which a hint of progress belongs; none for other hints."""
+    """Return the topics that a hint of progress is about; empty for other hints."""
     subject, _, names = hint.partition(":")
     job, _, design = names.partition(":")
     if subject != SUBJECT:

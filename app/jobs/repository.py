@@ -1,4 +1,4 @@
-"""All SQL about jobs. Every function runs in the transaction of its caller.
+"""All SQL for jobs. Every function runs in the transaction of its caller.
 
 The writes of a claimed job are fenced: they take effect only while its row is still running under the same
 owner and attempt, so a job that was cancelled or claimed again can no longer write. That is why these units
@@ -31,9 +31,10 @@ FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
 
 @dataclass(frozen=True)
 class Job:
-    """A piece of work as it was when it was read.
+    """A job as it was when its row was read.
 
-    `attempt` counts claims, `crashes` dead processes, `losses` dead workers and servers; `owner` runs it.
+    `attempt` counts claims, `crashes` dead processes, and `losses` dead workers and servers; `owner` is the
+    server that runs it.
     """
 
     id: str
@@ -53,13 +54,13 @@ class Job:
     principal: str | None = None
     losses: int = 0
     owner: str | None = None
-    cause: str = ""  # the id of the request that queued it, and the context of its trace
+    cause: str = ""  # id of the request that queued the job, and its trace context
     event: int = 0
     """The number of its newest event."""
 
     @cached_property
     def topics(self) -> tuple[str, ...]:
-        """Return the topics of its events: its own and its design's."""
+        """Return the topics of the job's events: its own topic and that of its design."""
         own = f"job:{self.id}"
         return (own,) if self.design is None else (own, f"design:{self.design}")
 
@@ -95,8 +96,8 @@ def add(
     turn: int = 0,
     question: str | None = None,
 ) -> str:
-    """Queue a job of a client, in its turn, and return its id."""
-    session.flush()  # the revision it belongs to comes first
+    """Queue a job in its client's turn, and return its id."""
+    session.flush()  # its revision must be written first
     id, at = new_id(session), now()
     row = {
         "id": id, "kind": kind, "design_id": design, "revision": revision, "payload": payload,
@@ -110,7 +111,7 @@ def add(
 
 
 def census(session: Session) -> list[tuple[str, str, int]]:
-    """Return kind, state and number of unfinished jobs."""
+    """Return the number of unfinished jobs by kind and state."""
     living = select(JobRow.kind, JobRow.state, func.count()).group_by(JobRow.kind, JobRow.state)
     living = living.where(JobRow.state.in_(["queued", "running"]))
     return [(kind, state, count) for kind, state, count in session.execute(living)]
@@ -124,7 +125,7 @@ def get(session: Session, id: str) -> Job | None:
 
 
 def locked(session: Session, id: str) -> Job | None:
-    """Return the present state of a job, or None; lock it until the end of this unit."""
+    """Return the present state of a job, or None; its row stays locked until the end of this unit of work."""
     row = session.get(JobRow, id, with_for_update=True, populate_existing=True)
     return _job(row) if row else None
 
@@ -137,9 +138,9 @@ def page(session: Session, limit: int, before: str | None) -> list[Job]:
 
 
 def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None:
-    """Return the id of an unfinished job of this kind and payload.
+    """Return the id of an unfinished job with this kind and payload.
 
-    A lock keeps other units from looking for such a job until the end of this one.
+    A lock keeps other units of work from searching for such a job until the end of this one.
     """
     lock(session, f"job {kind} {canonical_json(payload)}")
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
@@ -147,7 +148,7 @@ def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None
 
 
 def asked(session: Session, question: str, states: Collection[State]) -> Job | None:
-    """Return the newest job of an equal question, by its key, in one of these states."""
+    """Return the newest job with this request key in one of these states."""
     equal = select(JobRow).where(JobRow.question == question, JobRow.state.in_(states))
     row = session.scalar(equal.order_by(JobRow.id.desc()).limit(1))
     return _job(row) if row else None
@@ -165,7 +166,7 @@ def claim(
     A job that another server is claiming is skipped, without waiting. A job whose kind is not `known` is
     skipped too: it waits for a newer server.
     """
-    repeatable(session)  # a claim that nobody knows of is reaped
+    repeatable(session)  # an unknown claim expires
     claimed = _claimed(lane, None if kinds is None else tuple(kinds))
     for row in claimed.run(session, {"at": now(), "by": owner, "lease": lease}):
         return Job(*row)
@@ -189,7 +190,7 @@ def _claimed(lane: Lane, kinds: tuple[str, ...] | None) -> Statement:
 
 
 def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> set[tuple[str, int]]:
-    """Renew the leases of an owner's jobs [s]; return id and attempt of those that it still owns."""
+    """Renew the leases [s] of an owner's jobs; return id and attempt of the jobs that it still owns."""
     held = update(JobRow).where(JobRow.id.in_(ids), JobRow.owner == owner, JobRow.state == "running")
     values = {"lease_until": present() + lease}
     rows = session.execute(held.values(values).returning(JobRow.id, JobRow.attempt))
@@ -197,7 +198,7 @@ def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> se
 
 
 def reap(session: Session) -> list[Job]:
-    """Queue jobs with expired leases again, count the losses, and return these jobs."""
+    """Queue again jobs with expired leases, count the losses, and return these jobs."""
     repeatable(session)
     is_late = or_(JobRow.lease_until < present(), JobRow.lease_until.is_(None))
     late = select(JobRow.id).where(JobRow.state == "running", is_late).with_for_update(skip_locked=True)
@@ -207,7 +208,7 @@ def reap(session: Session) -> list[Job]:
 
 
 def note_progress(session: Session, job: Job, progress: float, log: list[str]) -> bool:
-    """Store the progress of a claimed job; return whether it was still held."""
+    """Store the progress of a claimed job; return whether the claim was still valid."""
     return _fenced(session, job, progress=progress, log=log)
 
 
@@ -221,7 +222,7 @@ def running_elsewhere(
 
 
 def end(session: Session, job: Job, state: State, log: list[str], **more: object) -> bool:
-    """Give a claimed job its final state; return False, with nothing written, if it is no longer held."""
+    """Give a claimed job its final state; write nothing and return False if the claim is no longer valid."""
     ended = {"state": state, "log": log, "operated": operated(session), **_FREE, **more}
     return _fenced(session, job, **ended)
 
@@ -232,19 +233,19 @@ def set_result(session: Session, id: str, link: str | None) -> None:
 
 
 def requeue(session: Session, job: Job, crashes: int, **more: int) -> bool:
-    """Queue a claimed job again; return whether it was still held."""
+    """Queue a claimed job again; return whether the claim was still valid."""
     return _fenced(session, job, state="queued", crashes=crashes, **more, **_FREE)
 
 
 def rest(session: Session, job: Job, lane: Lane) -> bool:
-    """Queue a claimed job again, in its client's next turn; return whether it was still held."""
+    """Queue a claimed job again, in its client's next turn; return whether the claim was still valid."""
     row = session.get_one(JobRow, job.id)
     turn = next_turn(session, row.client, lane)
     return _fenced(session, job, state="queued", turn=turn, **_FREE)
 
 
 def requeue_all(session: Session, owner: str | None = None) -> list[Job]:
-    """Queue all running jobs again, or those of an owner, when none can be alive; return them."""
+    """Queue again all running jobs, or those of an owner, and return them; none may still be alive."""
     running = update(JobRow).where(JobRow.state == "running")
     which = running if owner is None else running.where(JobRow.owner == owner)
     queued = which.values(state="queued", updated=now(), **_FREE).returning(JobRow)
@@ -252,7 +253,7 @@ def requeue_all(session: Session, owner: str | None = None) -> list[Job]:
 
 
 def give_up(session: Session, job: Job, problem: JsonObject) -> None:
-    """Mark a reaped job as failed after too many losses."""
+    """Mark an expired job as failed after too many losses."""
     ended = {"state": "failed", "problem": problem, "operated": operated(session)}
     _write(session, job.id, **ended)
 
@@ -268,7 +269,7 @@ _FREE: Mapping[str, object] = {"owner": None, "lease_until": None}
 
 
 def _fenced(session: Session, job: Job, **values: object) -> bool:
-    """Update a claimed job; return whether it was still held. Repeating it does no harm."""
+    """Update a claimed job; return whether the claim was still valid. Repeating the update is harmless."""
     repeatable(session)
     claim = {"at_attempt": job.attempt, "of_owner": job.owner}
     given = {"of_id": job.id, **claim, **values, "updated": now()}
@@ -282,7 +283,7 @@ def _write(session: Session, id: str, **values: object) -> None:
 
 @lru_cache(LANES)
 def _written(names: tuple[str, ...], is_fenced: bool) -> Statement:
-    """Set columns of a job by name; a fenced job only while its claim holds."""
+    """Set columns of a job by name; for a fenced job only while its claim is valid."""
     job = _JOBS.c
     changed = update(_JOBS).where(job.id == bindparam("of_id"))
     if is_fenced:

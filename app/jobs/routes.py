@@ -1,4 +1,4 @@
-"""Jobs over HTTP: show, list, cancel and watch them."""
+"""Routes that show, list, cancel and watch jobs."""
 
 from collections.abc import AsyncIterator
 from functools import partial

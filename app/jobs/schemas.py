@@ -1,4 +1,4 @@
-"""Jobs as the interface shows them."""
+"""Response schemas for jobs."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ State = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
 class Job(Answer):
-    """A piece of long work."""
+    """A job, the unit of long work."""
 
     model_config = ConfigDict(from_attributes=True)
 
     id: str
     kind: str
     state: State
-    design: str | None = Field(description="the design it works for")
+    design: str | None = Field(description="the design that the job belongs to")
     revision: int | None = Field(description="the revision of that design")
     progress: float = Field(ge=0, le=1)
-    log: list[str] = Field(description="what it has done, one line a step")
-    problem: Problem | None = Field(description="why it failed")
-    result: str | None = Field(description="link to its result")
+    log: list[str] = Field(description="steps done so far, one line each")
+    problem: Problem | None = Field(description="why the job failed; null if it did not")
+    result: str | None = Field(description="link to the result of the job")
     created: str
     updated: str
 

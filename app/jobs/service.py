@@ -49,7 +49,7 @@ def _ignore(session: Session, job: Job, problem: Problem) -> None:
 
 
 class Jobs:
-    """The queue of jobs and those who work on it.
+    """The queue of jobs, and the threads that run them.
 
     `describe` turns an exception into the problem that a failed job shows.
     """
@@ -83,24 +83,25 @@ class Jobs:
         is_slow: bool = False,
         lane: str | None = None,
     ) -> None:
-        """Register the handler of a kind of job; slow jobs run beside the others, one at a time.
+        """Register the handler of a kind of job; slow jobs run in a lane of their own, one at a time.
 
-        A kind may have its own lane, whose threads are given to `start`. The handler runs in a thread of the
-        queue and returns a completion. The completion stores the result of the job and returns a link to it,
-        in the transaction that marks the job as done. `on_failure` runs in the transaction that marks it as
-        failed or cancelled.
+        A kind may have its own lane, whose number of threads is passed to `start`. The handler runs in a
+        thread of the queue and returns a completion. The completion stores the result of the job and returns
+        a link to it, in the transaction that marks the job as done. `on_failure` runs in the transaction
+        that marks it as failed or cancelled.
         """
         self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
     def run_within(self, around: Callable[[Job], AbstractContextManager[object]]) -> None:
-        """Run each job within a separate context."""
+        """Make each job run within a separate context."""
         self._dispatcher.around = around
 
     def start(self, lanes: Mapping[str, int] | None = None) -> None:
-        """Queue again the jobs that a killed server left running, and start. Register the kinds first.
+        """Queue again the jobs that a killed server left running, and start the threads.
 
-        `lanes` gives the number of threads of lanes besides the usual two. If several servers share the
-        database, a running job may belong to another server: it is queued again once its lease ends.
+        Register the kinds first. `lanes` gives the number of threads of lanes besides the usual two. If
+        several servers share the database, a running job may belong to another server; it is queued again
+        once its lease ends.
         """
         if self._database.is_shared:
             self._leases.start()
@@ -125,7 +126,7 @@ class Jobs:
             self._notices.stop()
 
     def census(self, session: Session) -> list[tuple[str, str, int]]:
-        """Return kind, state and number of the jobs that have not ended."""
+        """Return the number of unfinished jobs by kind and state."""
         return repository.census(session)
 
     def enqueue(
@@ -139,14 +140,14 @@ class Jobs:
         client: str = "",
         question: str | None = None,
     ) -> str:
-        """Queue a job of a client in a unit of work and return its id; `commit` the unit.
+        """Queue a client's job in a unit of work, and return its id; pass the unit to `commit`.
 
         Raises
         ------
         QueueFull
             If too many jobs are waiting, of this client or of all.
         LimitReached
-            If the acting principal has used up today's calculation time or its storage.
+            If the acting principal has used up its calculation time of today or its storage.
         """
         lane = self._dispatcher.lane(kind)
         threads = self._dispatcher.threads(kind)
@@ -161,7 +162,7 @@ class Jobs:
         return id
 
     def request(self, session: Session, kind: str, payload: JsonObject, client: str = "") -> str:
-        """Return the id of an equal waiting job, in the earlier turn of its clients; otherwise queue it.
+        """Return the id of an equal waiting job, in the earlier turn of its clients, or queue a new one.
 
         Raises
         ------
@@ -183,14 +184,14 @@ class Jobs:
         states: Collection[State],
         client: str = "",
     ) -> tuple[str, bool]:
-        """Return the job of an equal question in one of these states, else a new one, and whether it is new.
+        """Return the job for an equal request in one of these states, else a new job; and whether it is new.
 
-        `question` is its key. The client joins those who already wait for the job.
+        `question` is the key of the request. The client joins those who already wait for the job.
 
         Raises
         ------
         QueueFull, LimitReached
-            As raised by `enqueue`, for a new one.
+            As raised by `enqueue`, for a new job.
         """
         lock(session, f"question {question}")
         earlier = repository.asked(session, question, states)
@@ -201,12 +202,12 @@ class Jobs:
         return earlier.id, False
 
     def _join(self, session: Session, kind: str, id: str, client: str) -> None:
-        """Let a client wait for a job that another client requested."""
+        """Add a client to those who wait for a job that another client requested."""
         share = self._share(usage.own_limits(session, self.settings))
         turns.join(session, id, client, self._dispatcher.lane(kind), share)
 
     def _share(self, limits: PrincipalLimits | None) -> int:
-        """Return how many jobs of one client may wait."""
+        """Return how many jobs one client may have waiting."""
         return self.settings.client_queue_limit if limits is None else limits.queued_jobs
 
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
@@ -228,7 +229,7 @@ class Jobs:
         return turns.count_queued(session)
 
     def oldest_queued_age(self, session: Session) -> int:
-        """Return the waiting time of the oldest job [s of operation]; 0 if none waits."""
+        """Return the waiting time of the oldest job [s of the service's running time]; 0 if none waits."""
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
@@ -238,7 +239,7 @@ class Jobs:
         Raises
         ------
         Exception
-            As raised by `Database.write`; nothing is queued then.
+            As raised by `Database.write`; then nothing is queued.
         """
         result = self._database.write(unit)
         self.wake(kind)
@@ -255,7 +256,7 @@ class Jobs:
             return _existing(session, id)
 
     def problem(self, id: str | None) -> Problem | None:
-        """Return why a job failed or was cancelled; None otherwise, or without a job."""
+        """Return why a job failed or was cancelled; None for any other job."""
         return None if id is None else self.get(id).problem
 
     def page(self, limit: int, before: str | None = None) -> list[Job]:
@@ -302,7 +303,7 @@ class Jobs:
         return self.get(id)
 
     async def wait(self, id: str, seconds: float) -> State:
-        """Wait for the end of a job, at most this long [s], and return its state; raises JobNotFound."""
+        """Wait at most this long for the end of a job [s], and return its state; raises JobNotFound."""
         async with self.events.subscribe(f"job:{id}") as events:
             job = await asyncio.to_thread(self.get, id)
             if job.finished or seconds <= 0:
@@ -318,15 +319,15 @@ class Jobs:
         return (await asyncio.to_thread(self.get, id)).state
 
     def _join_others(self) -> None:
-        """Send hints to the other servers of the database, and receive theirs."""
-        from app.storage.notices import Notices  # its driver belongs to the extra `team`
+        """Start to exchange hints with the other servers of the database."""
+        from app.storage.notices import Notices  # needs the driver in the extra `team`
 
         self._notices = Notices(self._database.url, self.settings.poll_seconds, self._hear)
         self.events.tell = self._notices.send
         self._notices.start()
 
     def _hear(self, hints: list[str] | None) -> None:
-        """Act on hints of other servers; without hints, check everything."""
+        """React to hints of other servers; without hints, check everything."""
         if hints is None:
             self._dispatcher.wake()
         for hint in hints or ():

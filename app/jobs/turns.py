@@ -1,4 +1,4 @@
-"""The queue of jobs: its limits, and the turns in which clients alternate. All SQL about turns.
+"""The queue of jobs: its limits, and the turns in which clients alternate. All SQL for turns is here.
 
 A client's new job takes the turn after that client's previous job, but never an earlier turn than the queue's
 current one. Jobs run in the order of their turns, and by age within a turn. So a new client's job is second
@@ -22,23 +22,25 @@ from app.storage.tables import Base, JobRow
 from app.storage.units import Statement
 
 UNFINISHED = ("queued", "running")
-MOST_OTHERS = 20  # clients that are remembered to wait for a job, beside the one whose turn it takes
-LANES = 64  # of which statements are kept; a server has a few
+MOST_OTHERS = 20  # largest number of other clients recorded as waiting for a job
+LANES = 64  # lanes with cached statements; a server has only a few
 _JOBS = Base.metadata.tables[JobRow.__tablename__]
 
 
 @dataclass(frozen=True)
 class Lane:
-    """The jobs that wait for the same threads: those of some kinds, or in the common lane all others."""
+    """The jobs that wait for the same threads: those of certain kinds; the common lane has all others."""
 
     kinds: tuple[str, ...] = ()
     is_common: bool = True
 
     def holds(self) -> ColumnElement[bool]:
-        """Return the condition that a job is in this lane."""
+        """Return the SQL condition that a job belongs to this lane."""
         if not self.kinds:
             return true() if self.is_common else false()
-        kinds = [literal(kind) for kind in self.kinds]  # not a list that is written out at each execution
+        kinds = [
+            literal(kind) for kind in self.kinds
+        ]  # literals, so that the list is not expanded at each execution
         return _JOBS.c.kind.not_in(kinds) if self.is_common else _JOBS.c.kind.in_(kinds)
 
 
@@ -84,7 +86,7 @@ def _counted(lane: Lane | None, of_client: bool) -> Statement:
 
 
 def count_until_next(session: Session, client: str, lane: Lane) -> int:
-    """Return how many jobs of a lane start before the client's next one; 1 if it has none there."""
+    """Return how many jobs of a lane start before the client's next job; 1 if the client has none there."""
     waiting = and_(JobRow.state == "queued", lane.holds())
     next_one = select(func.min(JobRow.turn)).where(waiting, JobRow.client == client)
     until = select(func.count()).select_from(JobRow).where(waiting, JobRow.turn <= next_one.scalar_subquery())
@@ -92,7 +94,7 @@ def count_until_next(session: Session, client: str, lane: Lane) -> int:
 
 
 def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None:
-    """Let a client wait for a job that another client requested.
+    """Add a client to those who wait for a job that another client requested.
 
     If the client's own turn comes first and its share of the queue allows it, the job takes that turn and
     counts as this client's; otherwise two clients together could get more turns than each alone.
@@ -108,12 +110,12 @@ def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None
 
 
 def leave(session: Session, id: str, client: str) -> bool:
-    """Let a client no longer wait for a job; return whether another still does.
+    """Remove a client from those who wait for a job; return whether another client still waits.
 
     Raises
     ------
     JobShared
-        If several clients wait for it, and this one does not.
+        If several clients wait for it, and this client does not.
     """
     row = _locked(session, id)
     if not row.others:
@@ -137,20 +139,20 @@ def _locked(session: Session, id: str) -> JobRow:
 
 
 def oldest_queued(session: Session) -> int | None:
-    """Return when the longest-waiting job was queued [s of operation], or None if none waits."""
-    # The sum keeps SQLite from walking the index of ages through all jobs that ended earlier.
+    """Return when the longest-waiting job was queued [s of the service's run time], or None."""
+    # The sum keeps SQLite from scanning the index of ages through all jobs that ended earlier.
     since: Function[int | None] = func.min(JobRow.operated + 0)
     age: int | None = session.scalar(select(since).where(JobRow.state == "queued"))
     return age
 
 
-_USUAL = 5.0  # how long a job takes, before any of its lane has been measured [s]
-_MEASURED = 20  # jobs of a lane, over which the mean is taken
-_LONGEST = 3600  # advice [s]
+_USUAL = 5.0  # assumed duration of a job until one in its lane was measured [s]
+_MEASURED = 20  # number of jobs in the mean of a lane
+_LONGEST = 3600  # longest advised waiting time [s]
 
 
 class Durations:
-    """Durations of the latest jobs of each lane [s], by the monotonic clock."""
+    """Durations of the latest jobs of each lane [s], measured by the monotonic clock."""
 
     def __init__(self) -> None:
         self._seconds = defaultdict[Lane, deque[float]](lambda: deque(maxlen=_MEASURED))
@@ -168,7 +170,7 @@ class Durations:
 def admit(
     session: Session, client: str, lane: Lane, threads: int, share: int, most: int, durations: Durations
 ) -> None:
-    """Let a client queue one more job, or refuse it, by its share and the total limit.
+    """Let a client queue one more job, unless its share or the total limit is used up.
 
     A tenth of the queue is reserved for clients without waiting jobs, so that a client that fills the rest
     cannot block another's first job.
@@ -191,6 +193,6 @@ def _reserve(limit: int) -> int:
 
 
 def _seconds_to_a_place(session: Session, client: str, lane: Lane, threads: int, durations: Durations) -> int:
-    """Return the estimated time until a job of the client has left the queue [s]."""
+    """Return the estimated time until the client may queue another job [s]."""
     rounds = count_until_next(session, client, lane) / threads
     return min(_LONGEST, max(1, ceil(rounds * durations.mean(lane))))

@@ -1,4 +1,4 @@
-"""Files that users send, and that a job makes into something: a worksheet or a model."""
+"""Store files that users upload, and queue the jobs that import them as worksheets or models."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.storage.idempotency import Once
 
 
 def last_name(file: str) -> str:
-    """Return a file name without folders, for both kinds of paths."""
+    r"""Return a file name without folders, whether `/` or `\` separates them."""
     return PurePath(file.replace("\\", "/")).name
 
 
@@ -30,14 +30,14 @@ def queue_upload(
 ) -> str:
     """Store a file by its hash, queue the job that imports it, and return the job.
 
-    A repeated request returns the job of the first.
+    A repeated request returns the job of the first request.
 
     Parameters
     ----------
     about
-        The data for the job, besides the file and the client.
+        The data for the job, in addition to the file and the client.
     check
-        Called in the unit of work that queues the import; raises to refuse it.
+        Called in the unit of work that queues the import; raises an error to refuse it.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Maintenance of a data folder from the command line: check, repair, back up, restore."""
+"""Maintain a service's data from the command line: check, repair, back up, restore."""

@@ -1,7 +1,7 @@
 """The archive of a backup, in this order: `manifest.json`, the database, the artifacts, `end.json`.
 
-A tar file, compressed by gzip if its name ends with gz. An artifact is named by the hash of its bytes, the
-manifest holds the hash of the database, and the last entry marks the archive as complete.
+It is a tar file, compressed by gzip if its name ends with gz. An artifact is named by the hash of its bytes,
+the manifest holds the hash of the database, and the last entry marks the archive as complete.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Back up a data folder while the service runs: a snapshot of the database first, then the files it names.
+"""Back up a data folder while the service runs: first a snapshot of the database, then the files it names.
 
 The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot
 exists, unless it is damaged or the service has deleted it together with its row in the meantime.
@@ -29,21 +29,21 @@ from app.maintenance.rows import NamedFile, named_files
 from app.storage.clock import now
 from app.storage.integrity import faults
 
-EVERY = 500  # artifacts between two lines of progress
+EVERY = 500  # artifacts between two progress messages
 
 
 @dataclass
 class Contents:
-    """Contents of a backup: the number of artifacts and bytes, and files that could not be taken along."""
+    """The contents of a backup: the number of artifacts, the bytes, and files that could not be included."""
 
     artifacts: int = 0
     size: int = 0  # bytes
-    damaged: dict[str, str] = field(default_factory=dict)  # by hash, what is wrong
-    deleted: list[str] = field(default_factory=list)  # with their rows, after the snapshot
+    damaged: dict[str, str] = field(default_factory=dict)  # fault, by hash
+    deleted: list[str] = field(default_factory=list)  # hashes, deleted with their rows after the snapshot
 
 
 def back_up(data: Path, url: str | None, target: Path, say: Say) -> Contents:
-    """Write a backup; it gets its name once it is complete and synced.
+    """Write a backup; the archive receives its final name once it is complete and synced.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _snapshot(source: Path, snapshot: Path) -> str:
     try:
         with reading(source) as connection, closing(sqlite3.connect(snapshot)) as copy:
             schema = refuse_other_schema(connection, older_too=False)
-            connection.backup(copy)  # all pages in one step: writers go on, and are not part of it
+            connection.backup(copy)  # copies all pages in one step; later writes are not included
             copy.execute("PRAGMA journal_mode = delete")
     except sqlite3.DatabaseError as error:
         raise CannotRun(f"The database cannot be read: {error}. Run `crankwright check`.") from error
@@ -105,7 +105,7 @@ class DatabaseFile(TypedDict):
 
 
 class Manifest(TypedDict):
-    """The manifest of a backup, which describes it."""
+    """The manifest, which describes the backup."""
 
     format: int
     program: str
@@ -113,7 +113,7 @@ class Manifest(TypedDict):
     schema: str
     database: DatabaseFile
     artifacts: int
-    files: NotRequired[bool]  # whether the archive holds the files of the rows; not said by older backups
+    files: NotRequired[bool]  # whether the archive holds the files; absent in older backups
 
 
 def write_archive(
@@ -125,7 +125,10 @@ def write_archive(
     add: Callable[[tarfile.TarFile, NamedFile, Contents], None],
     say: Say,
 ) -> Contents:
-    """Write manifest, database and referenced files, each by `add`, into an archive, and sync it."""
+    """Write the manifest, the database and the named files into an archive, and sync it.
+
+    `add` writes each file.
+    """
     contents = Contents()
     with archive.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w:gz" if compressed else "w") as tar:
@@ -142,7 +145,7 @@ def write_archive(
 
 
 def _add_artifact(tar: tarfile.TarFile, row: NamedFile, source: Path, data: Path, contents: Contents) -> None:
-    """Add one artifact if its bytes have its hash as they are archived."""
+    """Add one artifact, if the bytes written have its hash."""
     path = data / artifact_entry(row.sha)
     try:
         read = path.read_bytes()
@@ -180,7 +183,7 @@ def _json(value: object) -> bytes:
 
 
 def add_file(tar: tarfile.TarFile, sha: str, data: bytes, contents: Contents) -> None:
-    """Add the bytes of an artifact."""
+    """Add the bytes of an artifact to the archive."""
     _add(tar, artifact_entry(sha), data)
     contents.artifacts += 1
     contents.size += len(data)
@@ -202,7 +205,7 @@ def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
 
 @contextmanager
 def temporary(target: Path, what: str) -> Iterator[Path]:
-    """Create a file beside the target, and finally delete it unless it was renamed to the target."""
+    """Create a file in the folder of the target; finally delete it unless it was renamed to the target."""
     folder = target.absolute().parent
     descriptor, name = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.", suffix=f".{what}")
     os.close(descriptor)

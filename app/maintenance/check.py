@@ -1,6 +1,6 @@
 """Check a data folder: the database, the files that its rows name, and the files that no row names.
 
-The check only reads, so it may run beside the service.
+The check only reads, so it can run while the service runs.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import NamedFile, broken_references, broken_worksheets, named_files
 from app.storage.integrity import faults, is_damage, marker_of
 
-YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
+YOUNG = 60.0  # longest time between storing a file and committing its row [s]
 # by kind of file; of a build else
 OWNERS = {
     "surface": "analysis", "body": "job", "answer": "job", "rows": "study", "import": "worksheet",
     "model": "model",
 }  # fmt: skip
-MOST = 100  # faults of the database that are listed
+MOST = 100  # largest number of database faults listed
 
 Say = Callable[[str], None]
 
@@ -36,8 +36,8 @@ class Faults:
     database: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
     worksheets: list[str] = field(default_factory=list)
-    damaged: dict[NamedFile, str] = field(default_factory=dict)  # by row, what is wrong with its file
-    unnamed: dict[str, str] = field(default_factory=dict)  # by hash, where the file lies
+    damaged: dict[NamedFile, str] = field(default_factory=dict)  # fault of the file, by row
+    unnamed: dict[str, str] = field(default_factory=dict)  # place of the file, by hash
     files: int = 0
     size: int = 0  # of the good files [bytes]
     quarantined: int = 0
@@ -50,7 +50,7 @@ class Faults:
     def add_unnamed(
         self, files: Files, ages: Mapping[str, float], rows: Iterable[NamedFile], *, in_use: bool
     ) -> None:
-        """Add the unreferenced files, except files that a running service may have stored a moment ago."""
+        """Add the files that no row names, except those that a running service may have stored just now."""
         named, latest = {row.sha for row in rows}, time.time() - YOUNG if in_use else math.inf
         lying = sorted(sha for sha, age in ages.items() if sha not in named and age <= latest)
         self.unnamed |= {sha: files.place(sha) for sha in lying}
@@ -69,9 +69,9 @@ class Faults:
 
 
 def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Faults:
-    """Find the faults of a data folder; if it is `in_use` by a service, the newest files may lack rows.
+    """Find the faults of a data folder; if a service uses it (`in_use`), the newest files may lack rows.
 
-    By default the files in the folder are checked.
+    `files` are by default those in the folder.
 
     Raises
     ------
@@ -81,10 +81,10 @@ def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = No
     path, findings = database_file(data, url), Faults()
     files = files or FolderFiles(data / "artifacts")
     findings.quarantined = files.quarantined()
-    # Files before rows: a row that comes meanwhile has its file already, and is among the rows.
+    # Read files before rows: a row added meanwhile already has its file, and is among the rows.
     ages = files.ages()
     if (marker := marker_of(path)).exists():
-        findings.database.append(f"damage showed while a service used it, see {marker.name}")
+        findings.database.append(f"damage occurred while a service used it, see {marker.name}")
     try:
         findings.database += faults(path, MOST, mode="ro" if marker.exists() else "rw")
         with reading(path) as connection:
@@ -126,7 +126,7 @@ def is_still_named(database: Path, row: NamedFile) -> bool:
 
 
 def named_files_of(connection: sqlite3.Connection, row: NamedFile) -> Iterable[NamedFile]:
-    """Return the present row, if it still exists."""
+    """Return the present rows of the same kind of file; the given row is among them if it still exists."""
     if row.kind in OWNERS:
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"

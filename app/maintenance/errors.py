@@ -2,4 +2,4 @@
 
 
 class CannotRun(Exception):
-    """The sentence for the operator, with the remedy."""
+    """A maintenance command cannot run; the message tells the operator why, and the remedy."""

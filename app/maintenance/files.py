@@ -1,4 +1,4 @@
-"""Read the files of a service for `check`, which changes nothing, not even damaged files."""
+"""Read the files of a service for `check`; nothing is changed, not even a damaged file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ IN_SHARED_FOLDER = "The files are in {url}, which the servers share: copy that f
 
 
 class Files(Protocol):
-    """The files of a service."""
+    """The interface to the files of a service."""
 
     def ages(self) -> dict[str, float]:
         """Return when each file was stored [s since 1970], by hash."""
@@ -54,7 +54,7 @@ class Files(Protocol):
 
 
 def files_of(settings: Settings) -> Files:
-    """Return the files that the settings name.
+    """Return access to the files that the settings name.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def files_of(settings: Settings) -> Files:
 
 @dataclass(frozen=True)
 class FolderFiles:
-    """Files in a folder, of this server or of several."""
+    """Files in a folder, used by one server or several."""
 
     folder: Path
 
@@ -86,7 +86,7 @@ class FolderFiles:
             if SHA256.fullmatch(path.name):
                 try:
                     seconds[path.name] = path.stat().st_mtime
-                except FileNotFoundError:  # deleted meanwhile
+                except FileNotFoundError:  # deleted in the meantime
                     continue
         return seconds
 
@@ -108,7 +108,7 @@ class FolderFiles:
 
 
 class BucketFiles:
-    """Files in a bucket; each is read whole to be verified."""
+    """Files in a bucket; each is read completely to verify it."""
 
     def __init__(self, bucket: Bucket, url: str) -> None:
         self._bucket, self._url = bucket, url.rstrip("/")
@@ -142,7 +142,7 @@ class BucketFiles:
         return f"{self._url}/{sha}"
 
     def quarantined(self) -> int:
-        """Number of objects that were set aside."""
+        """Return the number of objects that were set aside."""
         return sum(key.startswith(f"{QUARANTINE}/") for key in self._listed)
 
     @cached_property
@@ -154,7 +154,7 @@ class BucketFiles:
 
 
 def fault_of(path: Path, row: NamedFile) -> str | None:
-    """Return the fault of a row's file, or None; its size is in bytes."""
+    """Return the fault of the file that a row names, or None; `size` is in bytes."""
     try:
         size = path.stat().st_size
         if row.size is not None and size != row.size:

@@ -1,4 +1,4 @@
-"""Read a data folder for maintenance, without writing: a running service may use it."""
+"""Read a data folder for maintenance without writing, because a running service may use it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from app.storage.integrity import is_damage, marker_of
 from app.storage.migrations import known_schemas, refuse_unknown
 
 NOT_SQLITE = (
-    "The database is not SQLite, and lost files are not repaired beside it: the servers make them again when "
-    "they are asked for."
+    "The database is not SQLite, so lost files are not repaired here: the servers rebuild them when a client "
+    "requests them."
 )
 
 
@@ -27,7 +27,7 @@ def database_file(data: Path, url: str | None) -> Path:
     Raises
     ------
     CannotRun
-        There is none.
+        If there is none.
     """
     path = sqlite_file(url) if url else data / "crankwright.sqlite"
     if path is None:
@@ -43,7 +43,7 @@ def database_file(data: Path, url: str | None) -> Path:
 
 
 def is_in_use(data: Path) -> bool:
-    """Return whether a service holds the folder; unlike `DataFolder` it creates and locks nothing."""
+    """Return whether a service uses the folder; unlike `DataFolder`, this creates and locks nothing."""
     try:
         with (data / LOCK).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -56,7 +56,7 @@ def is_in_use(data: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a read-only connection to one snapshot; a service may use the file meanwhile."""
+    """Open a read-only connection to one snapshot; a service may use the file at the same time."""
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
     try:
         for pragma in ("busy_timeout = 10000", "query_only = on"):
@@ -73,7 +73,7 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
     Raises
     ------
     CannotRun
-        If this program does not know it, or it is older and older ones are refused.
+        If this program does not know the version, or it is old and old versions are refused.
     """
     try:
         rows = connection.execute("SELECT version_num FROM alembic_version").fetchall()

@@ -1,4 +1,4 @@
-"""Maintenance of PostgreSQL: consistent dumps, restores into an empty database, reading rows."""
+"""Maintain PostgreSQL: consistent dumps, restores into an empty database, reading rows."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from app.maintenance.team_check import Rows
 from app.storage.migrations import known_schemas
 from app.storage.postgres_programs import postgres_program
 
-SWEEP = "sweep of files"  # what a server does alone; see `app.retention.files`
+SWEEP = "sweep of files"  # name of the lock for deleting files; see `app.retention.files`
 
 
 class Snapshot(Rows):
-    """The rows of a database at one moment; `name` is what PostgreSQL calls the moment."""
+    """The rows of a database at one moment; `name` is PostgreSQL's name of the snapshot."""
 
     def __init__(self, connection: Connection) -> None:
         super().__init__(connection)
@@ -50,12 +50,12 @@ def snapshot(url: str) -> Iterator[Snapshot]:
 
 
 def schema_of(url: str) -> str:
-    """Return the schema of a database; empty if it has no tables.
+    """Return the version of a database's schema; empty if it has no tables.
 
     Raises
     ------
     CannotRun
-        If it does not answer, or belongs to another program.
+        If the database does not answer, or belongs to another program.
     """
     engine = create_engine(url)
     try:
@@ -72,13 +72,13 @@ def schema_of(url: str) -> str:
 
 
 def dump(url: str, moment: Snapshot, target: Path) -> None:
-    """Write the database at that moment into a file by `pg_dump -Fc`; raises CannotRun."""
+    """Write the database as of a snapshot into a file by `pg_dump -Fc`; raises CannotRun."""
     options = ["-Fc", "--no-owner", f"--snapshot={moment.name}", "-f", str(target)]
     _run("pg_dump", url, [*options, "-d"])
 
 
 def load(url: str, source: Path) -> None:
-    """Restore a dump completely or not at all into an empty database by `pg_restore`; raises CannotRun."""
+    """Restore a dump into an empty database by `pg_restore`, completely or not at all; raises CannotRun."""
     options = ["--no-owner", "--exit-on-error", "--single-transaction", str(source), "-d"]
     _run("pg_restore", url, options)
 
@@ -88,7 +88,7 @@ def _run(name: str, url: str, options: list[str]) -> None:
     if program is None:
         raise CannotRun(f"{name} is not installed: apt-get install postgresql-client")
     place = make_url(url).set(drivername="postgresql")
-    password = str(place.password or "")  # in the environment: others can read the arguments
+    password = str(place.password or "")  # passed in the environment, because others can read arguments
     command = [str(program), *options, place.set(password=None).render_as_string()]
     environment = {**os.environ, **({"PGPASSWORD": password} if password else {})}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Repair a data folder that no service uses: rebuild lost files, set unreferenced files aside."""
+"""Repair a data folder that no service uses: rebuild lost files, set files aside that no row names."""
 
 from __future__ import annotations
 
@@ -58,18 +58,18 @@ FAILURES = (
 
 
 class Direct:
-    """Runs functions in a job process, for no job of the queue."""
+    """Runs functions in a job process without a job in the queue."""
 
     def __init__(self, worker: LocalProcesses, limits: Limits) -> None:
         self._batch, self._limits = worker.batch(), limits
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """See `Worker.run`."""
+        """Run a function; see `Worker.run`."""
         return self._batch.run(function, *args, limits=limits or self._limits)
 
 
 class Repair:
-    """Makes files again with the machinery of the service, in processes of its own."""
+    """Rebuilds files with the service's own code, in separate processes."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class Repair:
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
     def row(self, row: NamedFile) -> str | None:
-        """Repair the file of a row; return the reason if it cannot be repaired."""
+        """Repair the file that a row names; return the reason if it cannot be repaired."""
         if row.kind == "body":
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         if row.kind == "rows":
@@ -115,7 +115,7 @@ class Repair:
 
     def _answer(self, row: NamedFile) -> None:
         """Recalculate the answer of a job; only its elapsed time may differ."""
-        if self.store.exists(row.sha):  # else it has been set aside now
+        if self.store.exists(row.sha):  # otherwise `exists` has just set it aside
             return
         with self.database.read() as session:
             job = jobs.get(session, row.owner)
@@ -139,7 +139,7 @@ class Repair:
 
 
 def repair(folder: DataFolder, url: str, findings: Faults, settings: Settings, say: Say) -> None:
-    """Repair as much as possible, and return the actions; the caller holds the data folder."""
+    """Repair as much as possible, and return the actions taken; the caller holds the data folder."""
     if findings.damaged:
         _rebuild(opened_store(settings, folder), url, findings, settings, say)
     if findings.unnamed and settings.artifacts_url is None:
@@ -164,7 +164,7 @@ def _rebuild(store: Artifacts, url: str, findings: Faults, settings: Settings, s
 
 
 def _moved_aside(data: Path, files: list[Path]) -> str:
-    """Move unreferenced files into a separate folder; nothing is deleted."""
+    """Move files that no row names into a separate folder; nothing is deleted."""
     aside = data / f"unreferenced-{datetime.now(UTC):%Y%m%dT%H%M%S}"
     aside.mkdir()
     for file in files:

@@ -1,6 +1,6 @@
-"""Restore a backup into a new data folder, which appears only when everything in it is verified.
+"""Restore a backup into a new data folder, which appears only after everything in it is verified.
 
-The archive cannot decide where its bytes go: only plain files with known names are accepted.
+The archive cannot decide where its bytes are written: only plain files with known names are accepted.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from app.maintenance.rows import broken_references, named_files
 from app.plain import JsonObject
 from app.storage.integrity import faults
 
-LARGEST_NOTE = 64 * 2**20  # of the manifest and the end [bytes]; the end names every missing file
+LARGEST_NOTE = 64 * 2**20  # limit for the manifest and the end entry, which names every missing file [bytes]
 _CHUNK = 2**20
 BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError, KeyError, TypeError)
 
@@ -51,7 +51,7 @@ class RestoreResult:
 
 
 def restore(archive: Path, data: Path, say: Say) -> RestoreResult:
-    """Restore a backup into an empty or absent folder.
+    """Restore a backup into an empty or missing folder.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _refuse_content(data: Path) -> None:
 
 @contextmanager
 def _sibling(data: Path) -> Iterator[Path]:
-    """Create a folder beside the wanted one, and finally delete it unless it was renamed."""
+    """Create a folder next to the target; delete it at the end, unless it was renamed to the target."""
     parent = data.absolute().parent
     parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=parent, prefix=f".{data.name}.restoring-"))
@@ -97,7 +97,7 @@ def _sibling(data: Path) -> Iterator[Path]:
 
 
 def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
-    """Unpack an archive of this format into a folder; raises CannotRun, or one of `BROKEN`."""
+    """Unpack an archive into a folder, and return its contents; raises CannotRun, or one of `BROKEN`."""
     restored = RestoreResult(form)
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
@@ -113,7 +113,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
 
 
 def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: RestoreResult) -> None:
-    """Unpack one entry to its place; the order of the entries is part of the format."""
+    """Unpack one entry to its place; the order of entries is part of the archive's format."""
     if not restored.manifest:
         restored.manifest = _manifest(entry, file, restored.form)
     elif entry.name == DATABASES[restored.form] and not restored.database:
@@ -168,7 +168,7 @@ def _written(file: IO[bytes], place: Path) -> str:
 
 
 def require_whole(restored: RestoreResult) -> None:
-    """Compare the database with its hash, and count the artifacts; raises CannotRun."""
+    """Check the hash of the database and the number of artifacts; raises CannotRun."""
     assert restored.end is not None
     if restored.database != restored.manifest["database"]["sha256"]:
         raise CannotRun("The database in the archive is damaged: its bytes have another hash.")
@@ -177,7 +177,7 @@ def require_whole(restored: RestoreResult) -> None:
 
 
 def _verify(folder: Path, restored: RestoreResult) -> None:
-    """Verify the database against its hash and this program, and the artifacts against the rows."""
+    """Check the database with its hash and this program, and the artifacts with the rows."""
     require_whole(restored)
     path = folder / DATABASE
     if damage := faults(path):

@@ -11,24 +11,24 @@ from typing import Protocol
 
 @dataclass(frozen=True)
 class NamedFile:
-    """A file that a row names: of a build, an analysis, a calculation, a study, an imported worksheet."""
+    """A file that a row names: of a build, an analysis, a calculation, a study, or an imported worksheet."""
 
     sha: str
-    size: int | None  # None where the row does not say it
+    size: int | None  # bytes; None if the row does not state it
     owner: str  # the key of the build or the analysis, or the id of the job, the study or the worksheet
     kind: str  # step, png, …; or surface, body, answer, rows, import, model
 
 
 class Rows(Protocol):
-    """The rows of a database, of whatever kind."""
+    """The interface to the rows of a database."""
 
     def execute(self, query: str, /) -> Iterable[tuple[str, ...]]:
-        """Return the rows of a query without parameters, mostly texts."""
+        """Return the rows of a query without parameters; most values are texts."""
         ...
 
 
 def named_files(connection: Rows) -> Iterator[NamedFile]:
-    """Yield every file that a row names; a file that is named repeatedly is yielded repeatedly."""
+    """Yield every file that a row names, once for each row that names it."""
     for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
         yield NamedFile(sha, int(size), key, kind)
     if _has_table(connection, "analysis"):
@@ -65,7 +65,7 @@ SENT = (("worksheet_version", IMPORTED_WORKSHEETS, "import"), ("imported_model",
 
 
 def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[NamedFile]:
-    """Yield question and answer of a job of any kind that stores them as files."""
+    """Yield the request and the answer of a job, for every kind of job that stores them as files."""
     if "body" not in payload:
         return
     yield NamedFile(payload["body"], None, id, "body")
@@ -78,7 +78,7 @@ LEADING_NOWHERE = {
         SELECT job.id FROM job LEFT JOIN revision
         ON revision.design_id = job.design_id AND revision.number = job.revision
         WHERE job.design_id IS NOT NULL AND job.revision IS NOT NULL AND revision.number IS NULL""",
-    "design {} has no revision of the number of its newest one": """
+    "design {} lacks the revision that it names as its newest": """
         SELECT design.id FROM design LEFT JOIN revision
         ON revision.design_id = design.id AND revision.number = design.head
         WHERE revision.number IS NULL""",
@@ -104,7 +104,7 @@ RELEASES = """
 
 def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
     """Yield a sentence for each released worksheet whose text or results differ from its release."""
-    from app.pool.sources import SheetSource  # templates, which the other checks do without
+    from app.pool.sources import SheetSource  # imports templates, which other checks do not need
     from app.worksheets.examination import as_released
 
     if not _has_table(connection, "worksheet_version"):
@@ -126,7 +126,7 @@ def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
 
 
 def _has_table(connection: Rows, name: str) -> bool:
-    """Return whether a database has a table; an old one of SQLite may lack some."""
+    """Return whether a database has a table; an old SQLite database may lack some."""
     if not isinstance(connection, sqlite3.Connection):
         return True
     query = "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?"

@@ -1,7 +1,7 @@
 """Back up and restore a team's PostgreSQL database and files, wherever the settings place them.
 
-As with SQLite, the backup reads the rows first and then the files that they name; each file was stored before
-its row. A bucket with versioning needs no copy of its files: the backup may hold the database alone.
+As with SQLite, the backup first reads the rows and then the files that they name; each file was stored before
+its row. A bucket with versioning needs no copy of its files, so the backup may hold only the database.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ NO_STORE = (
 
 
 def back_up(settings: Settings, url: str, target: Path, say: Say, *, with_files: bool) -> Contents:
-    """Write a backup, which gets its name once it is complete and synced.
+    """Write a backup; the archive receives its final name once it is complete and synced.
 
-    Meanwhile no server deletes unreferenced files.
+    Meanwhile no server deletes files that no row names.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def back_up(settings: Settings, url: str, target: Path, say: Say, *, with_files:
 
 
 def restore(settings: Settings, url: str, archive: Path, say: Say) -> RestoreResult:
-    """Restore a backup into an empty database and the store: files first, then the rows, all or none.
+    """Restore a backup into an empty database and the file store: first the files, then all rows or none.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> RestoreRes
 
 
 def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
-    """Return the bytes of a file, or None and its faults."""
+    """Return the bytes of a file, or None with its fault."""
     try:
         data = store.read(row.sha)
     except ArtifactMissing:
@@ -119,7 +119,7 @@ def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
 
 @contextmanager
 def _store(settings: Settings) -> Iterator[Artifacts]:
-    """Yield the store of the settings; its local copies go into a separate folder, not a server's."""
+    """Yield the store of the settings; its local copies go into a temporary folder instead of a server's."""
     if settings.artifacts_url is None:
         raise CannotRun(f"{NO_STORE}.")
     with TemporaryDirectory(prefix="crankwright-copies-") as name:

@@ -1,4 +1,4 @@
-"""Check the data that servers share: rows of PostgreSQL, and the files that they name. It only reads.
+"""Check, only by reading, the data that servers share: rows of PostgreSQL, and the files that they name.
 
 PostgreSQL verifies its own pages (`initdb --data-checksums`, `pg_amcheck`); this module checks the contents
 of the rows.
@@ -20,13 +20,13 @@ from app.storage.migrations import known_schemas
 
 
 class Rows:
-    """The rows of PostgreSQL, asked as those of SQLite are."""
+    """The rows of PostgreSQL, with the interface of those of SQLite."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def execute(self, query: str) -> Iterable[tuple[str, ...]]:
-        """Return the rows of a query without parameters, mostly texts."""
+        """Return the rows of a query without parameters; most values are texts."""
         return (tuple(row) for row in self._connection.exec_driver_sql(query))
 
 
@@ -39,7 +39,7 @@ def check_shared(url: str, files: Files) -> Faults:
         If the database does not answer, or has another schema.
     """
     findings = Faults(quarantined=files.quarantined())
-    ages = files.ages()  # before the rows: a row that comes meanwhile has its file already
+    ages = files.ages()  # before the rows: a row added meanwhile already has its file
     engine = reading_engine(url)
     try:
         with engine.connect() as connection:

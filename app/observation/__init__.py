@@ -1,1 +1,1 @@
-"""Logs, metrics and traces for an operator."""
+"""Logs, metrics, traces and readiness checks for an operator."""

@@ -1,7 +1,7 @@
 """Structured logs on standard error, as text or JSON lines, each with the id of its request.
 
 Bodies, queries, cookies and keys are never logged. A separate thread writes the lines, so a blocked terminal
-delays nobody. Lines beyond the capacity of the queue are dropped and counted.
+delays no request. Lines beyond the capacity of the queue are dropped and counted.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ TRACE: ContextVar[str] = ContextVar("trace", default="")
 """The context of the present trace as W3C's `traceparent`, empty without traces; see `traces`."""
 FIELDS = ("request_id", "client", "method", "route", "path", "status", "ms", "job")
 
-_ROOM = 10_000  # lines that may wait to be written
+_ROOM = 10_000  # largest number of lines waiting to be written
 _HARMLESS = re.compile(rb"[A-Za-z0-9._-]{1,64}")
-# Control characters, line and paragraph separators, and what turns the direction of writing.
+# Control characters, line and paragraph separators, and characters that change the writing direction.
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 _process, _numbers = secrets.token_hex(5), itertools.count(1)
@@ -53,14 +53,17 @@ def new_id() -> str:
 
 
 def without_secret(client: str) -> str:
-    """Return a client for the log; a session is hashed, because its id would authenticate the client."""
+    """Return a client's name for the log.
+
+    The id of a session is hashed, because it would authenticate the client.
+    """
     kind, _, name = client.partition(":")
     return f"session:{hashlib.sha256(name.encode()).hexdigest()[:12]}" if kind == "session" else client
 
 
 @contextmanager
 def caused(cause: str) -> Iterator[None]:
-    """Add to log lines the id of the request that queued a job; the job's row stores it as the cause."""
+    """Add the id of the request that queued a job to log lines; the job's row stores this id as its cause."""
     request, _, trace = cause.partition(" ")
     tokens = REQUEST_ID.set(request), TRACE.set(trace)
     try:
@@ -71,15 +74,15 @@ def caused(cause: str) -> Iterator[None]:
 
 
 def escaped(text: str) -> str:
-    """Return a text without characters that move the cursor, begin a line, or change the direction."""
+    """Return a text without characters that move the cursor, start a line or change the writing direction."""
     return _CONTROLS.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class TextFormatter(logging.Formatter):
-    """`time LEVEL logger [request] message`, on one line; a traceback follows, indented."""
+    """Formats a record as one line `time LEVEL logger [request] message`; an indented traceback follows."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line."""
+        """Return the record as a line of text."""
         request = f" [{id}]" if (id := getattr(record, "request_id", "")) else ""
         line = f"{_time(record)} {record.levelname} {record.name}{request} {escaped(record.getMessage())}"
         trace = "".join(f"\n  | {escaped(part)}" for part in _traceback(self, record).splitlines())
@@ -87,10 +90,10 @@ class TextFormatter(logging.Formatter):
 
 
 class JsonFormatter(logging.Formatter):
-    """One JSON object a line: time, level, logger, message, and those of `FIELDS` that are known."""
+    """Formats a record as one JSON object: time, level, logger, message, and the known ones of `FIELDS`."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line."""
+        """Return the record as a line of JSON."""
         about: dict[str, object] = {
             "time": _time(record),
             "level": record.levelname.lower(),
@@ -100,11 +103,11 @@ class JsonFormatter(logging.Formatter):
         about |= {name: value for name in FIELDS if (value := getattr(record, name, None)) not in (None, "")}
         if trace := _traceback(self, record):
             about["exception"] = trace
-        return without_keys(json.dumps(about, default=str))  # which escapes whatever is not ASCII
+        return without_keys(json.dumps(about, default=str))  # `dumps` escapes non-ASCII characters
 
 
 class QueueHandler(logging.Handler):
-    """Hands records to the writing thread, with the id of the present request."""
+    """Passes records to the writing thread, with the id of the present request."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -122,9 +125,9 @@ class QueueHandler(logging.Handler):
 
 
 def configure(level: Level, form: Format, stream: TextIO | None = None) -> Callable[[], None]:
-    """Write the program's logs to standard error, or a stream; return a function that ends this.
+    """Write the program's logs to standard error or a stream; return a function that ends this.
 
-    `level` is for this program and its web server; other libraries' lines are written from warnings on.
+    `level` applies to this program and its web server; other libraries log only warnings and errors.
     """
     handler, writer = QueueHandler(), logging.StreamHandler(stream or sys.stderr)
     writer.setFormatter(JsonFormatter() if form == "json" else TextFormatter())

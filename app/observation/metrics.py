@@ -1,6 +1,6 @@
-"""Figures for Prometheus at `/metrics`: requests, jobs, commits, pools, failures, memory and processor time.
+"""Metrics for Prometheus at `/metrics`: requests, jobs, commits, pools, failures, memory and processor time.
 
-The cost of an answer does not depend on the number of designs: the only database query counts unfinished
+The cost of a response does not depend on the number of designs: the only database query counts unfinished
 jobs, by an index.
 """
 
@@ -35,20 +35,19 @@ BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0,
 
 
 class _Row:
-    """Answers to one route and method by one status."""
+    """The responses to one route and method with one status."""
 
     __slots__ = ("counts", "seconds")
 
     def __init__(self) -> None:
-        self.counts = [0] * (len(BUCKETS) + 1)  # by class of time
+        self.counts = [0] * (len(BUCKETS) + 1)  # by duration bucket
         self.seconds = 0.0
 
 
 class RequestFigures(Collector):
-    """The number of answers by route, method and status; their times by route and method.
+    """The number of responses by route, method and status, and their durations by route and method.
 
-    They are counted without a lock for each number, at a tenth of the library's cost: only the event loop
-    counts, so there is nothing to lock.
+    Only the event loop counts them, so no number needs a lock; this costs a tenth of the library's counters.
     """
 
     def __init__(self, registry: CollectorRegistry) -> None:
@@ -56,7 +55,7 @@ class RequestFigures(Collector):
         registry.register(self)
 
     def add(self, route: str, method: str, status: int, seconds: float) -> None:
-        """Add an answer with its duration [s]."""
+        """Count a response with its duration [s]."""
         row = self._rows.get((route, method, status))
         if row is None:
             row = self._rows[route, method, status] = _Row()
@@ -64,7 +63,7 @@ class RequestFigures(Collector):
         row.seconds += seconds
 
     def collect(self) -> Iterator[Metric]:
-        """Yield the metrics in the form of the Prometheus library."""
+        """Yield the metrics in the types of the Prometheus library."""
         rows = list(self._rows.items())
         requests = CounterMetricFamily(
             "crankwright_requests", "Requests answered", labels=["route", "method", "status"]
@@ -84,7 +83,7 @@ class RequestFigures(Collector):
 def _by_route(
     rows: list[tuple[tuple[str, str, int], _Row]],
 ) -> dict[tuple[str, str], tuple[list[int], float]]:
-    """Return the counts per class of duration and the sum of the durations, over all statuses."""
+    """Return the counts by duration bucket and the total duration [s], over all statuses."""
     groups: defaultdict[tuple[str, str], list[_Row]] = defaultdict(list)
     for (route, method, _), row in rows:
         groups[route, method].append(row)
@@ -108,22 +107,26 @@ COMMIT = _histogram("crankwright_commit_seconds", "Time of a group of units of w
 GROUP = _histogram(
     "crankwright_commit_units", "Units of work in a group", buckets=[1, 2, 4, 8, 16, 32, 64, 128, 256]
 )
-FAILURES = _counter("crankwright_failures_total", "What went wrong in the service itself", ["what"])
+FAILURES = _counter("crankwright_failures_total", "Failures of the service itself", ["what"])
 CUT = _counter("crankwright_connections_cut_total", "Connections ended by the server", ["why"])
 
-QUEUED = _gauge("crankwright_jobs_queued", "Jobs that wait")
+QUEUED = _gauge("crankwright_jobs_queued", "Waiting jobs")
 JOBS = _gauge("crankwright_jobs", "Jobs that have not ended", ["kind", "state"])
-OLDEST = _gauge("crankwright_jobs_oldest_seconds", "Since when the oldest queued job waits [s]")
+OLDEST = _gauge("crankwright_jobs_oldest_seconds", "Waiting time of the oldest queued job [s]")
 ENDED = _counter("crankwright_jobs_ended_total", "Jobs that have ended", ["kind", "state"])
 LASTED = _histogram(
     "crankwright_job_seconds", "Time of a run [s]", ["kind"], buckets=[0.1, 0.3, 1, 3, 10, 30, 100, 300]
 )
 
 CHILDREN = _gauge("crankwright_children", "Processes that descend from the server")
-CHILDREN_MEMORY = _gauge("crankwright_children_memory_bytes", "Their memory; what is shared counts for each")
-CHILDREN_SECONDS = _gauge("crankwright_children_cpu_seconds", "Their processor time, of the ended ones too")
+CHILDREN_MEMORY = _gauge(
+    "crankwright_children_memory_bytes", "Memory of these processes; shared memory counts for each"
+)
+CHILDREN_SECONDS = _gauge(
+    "crankwright_children_cpu_seconds", "Processor time of these processes, including ended ones"
+)
 POOL = {
-    figure: _gauge(f"crankwright_pool_{figure}", f"Of a pool of processes: {figure}", ["pool"])
+    figure: _gauge(f"crankwright_pool_{figure}", f"Number in a pool of processes: {figure}", ["pool"])
     for figure in ("running", "waiting", "size")
 }
 
@@ -133,12 +136,12 @@ BUCKET = _histogram(
 COPIES = _counter("crankwright_local_copies_total", "Reads of a bucket's files on this machine", ["found"])
 COPIED = _gauge("crankwright_database_copied", "1 if files are kept because the database has a copy")
 
-_started: dict[str, float] = {}  # job -> when this run began
+_started: dict[str, float] = {}  # job -> start time of this run
 _watched: dict[str, Callable[[], Mapping[str, float]]] = {}
 
 
 def committed(units: int, seconds: float, failed: bool) -> None:
-    """Count a group of units of work."""
+    """Count a group of committed units of work."""
     COMMIT.observe(seconds)
     GROUP.observe(units)
     if failed:
@@ -146,17 +149,17 @@ def committed(units: int, seconds: float, failed: bool) -> None:
 
 
 def bucket_asked(operation: str, outcome: str, seconds: float) -> None:
-    """Count a request to the bucket of the files."""
+    """Count a request to the bucket of files."""
     BUCKET.labels(operation, outcome).observe(seconds)
 
 
 def copy_looked_for(is_there: bool) -> None:
-    """Count a read of a file in the bucket, with or without a good copy on this machine."""
+    """Count a read of a file in the bucket, and whether this machine had a valid copy."""
     COPIES.labels("yes" if is_there else "no").inc()
 
 
 def job_event(job: str, kind: str, name: str) -> None:
-    """Count a job that is queued, begins or ends."""
+    """Count a job that is queued, starts or ends."""
     if name == "running":
         _started[job] = time.monotonic()
     else:
@@ -168,7 +171,7 @@ def job_event(job: str, kind: str, name: str) -> None:
 
 
 def watch(name: str, look: Callable[[], Mapping[str, float]]) -> Callable[[], object]:
-    """Publish the `running`, `waiting` and `size` of a pool from `look`.
+    """Publish the `running`, `waiting` and `size` of a pool, as `look` returns them.
 
     Return a function that stops this.
     """
@@ -177,7 +180,7 @@ def watch(name: str, look: Callable[[], Mapping[str, float]]) -> Callable[[], ob
 
 
 def text(census: Census, oldest: float) -> bytes:
-    """Return all metrics as text; of the unfinished jobs their number and the wait of the oldest [s]."""
+    """Return all metrics as text, with the number of unfinished jobs and the wait of the oldest one [s]."""
     _show_jobs(census)
     OLDEST.set(oldest)
     for name, look in list(_watched.items()):

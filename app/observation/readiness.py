@@ -1,6 +1,6 @@
 """`/readyz`: whether the database, free space, job processes and the file store are ready for work.
 
-The answer takes the same time however many designs there are, and arrives even if the writer hangs.
+The time of a response does not depend on the number of designs, and a hanging writer does not delay it.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from app.storage.errors import ArtifactsUnreachable
 from app.storage.tables import CounterRow
 from app.workers.choice import why_silent_here
 
-KEPT = 1.0  # for how long an answer is given again [s]
-PATIENCE = 2.0  # with the writer [s]
-FORK = 1.0  # how long job processes may take to answer: the next one may just be on its way [s]
+KEPT = 1.0  # time for which a result is reused [s]
+PATIENCE = 2.0  # longest wait for the writer [s]
+FORK = 1.0  # longest wait for a job process, which may just be starting [s]
 _GLANCE = 0.05  # s
 
 Check = Callable[[], Awaitable[str | None]]
@@ -32,7 +32,7 @@ Check = Callable[[], Awaitable[str | None]]
 
 
 class Readiness:
-    """Named checks, run one set at a time and at most once a second."""
+    """Named checks, of which one set runs at a time, at most once a second."""
 
     def __init__(self, checks: Mapping[str, Check]) -> None:
         self._checks = checks
@@ -40,7 +40,7 @@ class Readiness:
         self._kept: tuple[float, dict[str, str | None]] | None = None
 
     async def failures(self) -> dict[str, str | None]:
-        """Return the result of each check: the fault in words, or None."""
+        """Return the result of each check: a message about the fault, or None."""
         async with self._lock:
             if self._kept is None or time.monotonic() - self._kept[0] > KEPT:
                 said = await asyncio.gather(*(check() for check in self._checks.values()))
@@ -49,14 +49,14 @@ class Readiness:
 
 
 class WriterProbe:
-    """Has the writer change a row. A test that still hangs is waited for again, not sent twice."""
+    """Lets the writer change a row; while a test still hangs, no other test is started."""
 
     def __init__(self, database: Database, patience: float = PATIENCE) -> None:
         self._database, self._patience = database, patience
         self._pending: Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Return why no write is possible, or None."""
+        """Return why rows cannot be written, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = self._database.submit(_touch)
@@ -65,20 +65,20 @@ class WriterProbe:
             await asyncio.wait_for(asyncio.shield(writing), self._patience)
         except TimeoutError:
             return f"a write takes longer than {self._patience:g} s"
-        except Exception as error:  # whatever it is, the service cannot write
+        except Exception as error:  # after any error the service cannot write
             return f"a write fails: {error}"
         return None
 
 
 class Files:
-    """Asks the store of the files for an answer. A question that still hangs is not asked twice."""
+    """Tests whether the file store answers; while a test still hangs, no other test is started."""
 
     def __init__(self, store: Artifacts, patience: float = PATIENCE) -> None:
         self._store, self._patience = store, patience
         self._pending: asyncio.Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Return why no file can be read or stored, or None."""
+        """Return why files cannot be read or stored, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = asyncio.ensure_future(asyncio.to_thread(self._store.probe))
@@ -92,24 +92,24 @@ class Files:
 
 
 def _look_at(writing: asyncio.Future[None]) -> None:
-    """Retrieve the error of a write that ends after its test, since no other caller does."""
+    """Retrieve the error of a write that ends after its test, because no other caller does."""
     if not writing.cancelled():
         writing.exception()
 
 
 def _touch(session: Session) -> None:
-    """Write a row without effect, synced to disk."""
+    """Write a row without effect, and sync it to disk."""
     session.execute(update(CounterRow).where(CounterRow.name == "operation").values(value=CounterRow.value))
 
 
 class Space:
-    """Compares the free space of a folder's disk with what is wanted [MiB]."""
+    """Compares the free space on a folder's disk with the required space [MiB]."""
 
     def __init__(self, folder: Path, minimum_mb: int) -> None:
         self._folder, self._minimum = folder, minimum_mb
 
     async def __call__(self) -> str | None:
-        """Return how much disk space is missing, or None."""
+        """Return a message with the missing disk space, or None."""
         try:
             free = shutil.disk_usage(self._folder).free / 2**20
         except OSError as error:
@@ -120,7 +120,7 @@ class Space:
 
 
 class ProcessPool(Protocol):
-    """Has processes that may be alive or not."""
+    """The interface of a worker whose processes can be tested."""
 
     def answers(self) -> bool:
         """Return whether a worker answers; see `Worker.answers`."""
@@ -128,7 +128,7 @@ class ProcessPool(Protocol):
 
 
 class Processes:
-    """Asks whether a job would find a process now or soon."""
+    """Tests whether a job would find a process now or soon."""
 
     def __init__(
         self,
@@ -139,7 +139,7 @@ class Processes:
         self._worker, self._why_silent, self._patience = worker, why_silent, patience
 
     async def __call__(self) -> str | None:
-        """Return that no job process answers, or None."""
+        """Return a message if no job process answers, else None."""
         end = time.monotonic() + self._patience
         while not self._worker.answers():
             if time.monotonic() >= end:

@@ -1,4 +1,4 @@
-"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+"""`/healthz`, `/readyz` and `/metrics`, outside `/api/v1`."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ router = APIRouter(tags=["health"])
 
 @router.get("/healthz", dependencies=[public()])
 async def show_health() -> Health:
-    """Return that the process is alive."""
+    """Return status 200 to show that the process is alive."""
     return Health(status="ok")
 
 
 @router.get("/readyz", response_model=Ready, responses=refusals(503), dependencies=[public()])
 async def show_readiness(readiness: TheReadiness) -> Response:
-    """The service can write, has space, and its job processes answer. Checked at most once a second."""
+    """Return whether the service can write, has disk space, and its job processes answer.
+
+    The checks run at most once a second.
+    """
     said = await readiness.failures()
     listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
     if not listed:
@@ -38,7 +41,7 @@ async def show_readiness(readiness: TheReadiness) -> Response:
 
 @router.get("/metrics", response_class=PlainTextResponse, dependencies=[needs()])
 def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
-    """Return the metrics for Prometheus."""
+    """Return the metrics in Prometheus's text format."""
     with database.read() as session:
         text = metrics.text(jobs.census(session), jobs.oldest_queued_age(session))
     return Response(text, media_type=CONTENT_TYPE_LATEST)

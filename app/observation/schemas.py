@@ -1,4 +1,4 @@
-"""The state of the service: whether it is alive, and whether it is ready."""
+"""Response schemas for the state of the service: alive, and ready."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Health(Answer):
 
 
 class Ready(Answer):
-    """The service can do its work now."""
+    """The service is ready for work."""
 
     status: Literal["ready"]
     checks: dict[str, str] = Field(description="`ok` by check")

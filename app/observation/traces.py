@@ -1,11 +1,11 @@
 """Traces by OpenTelemetry: spans of requests, units of work, jobs and runs in workers.
 
 This module is imported only if `traces_url` is set; its packages belong to the extra `traces`. The current
-span is carried as W3C's `traceparent` in `logs.TRACE`. Threads inherit it with their context, units of work
+span is stored in `logs.TRACE` as W3C's `traceparent`. Threads inherit it with their context, units of work
 from their caller, and jobs from the `cause` of their row, so whichever server runs a job continues its trace.
 
-A span names functions, routes, kinds and ids. It never has paths, queries, bodies, values, keys or the text
-of an error. Work in a child process or on another machine is one span, seen from the server.
+A span names functions, routes, kinds and ids. It never contains paths, queries, bodies, values, keys or the
+text of an error. Work in a child process or on another machine is one span, recorded by the server.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ About = Mapping[str, str]
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-SECONDS = 2.0  # for one sending, and for the last spans at the end [s]
-PATH = "/v1/traces"  # of OTLP over HTTP, if the setting names none
+SECONDS = 2.0  # longest time to send spans, also at the end [s]
+PATH = "/v1/traces"  # path of OTLP over HTTP, if the setting has no path
 UNIT, RUN = "unit of work", "run in a worker"
 FUNCTION, TRACEPARENT = "code.function.name", "traceparent"
 _CARRIER = TraceContextTextMapPropagator()
@@ -50,7 +50,7 @@ class QueuedJob(Protocol):
 
     @property
     def id(self) -> str:
-        """Return its id."""
+        """Return the id of the job."""
 
     @property
     def kind(self) -> str:
@@ -58,11 +58,11 @@ class QueuedJob(Protocol):
 
     @property
     def attempt(self) -> int:
-        """Return the number of times that the job was claimed."""
+        """Return how many times the job was claimed."""
 
 
 class Traces:
-    """Sends spans to a collector, in a thread of its own; when the collector is away, spans are lost."""
+    """Sends spans to a collector in a separate thread; while the collector is unreachable, spans are lost."""
 
     def __init__(self, url: str) -> None:
         about = {SERVICE_NAME: "crankwright", SERVICE_VERSION: version("crankwright")}
@@ -73,14 +73,14 @@ class Traces:
         self._tracer = self._provider.get_tracer("crankwright")
 
     def close(self) -> None:
-        """Send the remaining spans, and wait only a short time for this."""
+        """Send the remaining spans, and wait only a short time for that."""
         ending = threading.Thread(target=self._provider.shutdown, name="traces-end", daemon=True)
         ending.start()
         ending.join(SECONDS)
 
     @contextmanager
     def span(self, name: str, about: About, kind: SpanKind = SpanKind.INTERNAL) -> Iterator[Span]:
-        """Open a span within the current one; spans that begin inside belong to it."""
+        """Open a span within the current one; spans that begin inside become its children."""
         span = self._begun(name, about, kind)
         token = logs.TRACE.set(_carried(span))
         try:
@@ -106,14 +106,14 @@ class Traces:
         return _TracedWorker(worker, self)
 
     def part(self, name: str, function: Callable[..., object]) -> AbstractContextManager[object]:
-        """Return the span of a function within a trace.
+        """Return the span of a function within a trace; None outside a trace.
 
-        None for work of the service itself, such as heartbeats.
+        The service's own work, such as heartbeats, belongs to no trace.
         """
         return self.span(name, {FUNCTION: _named(function)}) if logs.TRACE.get() else nullcontext()
 
     def submitted(self, writer: Writer, unit: Unit[T]) -> Future[T]:
-        """Submit a unit of work, as a span that ends with the unit's future."""
+        """Submit a unit of work, and record a span that ends with the unit's future."""
         if not logs.TRACE.get():
             return writer.submit(unit)
         span = self._begun(UNIT, {FUNCTION: _named(unit)}, SpanKind.INTERNAL)
@@ -135,7 +135,7 @@ class Traces:
 
 
 class _TracedWriter:
-    """See `Writer`."""
+    """A writer that records spans; see `Writer`."""
 
     def __init__(self, writer: Writer, traces: Traces) -> None:
         self.engine, self._writer, self._traces = writer.engine, writer, traces
@@ -152,7 +152,7 @@ class _TracedWriter:
 
 
 class _TracedBatch:
-    """See `Batch`."""
+    """A batch that records spans; see `Batch`."""
 
     def __init__(self, batch: Batch, traces: Traces) -> None:
         self._batch, self._traces = batch, traces
@@ -175,7 +175,7 @@ class _TracedBatch:
 
 
 class _TracedWorker(_TracedBatch):
-    """See `BatchWorker`."""
+    """A worker that records spans; see `BatchWorker`."""
 
     def __init__(self, worker: BatchWorker, traces: Traces) -> None:
         super().__init__(worker, traces)
@@ -192,7 +192,7 @@ class _TracedWorker(_TracedBatch):
 
 
 def _carried(span: Span) -> str:
-    """Return the context of a span as text."""
+    """Return the context of a span as a `traceparent`."""
     carrier: dict[str, str] = {}
     _CARRIER.inject(carrier, set_span_in_context(span, Context()))
     return carrier.get(TRACEPARENT, "")
@@ -207,7 +207,7 @@ def _named(function: Callable[..., object]) -> str:
 
 
 def _note_failure(span: Span, error: BaseException) -> None:
-    """Mark a span as failed, by the type of the error: its text may quote what a client has sent."""
+    """Mark a span as failed with only the type of the error, whose text may quote what a client sent."""
     span.set_attribute("error.type", type(error).__qualname__)
     span.set_status(Status(StatusCode.ERROR))
 

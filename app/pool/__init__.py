@@ -1,1 +1,1 @@
-"""The pool of calculation processes: costs of calculations, turns of clients, and hand-over to jobs."""
+"""The pool of calculation processes: cost estimates, turns of clients, and hand-over to jobs."""

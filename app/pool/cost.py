@@ -1,7 +1,7 @@
 """Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate is an order of magnitude, and errs on the high side. An
-expensive calculation leaves the server's process (see `app.pool.pool`).
+The estimate is an order of magnitude and rather too high. An expensive calculation runs outside the server's
+process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from templates.core.language.spec import Curve, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity
 
-EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
+EXPENSIVE = 0.05  # a longer calculation runs outside the server's process [s]
 
-QUICK = 1e-4  # at one point [s]
+QUICK = 1e-4  # longest time of a quick level at one point [s]
 
-PER_CALL, PER_OUTPUT = 2e-4, 5e-5  # of one point, without levels [s]
-PER_POINT = 2e-7  # each number of an output of an array call, before it is written [s]
-PER_VALUE = 1e-6  # each number of an answer, calculated and written as JSON [s]
-PER_NUMBER = 5e-7  # each number of a request, read and checked [s]
-PER_FORMULA = 3e-4  # written out in a worksheet [s]
+PER_CALL, PER_OUTPUT = 2e-4, 5e-5  # time at one point, without levels [s]
+PER_POINT = 2e-7  # for each number in an array output, before it is written [s]
+PER_VALUE = 1e-6  # for each number of an answer, calculated and written as JSON [s]
+PER_NUMBER = 5e-7  # for each number of a request, read and checked [s]
+PER_FORMULA = 3e-4  # for each formula written out in a worksheet [s]
 SCANS, CLOSINGS = 8, 120
 """Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
-SOLUTIONS = 2  # that are likely to be calculated again at the level requested
-BESIDE = 2  # samples that are drawn beside each of these
-MOST_POINTS = 10**12  # a request may claim more than a float can hold
-PROBED = 1000  # numbers in a request beyond which only the first of each array is looked at
+SOLUTIONS = 2  # number of solutions typically recalculated at the requested level
+BESIDE = 2  # samples around each of these solutions
+MOST_POINTS = 10**12  # upper limit; a request may claim more than a float can hold
+PROBED = 1000  # with more numbers in a request, only the first of each array is read
 
 
 def estimated_seconds(
@@ -49,7 +49,7 @@ def estimated_seconds(
     tolerance: float | None = None,
     outputs: Collection[str] | None = None,
 ) -> float:
-    """Estimate the time of `evaluate`, with reading and writing [s].
+    """Return the estimated time of `evaluate` [s], including reading and writing.
 
     For invalid inputs the number has no meaning.
     """
@@ -63,9 +63,10 @@ def estimated_seconds(
 def level_seconds(
     template: Template, inputs: Mapping[str, Raw], level: str, outputs: Collection[str]
 ) -> float:
-    """Estimate the time of outputs of a template at another of its levels [s].
+    """Return the estimated time of outputs of a template at another of its levels [s].
 
-    By the time to expect that its table states, which is nearer than the cost of the level.
+    It is the expected time in the template's accuracy table, which is more accurate than the cost of the
+    level.
     """
     measured = accuracy(type(template))
     expected = measured.seconds(template, level) if measured else None
@@ -75,9 +76,9 @@ def level_seconds(
 def array_seconds(
     cls: type[Template], level: str | None, points: int, outputs: Collection[str], calls: int, places: int
 ) -> float:
-    """Estimate the time of array calls for a number of points [s], in SI, with nothing read, written or kept.
+    """Return the estimated time of array calls in SI for a number of points [s], without reading and writing.
 
-    `places` are those of the longest curve, 1 if there is none.
+    `places` is the length of the longest curve, 1 if there is none.
     """
     wanted = _wanted(cls, outputs)
     plain = calls * (PER_CALL + PER_OUTPUT * len(wanted)) + PER_POINT * points * places * len(wanted)
@@ -96,7 +97,7 @@ def solving_seconds(
     outputs: Collection[str] | None = None,
     target: Iterable[str] = (),
 ) -> float:
-    """Estimate the time of `solve` [s]: a scan at a level that takes many points, then closing in."""
+    """Return the estimated time of `solve` [s]: a scan of many points, then a search for each solution."""
     levels = _levels(cls, inputs, level, tolerance, 0)
     aimed = list(target)
     cheap = levels if not any(name in cls.most_points for name in levels) else (cls.default_level,)
@@ -108,12 +109,12 @@ def solving_seconds(
 
 
 def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None) -> float:
-    """Estimate the time for writing out the formulas [s]."""
+    """Return the estimated time for writing out the formulas [s]."""
     return PER_FORMULA * len(_wanted(cls, outputs))
 
 
 def is_quick(cls: type[Template]) -> bool:
-    """Return whether a few points take, at every level, no longer than the start of a thread."""
+    """Return whether a few points at any level take no longer than starting a thread."""
     if cls not in _quick:
         levels = cls.levels or (SINGLE,)
         seconds = [_level_costs(cls, level)[0] for level in levels] + [_bodies_seconds(cls, 1)]
@@ -125,7 +126,7 @@ _quick: WeakKeyDictionary[type[Template], bool] = WeakKeyDictionary()
 
 
 def _bodies_seconds(cls: type[Template], points: int) -> float:
-    """Estimate the time of all bodies of a worksheet at a number of points [s]; 0 if it is a file."""
+    """Return the estimated time of all bodies of a worksheet for some points [s]; 0 for a template file."""
     if cls.sheet is None:
         return 0.0
     if cls not in _costs:
@@ -141,7 +142,7 @@ _costs: WeakKeyDictionary[type[Template], tuple[float, float]] = WeakKeyDictiona
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
-    """Yield the axes that are points: a curve is one thing along its last, a table is one as a whole."""
+    """Yield the axes that count points, without the axis along a curve; tables are left out."""
     for name, shape in shapes.items():
         declared = cls.inputs.get(name)
         if not isinstance(declared, Table):
@@ -151,7 +152,7 @@ def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Itera
 def _profiles(
     cls: type[Template], shapes: Mapping[str, tuple[int, ...]], outputs: Collection[str] | None
 ) -> float:
-    """Return the time for outputs along curves, besides that for the points [s]."""
+    """Return the time for outputs along curves [s], in addition to that for the points."""
     curves = (math.prod(s) for name, s in shapes.items() if isinstance(cls.inputs.get(name), Curve))
     return min(MOST_POINTS, max(curves, default=0)) * len(_wanted(cls, outputs)) * PER_VALUE
 
@@ -163,7 +164,7 @@ def _levels(
     tolerance: float | None,
     numbers: int,
 ) -> tuple[str, ...]:
-    """Return the levels that will be calculated: one, or with a tolerance perhaps all, up to the finest."""
+    """Return the levels that may be calculated: one level, or with a tolerance all that may be needed."""
     if not cls.levels:
         return (SINGLE,)
     if level in cls.levels:
@@ -173,7 +174,7 @@ def _levels(
 
 
 def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[tuple[str, ...], str]:
-    """Return the levels that suit these inputs, and the default one."""
+    """Return the levels that accept these inputs, and the default level."""
     if cls.ladder is Template.ladder:
         return cls.levels, cls.default_level
     probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}
@@ -186,7 +187,7 @@ def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tup
 
 
 def _first(cls: type[Template], name: str, raw: Raw) -> Raw:
-    """Return an array's first value, in its unit; any other value unchanged."""
+    """Return the first value of an array in its unit; any other value is returned unchanged."""
     if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw
     if isinstance(raw, TypedQuantity):
@@ -204,7 +205,7 @@ def _wanted(cls: type[Template], outputs: Collection[str] | None) -> list[str]:
 def _evaluating(
     cls: type[Template], levels: Iterable[str], points: int, outputs: Collection[str] | None
 ) -> float:
-    """Estimate the time of one evaluation of a number of points at these levels together [s]."""
+    """Return the estimated total time of one evaluation of a number of points at these levels [s]."""
     wanted = _wanted(cls, outputs)
     plain = PER_CALL + PER_OUTPUT * len(wanted) + PER_VALUE * points * len(wanted)
     plain += _bodies_seconds(cls, points)
@@ -216,9 +217,9 @@ def _evaluating(
 
 
 def _level_costs(cls: type[Template], level: str) -> tuple[float, float]:
-    """Return the measured time of all outputs of a level at one point, and at each of many [s]; 0 if unknown.
+    """Return a level's measured time for all outputs at one point, and at each of many [s]; 0 if unknown.
 
-    A table that was measured without some outputs states in `cost_of_all` how many times as long all take.
+    If a table was measured without some outputs, its `cost_of_all` is the factor for all outputs.
     """
     measured = accuracy(cls)
     if measured is None:
@@ -232,12 +233,12 @@ Shape = tuple[int, ...]
 
 
 def points(inputs: Mapping[str, Raw]) -> int:
-    """Return the number of points that the arrays among inputs, as typed, span together."""
+    """Return the number of points that the arrays among the inputs span together."""
     return spanned(arrays(inputs).values())
 
 
 def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
-    """Return the shapes of the arrays among inputs, as typed."""
+    """Return the shapes of the arrays among the inputs."""
     shapes: dict[str, Shape] = {}
     for name, raw in inputs.items():
         is_single = isinstance(raw, str) or (isinstance(raw, TypedQuantity) and isinstance(raw.si, float))
@@ -247,14 +248,14 @@ def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
 
 
 def spanned(shapes: Iterable[Shape]) -> int:
-    """Return the number of points that shapes span together; if they do not fit, at least the largest."""
-    # NumPy's own broadcast_shapes gives up on counts beyond 2^63.
+    """Return the number of points that shapes span together, at least the largest if they do not fit."""
+    # NumPy's own broadcast_shapes fails for counts beyond 2^63.
     axes = zip_longest(*map(reversed, shapes), fillvalue=1)
     return math.prod(map(max, axes))
 
 
 def shape(raw: Raw) -> Shape:
-    """Return the shape of a quantity as typed: by its first items; uneven lists are refused later."""
+    """Return the shape of a quantity, judged by its first items; uneven lists are refused later."""
     if isinstance(raw, TypedQuantity):
         return np.shape(raw.si)
     lengths: list[int] = []

@@ -18,4 +18,4 @@ class TooManyCalculations(QueueFull):
 
 
 class StepDeferred(Exception):
-    """An expensive step was not calculated in the time that its caller waits; a job is to do it."""
+    """An expensive step was not calculated while its caller waited; a job will calculate it."""

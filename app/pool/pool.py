@@ -1,6 +1,6 @@
 """The bounded pool in which expensive calculations run: a queue with admission, turns by client, and lanes.
 
-Threads of its own wait for the processes. So neither the event loop nor a thread of a route does: a route
+Separate threads wait for the processes, so that neither the event loop nor the threads of routes do: a route
 awaits `Calculation.future`, and a thread that needs the result blocks on it.
 """
 
@@ -21,24 +21,24 @@ from templates.core.progress import Reporter
 Ts = TypeVarTuple("Ts")
 Lane = Literal["answers", "jobs"]
 
-RETRY_AFTER = 5  # what to advise when too many wait [s]
+RETRY_AFTER = 5  # advised time before a retry if too many wait [s]
 
 
 class Calculation:
-    """A calculation that waits or runs; its `future` holds what comes out."""
+    """A calculation that waits or runs; its `future` receives the result."""
 
     def __init__(
         self, function: Callable[..., object], args: tuple[object, ...], client: str, turn: int, lane: Lane
     ) -> None:
         self.function, self.args = function, args
         self.client, self.turn, self.lane = client, turn, lane
-        self.future: Future[Any] = Future()  # whoever submits a function knows what it returns
+        self.future: Future[Any] = Future()  # the submitter knows the type of the result
         self.cancelled = threading.Event()
         self._listener: Reporter | None = None
         self._latest: tuple[float, str] | None = None
 
     def listen(self, listener: Reporter) -> None:
-        """Report progress to a function from now on, starting with the latest.
+        """Call a function with the progress from now on, beginning with the latest.
 
         It runs in a thread of the pool.
         """
@@ -54,13 +54,13 @@ class Calculation:
 
 
 class CalculationPool:
-    """As many calculations at a time as there are cores, and beside them the long ones that became jobs.
+    """Runs as many calculations at a time as there are cores, plus the long ones that became jobs.
 
     Args:
-        worker: runs them; it is the pool's own.
-        size: calculations that run at the same time while somebody waits for the answer.
-        waiting: calculations that may wait.
-        limits: of one calculation.
+        worker: runs the calculations; the pool owns it.
+        size: number of simultaneous calculations for waiting clients.
+        waiting: largest number of waiting calculations.
+        limits: limits of one calculation.
     """
 
     def __init__(self, worker: Worker, size: int, waiting: int, limits: Limits) -> None:
@@ -86,31 +86,32 @@ class CalculationPool:
 
     @property
     def running(self) -> int:
-        """Return calculations that run."""
+        """Return the number of running calculations."""
         return len(self._active)
 
     @property
     def waiting(self) -> int:
-        """Return calculations that wait."""
+        """Return the number of waiting calculations."""
         return len(self._queue)
 
     def occupancy(self) -> dict[str, float]:
-        """Return the figures of the pool for `app.observation.metrics`."""
+        """Return the numbers of the pool for `app.observation.metrics`."""
         return {"running": self.running, "waiting": self.waiting, "size": self.size}
 
     def answers(self) -> bool:
-        """Return whether a calculation would find a process that is alive; see `Worker.answers`."""
+        """Return whether a calculation would find a live process; see `Worker.answers`."""
         return self._worker.answers()
 
     def submit(
         self, client: str, function: Callable[[*Ts], object], *args: *Ts, lane: Lane = "answers"
     ) -> Calculation:
-        """Calculate a function when it is the client's turn.
+        """Run a function in a process as soon as it is the client's turn.
 
         Raises
         ------
         TooManyCalculations
-            The queue is full. If another client has more waiting than this one, its latest gives way.
+            If the queue is full. If another client has more waiting calculations, its latest is removed
+            instead.
         """
         with self._changed:
             if self._closed:
@@ -131,13 +132,13 @@ class CalculationPool:
         Raises
         ------
         TooManyCalculations
-            As `submit`.
+            As raised by `submit`.
         """
         with self._changed:
             self._loser(client)
 
     def cancel(self, calculation: Calculation) -> None:
-        """Cancel a calculation: remove it from the queue, or end its process if it runs."""
+        """Cancel a calculation: remove it from the queue, or end its process."""
         calculation.cancelled.set()
         with self._changed:
             is_waiting = calculation in self._queue
@@ -147,16 +148,16 @@ class CalculationPool:
             calculation.future.set_exception(JobCancelled())
 
     def keep(self, calculation: Calculation) -> bool:
-        """Let a running calculation go on as a job, if there is room; return whether there was."""
+        """Let a running calculation continue as a job, if there is room; return whether there was."""
         with self._changed:
             if calculation not in self._active or not self._has_room("jobs"):
                 return False
             calculation.lane = "jobs"
-            self._changed.notify_all()  # its place is free for another answer
+            self._changed.notify_all()  # its slot is free for another calculation
             return True
 
     def close(self) -> None:
-        """End everything; call it before the worker is closed."""
+        """End all calculations; call this before the worker is closed."""
         with self._changed:
             self._closed = True
             ending = [*self._queue, *self._active]
@@ -167,7 +168,7 @@ class CalculationPool:
             thread.join()
 
     def _loser(self, client: str) -> Calculation | None:
-        """Return the calculation to remove in favour of this client; None if the queue is not full."""
+        """Return the calculation that must leave the queue for this client; None if the queue is not full."""
         queue = [calculation for calculation in self._queue if calculation.lane == "answers"]
         if len(queue) - self._room("answers") < self.most_waiting:
             return None
@@ -181,7 +182,7 @@ class CalculationPool:
             self._run(calculation)
 
     def _next(self) -> Calculation | None:
-        """Wait for a calculation whose turn it is; None once the pool is closed."""
+        """Wait for the calculation whose turn it is, and return it; None once the pool is closed."""
         with self._changed:
             while not self._closed:
                 ready = [c for c in self._queue if self._has_room(c.lane)]
@@ -203,7 +204,7 @@ class CalculationPool:
                 on_progress=calculation.progress,
                 cancelled=calculation.cancelled,
             )
-        except BaseException as error:  # whatever it is belongs to who waits for the result
+        except BaseException as error:  # any error is passed to the waiting caller
             self._ended(calculation)
             calculation.future.set_exception(error)
         else:

@@ -1,10 +1,11 @@
 """Calculation processes of two kinds: light ones for templates, others with the design network loaded.
 
-The network imports the geometry kernel, which takes seconds and as much memory as all the rest. So functions
-of designs run in processes forked from one that has these modules loaded. The processes of each kind start at
-the first function for them: a service that evaluates only quick templates never starts them.
+The network imports the geometry kernel, which takes seconds and as much memory as everything else. So
+functions of designs run in processes forked from a process that has these modules loaded. The processes of
+each kind start at the first function for them: a service that evaluates only quick templates never starts
+them.
 
-`crankwright serve` loads the network without the kernel, and forks the complete kind in advance.
+`crankwright serve` loads the network without the kernel, and forks the second kind in advance.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ class CalculationProcesses:
 
     Args:
         light: starts processes with the templates loaded.
-        designs: starts those with the network of designs; None if the light ones have it too.
+        designs: starts processes with the network of designs; None if the light ones have the network too.
     """
 
     def __init__(
         self, light: Callable[[], WarmProcesses], designs: Callable[[], WarmProcesses] | None = None
     ) -> None:
-        self._starts = {True: light}  # by whether functions need no network of designs
+        self._starts = {True: light}  # key: True for functions without the network of designs
         if designs is not None:
             self._starts[False] = designs
         self._started: dict[bool, WarmProcesses] = {}
@@ -52,7 +53,7 @@ class CalculationProcesses:
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:
-        """Run the function in a process that has its modules; see `Worker.run`."""
+        """Run the function in a process that has the required modules; see `Worker.run`."""
         worker = self._processes(is_light(function.__module__))
         return worker.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
@@ -68,12 +69,12 @@ class CalculationProcesses:
                 processes.close()
 
     def _processes(self, light: bool) -> WarmProcesses:
-        """Return processes of a kind, started if there are none.
+        """Return the processes of a kind; start them if there are none.
 
         Raises
         ------
         JobCancelled
-            The service ends.
+            If the service is stopping.
         """
         with self._starting:
             if self._closed:
@@ -85,5 +86,5 @@ class CalculationProcesses:
 
 
 def is_light(module: str) -> bool:
-    """Return whether functions of a module need no network of designs."""
+    """Return whether the functions of a module do not need the network of designs."""
     return not module.startswith("app.") or module.startswith(LIGHT)

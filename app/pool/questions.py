@@ -1,9 +1,9 @@
-"""Answer a question at once if that is cheap, else by a job.
+"""Answer a request at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
 solutions, explanations with sensitivities, analyses of tolerances, single variants and the impact of
 versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
-artifact, which the client fetches later. A job is stored under the key of its question, so an equal question
+artifact, which the client fetches later. A job is stored under the key of its request, so an equal request
 finds the job or its answer.
 """
 
@@ -43,7 +43,7 @@ TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "varia
 EXPLANATION = "explanation"
 ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT, EXPLANATION)
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
-AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
+AGAIN = "again"  # payload key: the job whose lost answer is calculated again
 FAILURES = (TemplateError, NotFound, CannotRebuild, DeadlineExceeded, MemoryExceeded)
 """What a question of any kind, or the loss of it, brings about."""
 
@@ -54,7 +54,7 @@ M = TypeVar("M", bound=Answer)
 
 @dataclass(frozen=True)
 class Reply(Generic[Q, A]):
-    """An answer as far as it goes, and the question that a job has to answer; None if the answer is whole."""
+    """The answer as far as it is known, and the request that a job must complete, if any."""
 
     answer: A | None
     rest: Q | None = None
@@ -62,14 +62,14 @@ class Reply(Generic[Q, A]):
 
 @dataclass(frozen=True)
 class Form(Generic[Q]):
-    """How questions of a kind are kept: fields in the row of the job, and a body in the store."""
+    """How requests of a kind are stored: fields in the row of the job, and a body in the file store."""
 
     write: Callable[[Q], tuple[JsonObject, Pieces]]
     read: Callable[[JsonObject, Pieces], Q]
 
 
 def json_form(asked: type[Q]) -> Form[Q]:
-    """Return the form of questions whose dataclasses hold only JSON values: all content is in the body."""
+    """Return the form for requests whose dataclasses hold only JSON values, all stored in the body."""
     adapter: TypeAdapter[Q] = TypeAdapter(asked)
 
     def read(fields: JsonObject, body: Pieces) -> Q:
@@ -79,34 +79,35 @@ def json_form(asked: type[Q]) -> Form[Q]:
 
 
 def json_answer(model: type[M]) -> Callable[[Pieces], M]:
-    """Return the function that reads a stored answer as a model."""
+    """Return a function that parses a stored answer as a model."""
     return lambda kept: model.model_validate_json(kept.joined())
 
 
 @dataclass(frozen=True)
 class Kind(Generic[Q, A]):
-    """A kind of questions.
+    """A kind of requests.
 
     Parameters
     ----------
     name
-        Of its jobs.
+        Kind of the jobs that answer them.
     form
-        In which its questions are kept.
+        How the requests are stored.
     read
-        Reads a kept answer.
+        Function that reads a stored answer.
     calculate
-        Answers a question for the caller of the present context, as far as that caller waits.
+        Function that answers a request for the caller of the present context, as far as that caller waits.
     failures
-        What a question brings about, besides `FAILURES`.
+        Errors that a request of this kind may raise, in addition to `FAILURES`.
     settle
-        Returns a question with the revision that is the newest now, and all else that the answer follows
-        from. None for a kind whose answer follows from what may change at any time: an equal question then
-        finds only a job that has not begun.
+        Function that returns a request with the revision that is the newest now, and everything else that
+        determines the answer. None if the answer depends on what may change at any time: an equal request
+        then joins only a job that has not begun.
     check
-        Of a kind that always takes long: raises what refuses a question, as far as shows without calculating.
+        For a kind that always takes long: function that raises an error for an invalid request, as far as
+        that shows without calculating.
     has_parts
-        Whether there is a part of the answer while its job goes on.
+        Whether part of the answer is available while its job continues.
     """
 
     name: str
@@ -120,19 +121,20 @@ class Kind(Generic[Q, A]):
 
     @property
     def all_failures(self) -> tuple[type[Exception], ...]:
-        """Return the exceptions that a question of this kind may raise."""
+        """Return the errors that a request of this kind may raise."""
         return (*FAILURES, *self.failures)
 
     @property
     def joined(self) -> frozenset[State]:
-        """Return the states in which a job also serves an equal question."""
+        """Return the states in which a job also serves an equal request."""
         return frozenset({"queued", "running", "done"} if self.settle else {"queued"})
 
 
 class Questions(Generic[Q, A]):
-    """Answers questions of one kind, makes jobs where that takes long, and is the handler of such jobs.
+    """Answers requests of one kind, creates jobs for those that take long, and handles these jobs.
 
-    A save is no question: its job is committed with a revision and completes it, and keeps no answer.
+    A save does not use this class: its job is committed with a revision and completes it, and stores no
+    answer.
     """
 
     def __init__(
@@ -154,9 +156,9 @@ class Questions(Generic[Q, A]):
         Raises
         ------
         InvalidInputs, NotFound
-            With everything that is wrong with the question or the design, as far as it is known.
+            With all known faults of the request or the design.
         QueueFull, TooManyCalculations
-            Too many jobs, or calculations, are waiting.
+            If too many jobs or calculations are waiting.
         """
         asked, key = self._settled(question)
         if key and (earlier := self._earlier(key)):
@@ -171,18 +173,18 @@ class Questions(Generic[Q, A]):
         return reply.answer, None if reply.rest is None else self._queued(reply.rest, key, client)
 
     def in_parts(self, question: Q, client: str) -> tuple[A, str | None]:
-        """Answer as `answer` does, for a kind whose answer has parts and is never empty.
+        """Return an answer as `answer` does, for a kind whose answer has parts and is never empty.
 
         Raises
         ------
         InvalidInputs, NotFound, QueueFull, TooManyCalculations
-            As `answer`.
+            As raised by `answer`.
         """
         answer, job = self.answer(question, client)
         return self.at_once(question) if answer is None else answer, job
 
     def at_once(self, question: Q) -> A:
-        """Return the answer as far as it is known while its caller waits; no job is made for the rest."""
+        """Return the answer as far as it is known while its caller waits, without a job for the rest."""
         answer = self._reply(question).answer
         assert answer is not None, "a job waits for the whole answer, and a page asks for what has parts"
         return answer
@@ -191,14 +193,14 @@ class Questions(Generic[Q, A]):
         return self.kind.calculate(question, self.database, self.catalogues)
 
     def _settled(self, question: Q) -> tuple[Q, str]:
-        """Return a question with its revision, and its key; empty for a kind that does not settle."""
+        """Return a request with its revision, and its key, which is empty for a kind that does not settle."""
         if self.kind.settle is None:
             return question, ""
         asked, grounds = self.kind.settle(question, self.database, self.catalogues)
         return asked, self._key(asked, grounds)
 
     def _key(self, question: Q, grounds: Iterable[str] = ()) -> str:
-        """Return the hash of all data that determine the answer to a question."""
+        """Return the hash of all data that determine the answer to a request."""
         fields, body = self.kind.form.write(question)
         about = [self.kind.name, canonical_json(fields), *program(), *grounds]
         digest = hashlib.sha256("\0".join(about).encode())
@@ -207,12 +209,12 @@ class Questions(Generic[Q, A]):
         return digest.hexdigest()
 
     def _earlier(self, key: str) -> Job | None:
-        """Return the newest job of an equal question."""
+        """Return the newest job of an equal request."""
         with self.database.read() as session:
             return repository.asked(session, key, self.kind.joined)
 
     def _queued(self, question: Q, key: str, client: str) -> str:
-        """Return the job of an equal question, or a new one that takes over calculations already begun."""
+        """Return the job of an equal request, or a new job that takes over calculations already begun."""
         fields, body = self.kind.form.write(question)
         key = key or self._key(question)
         payload = {**fields, "body": self.store.put(*body)}
@@ -227,12 +229,12 @@ class Questions(Generic[Q, A]):
         return self.jobs.commit(unit_of_work)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Calculate the whole answer, and keep it.
+        """Calculate the complete answer for a job, and store it.
 
         Raises
         ------
         JobFailed
-            With the problem, for any error that the question itself causes.
+            With the problem, for any error that the request itself causes.
         """
         try:
             question = question_of(self.kind.form, job, self.store)
@@ -240,7 +242,7 @@ class Questions(Generic[Q, A]):
                 answer = self.at_once(question)
         except self.kind.all_failures as error:
             raise JobFailed(error) from error
-        lost = job.payload.get(AGAIN)  # the job whose answer this is
+        lost = job.payload.get(AGAIN)  # the job whose answer was lost
         place = place_of_answer(lost or job.id, self.store.put(*as_kept(answer)))
 
         def unit_of_work(session: Session) -> str:
@@ -256,9 +258,9 @@ class Questions(Generic[Q, A]):
         Raises
         ------
         CannotRebuild
-            The request that the job was made of is lost as well.
+            If the request of that job is lost as well.
         QueueFull
-            Too many jobs are waiting.
+            If too many jobs are waiting.
         """
         if not self.store.exists(job.payload["body"]):
             raise _lost(job)
@@ -266,12 +268,12 @@ class Questions(Generic[Q, A]):
         return self.jobs.commit(lambda session: self.jobs.request(session, job.kind, payload, client))
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Cancel the calculations that were left to a job which was cancelled before its start."""
+        """Cancel the calculations that were left to a job that was cancelled before its start."""
         self.steps.drop(job.id)
 
 
 def question_of(form: Form[Q], job: Job, store: Artifacts) -> Q:
-    """Return the question of a job from the row of the job.
+    """Return the request of a job from the row of the job.
 
     Raises
     ------
@@ -293,7 +295,7 @@ def _lost(job: Job) -> CannotRebuild:
 def as_kept(answer: Answer | Pieces) -> Pieces:
     """Return an answer as JSON, without the fields that it leaves out.
 
-    An answer that is already text, unchanged.
+    An answer that is already text is returned unchanged.
     """
     if isinstance(answer, Pieces):
         return answer
@@ -307,13 +309,13 @@ def stored_answer(store: Artifacts, job: Job) -> Pieces:
 
 
 def place_of_answer(job: str, sha: str) -> str:
-    """Return the address at which the answer of a job is read."""
+    """Return the address of a job's answer."""
     return f"/api/v1/evaluations/{job}?sha256={sha}"
 
 
 @lru_cache(1)
 def program() -> tuple[str, ...]:
-    """Return the program's version, and the ages and sizes of the files that it calculates with."""
+    """Return the program's version, and the time stamps and sizes of the files that it calculates with."""
     root = Path(templates.__file__).parents[1]
     files = sorted(
         path

@@ -1,4 +1,4 @@
-"""The source from which a process loads a template: the file or worksheet, as the server read it."""
+"""The sources from which a process loads a template: the file or worksheet, as the server read it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _PROGRAM = str(Path(templates.__file__).parents[1])
 
 @dataclass(frozen=True)
 class FileSource:
-    """The file of a template; the content of a team's file goes with it, of a built-in one nothing.
+    """The file of a template, with its content if it is a team's file.
 
-    The path of a built-in one is that within the program, which other machines have elsewhere.
+    The path of a built-in template is relative to the program, which other machines have elsewhere.
     """
 
     path: str
@@ -33,7 +33,7 @@ class FileSource:
 
 @dataclass(frozen=True)
 class SheetSource:
-    """The text of a worksheet, of which every process makes the class."""
+    """The text of a worksheet, from which each process creates the class."""
 
     id: str
     version: int
@@ -43,7 +43,7 @@ class SheetSource:
 
 @dataclass(frozen=True)
 class ImportedSource:
-    """The description of a model that a team has imported, of which every process makes the class."""
+    """The description of a model that a team has imported, from which each process creates the class."""
 
     id: str
     version: int
@@ -54,7 +54,7 @@ Source = FileSource | SheetSource | ImportedSource
 
 
 def source_of(cls: type[Template]) -> Source:
-    """Return the source of a template, with the code that this process calculates by."""
+    """Return the source of a template, with the code that this process uses."""
     if issubclass(cls, ImportedModel):
         return ImportedSource(cls.id, cls.version, cls.imported.text)
     if cls.sheet is not None:
@@ -68,7 +68,7 @@ def source_of(cls: type[Template]) -> Source:
 
 @lru_cache(maxsize=1024)
 def loaded(source: Source) -> type[Template]:
-    """Return the template in this process, by the code that the server sent.
+    """Return the template in this process, created from the code that the server sent.
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Evaluate steps of designs: in the calling thread, or in the pool if that takes long.
+"""Evaluate steps of designs: in the calling thread, or in the pool if they take long.
 
-The route or job that calculates a design sets the evaluator and the client.
+The route or job that calculates a design sets the pool and the client for its context.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from templates.core.units.quantity import TypedQuantity
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-GLANCE = 0.1  # how often a thread looks whether its client has left [s]
+GLANCE = 0.1  # time between two checks whether the client has left [s]
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Where expensive steps are evaluated, and how long an answer waits for them [s]."""
+    """The pool for expensive steps, and how long an answer waits for them [s]."""
 
     pool: CalculationPool
     deadline: float
@@ -46,7 +46,7 @@ class Steps:
     )  # calculations that wait for their job, by job
 
     def begun(self) -> PendingCalculations:
-        """Return a place for the calculations that one request begins and does not wait for."""
+        """Return an empty record of the calculations that one request begins without waiting for them."""
         return PendingCalculations(self.pool, self.left)
 
     def drop(self, job: str) -> None:
@@ -61,15 +61,15 @@ _Question = tuple[Source, Mapping[str, Raw], tuple[str, ...] | None, str | None,
 
 @dataclass
 class Caller:
-    """Who asks for steps, where they are evaluated, and how long that is waited for."""
+    """The client that needs steps, where they are evaluated, and how long the client waits."""
 
     steps: Steps
     client: str
     begun: PendingCalculations
     lane: Lane = "answers"
-    left: threading.Event = field(default_factory=threading.Event)  # nobody waits for the result any longer
+    left: threading.Event = field(default_factory=threading.Event)  # set once nobody waits for the result
     report: Reporter | None = None
-    until: float = math.inf  # when steps are deferred that are not calculated by then [s, monotonic]
+    until: float = math.inf  # steps not calculated by then are deferred [s, monotonic]
 
     def evaluation(
         self,
@@ -79,24 +79,24 @@ class Caller:
         level: str | None,
         tolerance: float | None,
     ) -> Evaluation:
-        """Return the evaluation of a step in the pool; blocks.
+        """Return the evaluation of a step in the pool; this call blocks.
 
         Raises
         ------
         StepDeferred
-            It has not ended in time; it goes on if it may.
+            If it does not end in time; it continues if there is room.
         """
         key = (cls, outputs, level, tolerance, fingerprint(raw))
         question: _Question = source_of(cls), raw, outputs, level, tolerance
         return self.calculated(key, _evaluated, *question)
 
     def calculated(self, key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """Run a function in the pool and wait for its result. A job that takes over finds it by its `key`.
+        """Run a function in the pool and wait for its result. A job that takes it over finds it by its `key`.
 
         Raises
         ------
         StepDeferred
-            It has not ended in time; it goes on if it may.
+            If it does not end in time; it continues if there is room.
         """
         calculation = self.begun.take(key) or self._submitted(function, *args)
         if self.report is not None:
@@ -131,18 +131,18 @@ def evaluated_step(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """Return the evaluation of a step.
+    """Return the evaluation of a step; this call blocks.
 
-    Blocks. Its design judges it, for criteria may follow from several steps.
+    The design judges the evaluation, because a criterion may depend on several steps.
 
     Raises
     ------
     InvalidInputs
-        Where the template refuses.
+        If the template refuses the inputs.
     StepDeferred
-        It is expensive, and the caller does not wait for it.
+        If the step is expensive, and the caller does not wait for it.
     TooManyCalculations, WorkerError
-        As `CalculationPool.submit` and `Worker.run`.
+        As raised by `CalculationPool.submit` and `Worker.run`.
     """
     caller = _caller.get()
     if caller is None or estimated_seconds(cls, raw, level, tolerance, outputs) <= EXPENSIVE:
@@ -156,16 +156,16 @@ def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
     Raises
     ------
     StepDeferred
-        The caller does not wait for it.
+        If the caller does not wait for the result.
     TooManyCalculations, WorkerError
-        As `CalculationPool.submit` and `Worker.run`.
+        As raised by `CalculationPool.submit` and `Worker.run`.
     """
     caller = _caller.get()
     return function(*args) if caller is None else caller.calculated(key, function, *args)
 
 
 def begun_steps() -> PendingCalculations | None:
-    """Return the calculations that the caller of this context began without waiting for them."""
+    """Return the calculations that the caller of this context has begun without waiting for them."""
     caller = _caller.get()
     return caller.begun if caller else None
 
@@ -177,7 +177,7 @@ def _evaluated(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """Return the evaluation, with all values that the template computed; runs in a calculation process."""
+    """Return the evaluation with all values that the template computes; runs in a calculation process."""
     return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
 
 
@@ -198,12 +198,12 @@ def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lan
 
 
 def call_as(caller: Caller) -> None:
-    """Evaluate expensive steps on behalf of a caller from here on in this context, such as a request."""
+    """Evaluate expensive steps on behalf of a caller from here on in this context, such as in a request."""
     _caller.set(caller)
 
 
 def announce(text: str) -> None:
-    """Tell the job of this context, if there is one, which calculation follows."""
+    """Tell the job of this context, if there is one, which calculation comes next."""
     caller = _caller.get()
     if caller is not None and caller.report is not None:
         caller.report(0.0, text)
@@ -213,7 +213,7 @@ def announce(text: str) -> None:
 def stage(first: float, last: float, name: str) -> Iterator[None]:
     """Report the progress of the calculations in this block as a part of the whole, from `first` to `last`.
 
-    Each text starts with the name of the part, if it has one.
+    Each text begins with the name of the part, if the part has a name.
     """
     caller = _caller.get()
     if caller is None or caller.report is None:
@@ -233,14 +233,14 @@ def present_caller() -> Caller | None:
 
 
 class PendingCalculations:
-    """Calculations that a request has begun and left; a job takes them over, or they are cancelled.
+    """Calculations that a request has begun without waiting; a job takes them over, or they are cancelled.
 
     Parameters
     ----------
     pool
-        Where the calculations run.
+        The pool in which the calculations run.
     left
-        What was left to jobs, by job; all requests share it.
+        The calculations left to jobs, by job; all requests share this mapping.
     """
 
     def __init__(self, pool: CalculationPool, left: dict[str, PendingCalculations]) -> None:
@@ -249,18 +249,18 @@ class PendingCalculations:
         self._job: str | None = None
 
     def keep(self, key: Hashable, calculation: Calculation) -> None:
-        """Let a calculation go on if the pool has room for one more job; else it is cancelled."""
+        """Let a calculation continue if the pool has room for one more job; otherwise cancel it."""
         if calculation.future.done() or self._pool.keep(calculation):
             self._calculations[key] = calculation
         else:
             self._pool.cancel(calculation)
 
     def take(self, key: Hashable) -> Calculation | None:
-        """Return the calculation of a question, and hand it over to the caller."""
+        """Return the calculation with this key, and hand it over to the caller."""
         return self._calculations.pop(key, None)
 
     def leave_to(self, job: str) -> None:
-        """Leave everything to a job; to be called in the transaction that queues it."""
+        """Leave all calculations to a job; call this in the transaction that queues the job."""
         self._withdraw()
         self._job, self._left[job] = job, self
 
@@ -278,10 +278,10 @@ class PendingCalculations:
 
 
 def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
-    """Return a digest of inputs as typed, regardless of the order of their parts."""
+    """Return a digest of inputs as the user wrote them, regardless of the order of their parts."""
     return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
 
 
 def _plain(value: object) -> object:
-    """Return a value as JSON; a quantity that was read already becomes the text that its user typed."""
+    """Return a value as JSON; a parsed quantity becomes the text that its user typed."""
     return [value.value, value.unit, value.extra] if isinstance(value, TypedQuantity) else repr(value)

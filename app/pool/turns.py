@@ -1,4 +1,4 @@
-"""Turns of calculations: clients alternate, so a client does not wait for another client's flood."""
+"""Turns of calculations: clients alternate, so that no client waits for all calculations of another."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 
 class Waiter(Protocol):
-    """Something that waits for its turn."""
+    """A calculation that waits for its turn, with its client."""
 
     client: str
     turn: int
@@ -18,14 +18,15 @@ W = TypeVar("W", bound=Waiter)
 
 
 class Turns:
-    """Numbers of turns: each client's next is one beyond its last, and none is before those being taken.
+    """Numbers of turns: a client's next turn follows its last one, but is never before the present turn.
 
-    So a newcomer comes before the second calculation of anybody who waits, and nobody is always passed over.
+    So a new client comes before the second calculation of every waiting client, and no client is passed over
+    for ever.
     """
 
     def __init__(self) -> None:
         self._now = 0
-        self._last: dict[str, int] = {}  # by client, of those who wait or run
+        self._last: dict[str, int] = {}  # last turn of each client that waits or runs
 
     def next(self, client: str) -> int:
         """Return the turn of a client's next calculation."""
@@ -38,24 +39,22 @@ class Turns:
         self._now = max(self._now, turn)
 
     def forget(self, present: Collection[str]) -> None:
-        """Drop the clients that neither wait nor run."""
+        """Remove the clients that have no waiting or running calculation."""
         self._last = {client: turn for client, turn in self._last.items() if client in present}
 
 
 def first(waiting: Collection[W], running: Counter[str]) -> W | None:
-    """Return the next to run: the lowest turn; of equal ones, the client that runs fewest.
+    """Return the next calculation to run: the one with the lowest turn.
 
-    Of those, the first.
+    Among equal turns it is the first one of the client with the fewest running calculations.
     """
     return min(waiting, key=lambda w: (w.turn, running[w.client]), default=None)
 
 
 def last_of_the_greediest(waiting: Collection[W], newcomer: str) -> W | None:
-    """Return the calculation to remove in favour of a new one.
+    """Return the calculation to remove for a new one: the latest of the client with the most waiting.
 
-    The latest of the client that has most waiting, if that is more.
-
-    None if the newcomer itself has as many waiting, with this one, as anybody.
+    Return None if, with the new one, its client would have as many waiting as any other.
     """
     counts = Counter(w.client for w in waiting)
     client, most = max(counts.items(), key=lambda item: item[1], default=("", 0))

@@ -1,1 +1,1 @@
-"""Show values to people: numbers, systems of units, formulas."""
+"""Present values to people: numbers, systems of units, formulas."""

@@ -1,6 +1,7 @@
-"""Bars as SVG: shares of a variance, largest on top, and a histogram with limits.
+"""Bar charts as SVG: contributions to a variance, largest on top, and a histogram with limits.
 
-Equal data give equal bytes. The SVG has no style attributes, which the pages' policy forbids, and no scripts.
+Equal data give equal bytes. The SVG has no scripts and no style attributes, which the pages' security policy
+forbids.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from app.presentation import numbers
 WIDTH = 560
 NAMES = 170  # width of the names of bars
 ROW, BAR = 26, 9  # height of a row, and of a bar
-HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 220, 50, 14, 20, 40  # of a histogram
+HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 220, 50, 14, 20, 40  # of the histogram and its margins
 LONGEST_NAME = 28  # letters
 FONT = "Liberation Sans, Arial, sans-serif"
 ALONE, TOGETHER, LIMIT, VALUE = "#1b4f7f", "#9db8d2", "#b3261e", "#1d6b3a"
@@ -22,7 +23,7 @@ ALONE, TOGETHER, LIMIT, VALUE = "#1b4f7f", "#9db8d2", "#b3261e", "#1d6b3a"
 
 @dataclass(frozen=True)
 class Bar:
-    """A name, the share that it causes alone, and that with others; from 0 to 1."""
+    """A name, its share of the variance alone, and its share including interactions, each from 0 to 1."""
 
     name: str
     first: float
@@ -31,7 +32,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class Mark:
-    """A line across a histogram."""
+    """A line that marks a value in a histogram."""
 
     name: str
     at: float
@@ -39,7 +40,7 @@ class Mark:
 
 
 def tornado(bars: Sequence[Bar]) -> str:
-    """Return the shares as bars, the total effects behind the single effects; empty without shares."""
+    """Return a bar chart of shares, total effects behind single effects; empty without shares."""
     if not bars:
         return ""
     height = ROW * len(bars) + 24
@@ -69,7 +70,7 @@ def _legend(height: int) -> Iterator[str]:
 
 
 def histogram(edges: Sequence[float], counts: Sequence[int], marks: Sequence[Mark], unit: str) -> str:
-    """Draw the number of values between edges; marks outside them widen the axis."""
+    """Return a histogram of the number of values between edges; marks outside the edges widen the axis."""
     if not counts or max(counts) == 0:
         return ""
     low = min(edges[0], *(mark.at for mark in marks))

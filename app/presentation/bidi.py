@@ -1,7 +1,7 @@
 """Isolate user-given names on pages, so that right-to-left marks do not affect the text around them.
 
 U+202E and similar characters are legal in names. Unisolated, they reverse the text that follows. `balanced`
-is for text in an isolating element (`<bdi>`), `bare` for places without elements: titles, and paper.
+is for text in an isolating element (`<bdi>`); `bare` is for titles and PDF, which have no such elements.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ _WITHOUT_CONTROLS = dict.fromkeys(map(ord, EMBEDDINGS + ISOLATES + POP_EMBEDDING
 
 
 def bare(text: str) -> str:
-    """Return a text without any sign that only turns the direction of reading."""
+    """Return a text without the characters that only change the reading direction."""
     return text.translate(_WITHOUT_CONTROLS | _WITHOUT_BREAKS)
 
 
 def balanced(text: str) -> str:
-    """Return a text in which every end of a bidi isolation has its start."""
+    """Return a text in which every character that ends a bidi isolation has one that starts it."""
     text = text.translate(_WITHOUT_BREAKS)
     if POP_ISOLATE not in text:
         return text
@@ -36,7 +36,7 @@ def balanced(text: str) -> str:
 
 
 def bare_everywhere(data: object) -> object:
-    """Return plain data, as from JSON, with every text and name in it bare."""
+    """Return plain JSON data after applying `bare` to every text and name in it."""
     if isinstance(data, str):
         return bare(data)
     if isinstance(data, dict):

@@ -1,6 +1,6 @@
 """Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
-The sentence on a criterion is that of the interface; what stands beside it is written here.
+The sentence on a criterion is that of the interface; this module writes the texts around it.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ class Amount(Protocol):
 
     @property
     def unit(self) -> str:
-        """Return its unit."""
+        """Return the unit."""
 
 
 class ValueRange(Protocol):
-    """Two ends with one unit; null where an end is infinite."""
+    """Two ends of a range with one unit; null where an end is infinite."""
 
     @property
     def value(self) -> Sequence[float | None]:
-        """Return low and high."""
+        """Return the low and the high end."""
 
     @property
     def unit(self) -> str:
-        """Return their unit."""
+        """Return the unit of both ends."""
 
 
 class JudgedCriterion(Protocol):
-    """A criterion as the interface answers it; see `app/schemas/criteria.py`."""
+    """A criterion as the interface returns it; see `app/schemas/criteria.py`."""
 
     @property
     def name(self) -> str: ...  # noqa: D102 - the schema describes every field
@@ -92,10 +92,10 @@ class JudgedCriterion(Protocol):
 
 @dataclass(frozen=True)
 class Line:
-    """A criterion as a line of a table: texts, and the share of its limit that the bar shows."""
+    """A criterion as a table row: texts, and the used share of its limit for the bar."""
 
     name: str
-    step: str  # the block whose value is judged; empty for none
+    step: str  # the block whose value is judged; empty if there is none
     title: str
     verdict: str
     tag: str
@@ -113,17 +113,17 @@ class Line:
 
     @property
     def place(self) -> str:
-        """Return what stands before the sentence: the step, and the title where the sentence lacks it."""
+        """Return the words in front of the sentence: the step, and the title if the sentence lacks it."""
         return self.step if self.sentence.startswith(self.title) else self.subject
 
     @property
     def subject(self) -> str:
-        """Return step and title."""
+        """Return the step and the title."""
         return f"{self.step}: {self.title}" if self.step else self.title
 
 
 def line(criterion: JudgedCriterion) -> Line:
-    """Return a criterion in words."""
+    """Return a criterion as a table row of texts."""
     return Line(
         name=criterion.name,
         step=step_of(criterion),
@@ -145,7 +145,7 @@ def line(criterion: JudgedCriterion) -> Line:
 
 
 def sides(require: str) -> tuple[str, str, str]:
-    """Return the value, sign and limit of a requirement, as written."""
+    """Return the left side, the sign and the right side of a requirement, as written."""
     parts = _SIGN.match(require)
     return (parts[1], parts[2], parts[3]) if parts else (require, "", "")
 
@@ -165,9 +165,10 @@ def step_of(criterion: JudgedCriterion) -> str:
 
 
 def title(criterion: JudgedCriterion) -> str:
-    """Return the subject of the criterion in words; of a value calculated within it, its own name.
+    """Return in words what the criterion judges; for a value calculated within the criterion, its own name.
 
-    Where the subject does not hold the criterion's own name, that follows: another one may judge the same.
+    If the words do not contain the criterion's own name, that name follows, because another criterion may
+    judge the same value.
     """
     left, own = sides(criterion.require)[0], plain_name(Reference.parse(criterion.name).own_name)
     subject = plain_name(left) if _ONE_NAME.fullmatch(left) else own
@@ -175,18 +176,18 @@ def title(criterion: JudgedCriterion) -> str:
 
 
 def verdict_words(criterion: JudgedCriterion) -> str:
-    """Return the verdict in words, with its unknowns."""
+    """Return the verdict in words, and whether its error is unknown."""
     words = WORDS[criterion.verdict]
     return f"{words}; {UNKNOWN}" if _is_error_unknown(criterion) else words
 
 
 def tag(criterion: JudgedCriterion) -> str:
-    """Return the classes of the verdict on a page."""
+    """Return the CSS classes for the verdict on a page."""
     return f"{criterion.verdict} error-unknown" if _is_error_unknown(criterion) else criterion.verdict
 
 
 def is_open(criterion: JudgedCriterion) -> bool:
-    """Return whether a finer level may tell more."""
+    """Return whether a finer level might change or confirm the verdict."""
     return criterion.verdict == "undecided" or (_is_error_unknown(criterion) and criterion.level is not None)
 
 
@@ -195,7 +196,7 @@ def _is_error_unknown(criterion: JudgedCriterion) -> bool:
 
 
 def margin(criterion: JudgedCriterion) -> str:
-    """Return the margin to the limit, with the range that the error allows; negative beyond the limit."""
+    """Return the margin to the limit, with its range if the error is known; negative beyond the limit."""
     if criterion.margin is None:
         return ""
     left = numbers.in_line(criterion.margin)
@@ -204,9 +205,9 @@ def margin(criterion: JudgedCriterion) -> str:
 
 
 def _ends(criterion: JudgedCriterion) -> tuple[float, float] | None:
-    """Return the least and the largest margin, in the unit of the margin.
+    """Return the smallest and the largest margin, in the unit of the margin.
 
-    None if the band does not determine them.
+    Return None if the error band does not determine them.
     """
     band, limit, left = criterion.band, criterion.limit, criterion.margin
     if band is None or limit is None or left is None or not band.unit == limit.unit == left.unit:
@@ -230,7 +231,7 @@ def error(criterion: JudgedCriterion) -> str:
 
 
 def missing(criterion: JudgedCriterion) -> str:
-    """Return the input or result that a verdict still needs; empty if there is a verdict."""
+    """Return the missing input, error or result that prevents a verdict; empty if there is a verdict."""
     if criterion.give:
         return f"give {', '.join(map(plain_name, criterion.give))}"
     if criterion.verdict == "undecided" and criterion.needs is not None:
@@ -239,9 +240,9 @@ def missing(criterion: JudgedCriterion) -> str:
 
 
 def remarks(criterion: JudgedCriterion) -> tuple[str, ...]:
-    """Return restrictions of the verdict.
+    """Return remarks that restrict the verdict.
 
-    A limit not verified, a waiver, the worst place, why there is no verdict or no error.
+    They concern an unverified limit, a waiver, the worst place, and why there is no verdict or no error.
     """
     said = (
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
@@ -286,8 +287,5 @@ _WHY = {
 
 
 def headline_of(state: str, *, is_judged: bool) -> str:
-    """Return the headline in place of a verdict.
-
-    The design has no criteria, or they were not judged, and why.
-    """
+    """Return the headline shown instead of a verdict: there are no criteria, or why they were not judged."""
     return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

@@ -18,12 +18,12 @@ PAGES = Path(__file__).with_name("pages")
 
 
 def formula(latex: str) -> Markup:
-    """Return LaTeX as MathML, set as a displayed formula."""
+    """Return LaTeX as MathML for a formula on its own line."""
     return Markup(mathml(latex).replace('display="inline"', 'display="block"', 1))
 
 
 def inline(latex: str) -> Markup:
-    """Return LaTeX as MathML for a line of text."""
+    """Return LaTeX as MathML for a formula within a line of text."""
     return Markup(mathml(latex))
 
 
@@ -46,7 +46,7 @@ def coded(text: str) -> Markup:
 
 
 def environment(folder: Path) -> Environment:
-    """Return Jinja for the pages in a folder, which may extend the common frame, `base.html`."""
+    """Return the Jinja environment for the pages in a folder, which may extend the frame `base.html`."""
     jinja = Environment(
         loader=FileSystemLoader([PAGES, folder]),
         autoescape=True,
@@ -80,16 +80,16 @@ MOST_POINTS = 240
 
 @dataclass(frozen=True)
 class Course:
-    """A long array as a cell shows it."""
+    """A long array as a table cell shows it."""
 
     ends: str  # `-5.3 … 12.1`
     count: str
     where: str  # `least at 30°, largest at 372°`
-    path: str  # of an SVG of 120 × 24
+    path: str  # path data for an SVG of 120 × 24
 
 
 def course(values: object, axis: object = None, unit: str | None = None) -> Course | None:
-    """Return a small chart of a long list of numbers, over its axis if it has one; None for other values."""
+    """Return a small chart of a long list of numbers over its axis, if it has one; None for other values."""
     if not isinstance(values, list) or len(values) <= numbers.FEW or numbers.size(values) != len(values):
         return None
     ends = numbers.extremes(values)
@@ -109,7 +109,7 @@ def _place(end: int, axis: object, unit: str | None, count: int) -> str:
 
 
 def _path(values: list[float | None], ends: tuple[int, int]) -> str:
-    """Return the line; begun again after values that are missing."""
+    """Return the SVG path of the line, interrupted where values are missing."""
     low, high = values[ends[0]], values[ends[1]]
     assert low is not None
     assert high is not None

@@ -1,4 +1,4 @@
-"""Text as a user types it in a field, and the value that it stands for; `static/typed.js` does the same."""
+"""Convert between the text in an input field and its value; `static/typed.js` does the same."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from pydantic_core import from_json
 
 
 def value_of(text: str) -> JsonValue:
-    """Read a field: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
+    """Return the value of a field: a list `[1, 2] mm`, a JSON object, or else the text itself."""
     stripped = text.strip()
     if not stripped.startswith(("[", "{")):
         return stripped
     end = stripped.rfind("]" if stripped[0] == "[" else "}") + 1
     try:
-        # Not json.loads, which takes NaN for a number and does not survive deep nesting.
+        # json.loads would accept NaN as a number and fail on deep nesting.
         inside: JsonValue = from_json(stripped[:end], allow_inf_nan=False)
         unit = stripped[end:].strip()
     except ValueError:
-        return stripped  # the interface says what is wrong with it
+        return stripped  # the interface will report what is wrong with it
     return {"value": inside, "unit": unit} if unit else inside
 
 
 def text_of(value: object) -> str:
-    """Return the text of a field from a value as typed."""
+    """Return the text in a field for a value in the form that users type."""
     if value is None:
         return ""
     if isinstance(value, Mapping) and set(value) == {"value", "unit"}:

@@ -14,12 +14,12 @@ from pydantic import BaseModel
 from templates.core.units.units import unit_symbol
 
 DIGITS = 5
-LARGEST_PLAIN = 1e6  # from here on with a power of ten
+LARGEST_PLAIN = 1e6  # larger numbers are shown with a power of ten
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class AlignedNumber(NamedTuple):
-    """A number in two parts that meet at the decimal point."""
+    """A number split at the decimal point, for alignment in a column."""
 
     whole: str
     rest: str
@@ -45,7 +45,7 @@ def plain(value: float) -> str:
 
 @lru_cache(maxsize=1024)
 def unit(text: str | None) -> str:
-    """Return a unit as it is printed: `mm**2/s` → `mm²/s`; empty for a pure number or a text."""
+    """Return a unit in its printed form: `mm**2/s` → `mm²/s`; empty for a pure number or a text."""
     return unit_symbol(text) if text else ""
 
 
@@ -53,14 +53,14 @@ ALMOST_ALL = 0.985
 
 
 def percent(relative: float) -> str:
-    """Return a relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
+    """Return a relative error with two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
     return f"{rough(relative * 100)} %"
 
 
 def share(used: float) -> str:
-    """Return the used share of an allowance: in two digits.
+    """Return the used share of an allowance with two digits.
 
-    Near 100 % and above in four, to see on which side.
+    Near 100 % and above it has four digits, so that the side of the limit shows.
     """
     return percent(used) if used < ALMOST_ALL else f"{plain(float(f'{used * 100:.4g}'))} %"
 
@@ -72,26 +72,31 @@ def rough(value: float) -> str:
 
 @runtime_checkable
 class Quantity(Protocol):
-    """A quantity of an answer; some have a unit, a tolerance, or the reason why there is no value."""
+    """A quantity in an answer; some have a unit, a tolerance, or a reason for a missing value."""
 
     @property
     def value(self) -> object:
-        """Return the magnitude, of any shape, or a choice."""
+        """Return the magnitude, of any shape, or the text of a choice."""
 
 
-SIGNS = {"plus": "+", "minus": "−", "upper": "", "lower": ""}  # of deviations; two have their own
+SIGNS = {
+    "plus": "+",
+    "minus": "−",
+    "upper": "",
+    "lower": "",
+}  # signs of deviations; upper and lower already have one
 PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution")
 
 
 def in_line(quantity: object) -> str:
-    """Return a quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
+    """Return a quantity on one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
     if quantity is None:
         return ""
     if isinstance(quantity, Mapping):
         return _line(quantity)
     if isinstance(quantity, BaseModel) and "value" in (fields := vars(quantity)):
-        return _line(fields)  # to ask for a field that its class lacks takes ten times as long
-    if hasattr(quantity, "value"):  # a quantity; to ask by the protocol takes ten times as long
+        return _line(fields)  # testing for a missing attribute takes ten times as long
+    if hasattr(quantity, "value"):  # a quantity; isinstance with the protocol takes ten times as long
         return _line({name: getattr(quantity, name, None) for name in PARTS})
     return _written(quantity)
 
@@ -112,7 +117,7 @@ def _written(value: object) -> str:
 
 
 def _list(values: list[object]) -> str:
-    """Return a list whole, up to 20 values; of a longer one the least and the largest."""
+    """Return a list of up to 20 values completely; of a longer one the smallest and the largest value."""
     if size(values) <= FEW:
         return f"[{', '.join(map(_written, values))}]"
     ends, flat = extremes(values), list(_flat(values))
@@ -129,22 +134,22 @@ def _remark(values: object) -> str:
     return f"({counted(values)} values{where})"
 
 
-FEW = 20  # values that are shown whole
+FEW = 20  # longest list that is shown completely
 
 
 def size(values: object) -> int:
-    """Return the number of values in a list of any depth."""
+    """Return the number of values in a list of any nesting depth."""
     return sum(map(size, values)) if isinstance(values, list) else 1
 
 
 def counted(values: list[object]) -> str:
-    """Return the number of values in words: `720`, or `3 × 24` of a table."""
+    """Return the number of values as text: `720`, or `3 × 24` for a table."""
     inside = values[0] if values else None
     return f"{len(values)} × {counted(inside)}" if isinstance(inside, list) else str(len(values))
 
 
 def extremes(values: list[object]) -> tuple[int, int] | None:
-    """Return the places of the least and the largest number of a list; None without any number."""
+    """Return the positions of the smallest and the largest number in a list; None if there is no number."""
     placed = [(value, place) for place, value in enumerate(_flat(values)) if isinstance(value, int | float)]
     return (min(placed)[1], max(placed, key=lambda one: (one[0], -one[1]))[1]) if placed else None
 
@@ -158,7 +163,7 @@ def _flat(values: object) -> Iterator[object]:
 
 
 def tolerance(more: Mapping[str, object]) -> str:
-    """Return a tolerance after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
+    """Return a tolerance as it is written after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
     given = {name: more[name] for name in (*SIGNS, "zone", "distribution") if more.get(name) is not None}
     if not given:
         return ""
@@ -171,7 +176,7 @@ def tolerance(more: Mapping[str, object]) -> str:
 
 
 def _deviation(name: str, size: object) -> str:
-    """Return a deviation with its sign, in the unit of the value or in that of its text."""
+    """Return a deviation with its sign, in the unit of the value unless its text has a unit."""
     shown = plain(size) if isinstance(size, float) else str(size)
     sign = SIGNS[name]
     return sign + shown if sign or shown.startswith(("-", "−")) else f"+{shown}"

@@ -13,14 +13,14 @@ _LINK = re.compile(r"(?:https?://|mailto:)[^\s]+", re.IGNORECASE)
 
 
 def html_of(markdown: str) -> str:
-    """Return safe HTML of a text in Markdown; what would be a tag, or another link, stays text."""
+    """Return safe HTML for a text in Markdown; tags and forbidden links remain visible text."""
     rendered: str = _renderer().render(markdown)
     return rendered.strip()
 
 
 @cache
 def _renderer() -> MarkdownIt:
-    from markdown_it import MarkdownIt  # 60 modules, for which the start of the server does not wait
+    from markdown_it import MarkdownIt  # 60 modules, imported late so that the server starts faster
 
     renderer = MarkdownIt("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])
     renderer.validateLink = _is_allowed  # type: ignore[method-assign]
@@ -28,5 +28,5 @@ def _renderer() -> MarkdownIt:
 
 
 def _is_allowed(url: str) -> bool:
-    """Return whether a link may lead there."""
+    """Return whether a link has an allowed address."""
     return _LINK.fullmatch(url) is not None

@@ -17,12 +17,12 @@ Value = float | int | str | None
 
 
 def harmless(value: Value) -> Value:
-    """Return a value for a cell of a CSV file: a text that looks like a formula gets a leading apostrophe."""
+    """Return a value for a cell of a CSV file; a text that looks like a formula gets a leading apostrophe."""
     return f"'{value}" if isinstance(value, str) and value.startswith(DANGEROUS) else value
 
 
 def put(cell: object, value: Value) -> None:
-    """Write a value into a cell of an XLSX file: a number as a number, a text as a text."""
+    """Write a value into a cell of an XLSX file, numbers as numbers and texts as texts."""
     from openpyxl.cell.cell import Cell  # type: ignore[import-untyped]
 
     assert isinstance(cell, Cell), "no cells are merged"
@@ -30,7 +30,7 @@ def put(cell: object, value: Value) -> None:
         cell.value = value
         return
     cell.value = without_illegal(value)
-    cell.data_type = "s"  # a text, whatever it begins with
+    cell.data_type = "s"  # stored as text, even if it begins with =
     if value.startswith(DANGEROUS):
         cell.quotePrefix = True
 

@@ -1,6 +1,6 @@
-"""Systems of units for display: `?units=us` asks for answers in inches and pounds instead of as declared.
+"""Systems of units for display: `?units=us` requests answers in inches and pounds instead of declared units.
 
-All calculations are in SI, whatever units are shown. Typed values are never converted.
+All calculations are in SI, whatever units are shown. Values that users typed are never converted.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ US = {
 
 
 def shown_unit(declared: str, system: System) -> str:
-    """Return the unit in which a value declared in another is shown."""
+    """Return the display unit for a value with a declared unit."""
     return US.get(declared, declared) if system == "us" else declared
 
 
 def shown_value(value: object, declared: str, system: System) -> object:
-    """Return a magnitude of any shape, given in a declared unit, in the unit in which it is shown."""
+    """Return a magnitude of any shape, given in its declared unit, in its display unit."""
     return _value(value, declared) if system == "us" and declared in US else value
 
 

@@ -1,1 +1,1 @@
-"""The calculation report of a revision on paper and on screen, and its numbers as a table."""
+"""The calculation report of a revision, as a page and a PDF, and its numbers as a table."""

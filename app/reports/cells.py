@@ -1,4 +1,4 @@
-"""Values in a report: a number split at the decimal point for alignment, and its unit."""
+"""Format values for a report: a number split at the decimal point for alignment, and its unit."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from app.schemas.answers import Quantity, Shown, Values
 from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.units.units import base_text, dimension_of, unit
 
-DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
+DIGITS_TYPED = 12  # digits shown of a typed number, as many as are stored
 _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s", "Hz")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
-WRITTEN = numbers.PARTS  # of a quantity that a line shows
+WRITTEN = numbers.PARTS  # parts of a quantity that a line shows
 TOLERANCE = WRITTEN[3:]
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A value: a number's two parts with its unit, or a text where there is no single number."""
+    """A formatted value: the two parts of a number with its unit, or a text if there is no single number."""
 
     whole: str = ""
     rest: str = ""
@@ -41,7 +41,7 @@ Valued = Quantity | Values | Shown | Output | UsedInput | AnalysisOutput
 
 
 def cell(quantity: Valued, *, whole: bool = False) -> Cell:
-    """Return a quantity as the interface shows it; five digits, or the `whole` number as typed."""
+    """Return a quantity as the interface shows it, with five digits, or with all typed digits (`whole`)."""
     value = quantity.value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         parts = _all_digits(value) if whole else numbers.aligned(value)
@@ -50,9 +50,9 @@ def cell(quantity: Valued, *, whole: bool = False) -> Cell:
 
 
 def _in_words(quantity: Valued) -> str:
-    """Return a text, an array, or why there is no value.
+    """Return a text, an array, or the reason for a missing value.
 
-    Points without a value are dashes, with the reasons.
+    Points without a value are dashes, followed by the reasons.
     """
     fields = {name: getattr(quantity, name) for name in WRITTEN if name in quantity.model_fields_set}
     if not isinstance(quantity, Output) or not quantity.reasons:
@@ -62,7 +62,7 @@ def _in_words(quantity: Valued) -> str:
 
 
 def flat(value: object) -> list[object]:
-    """Return all items of a list of any depth; of a single value, the value."""
+    """Return all items of a list of any nesting depth; a single value becomes a list of one."""
     return [item for part in value for item in flat(part)] if isinstance(value, list) else [value]
 
 
@@ -81,7 +81,7 @@ def clean(text: str) -> str:
 
 
 def in_si(quantity: Valued) -> Cell:
-    """Return the same value in SI units; empty for texts and arrays."""
+    """Return a value in SI units; empty for texts and arrays."""
     value, name = quantity.value, quantity.unit
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not name:
         return NOTHING
@@ -90,7 +90,7 @@ def in_si(quantity: Valued) -> Cell:
 
 @lru_cache(maxsize=512)
 def si_unit(text: str) -> str:
-    """Return the coherent SI unit of a unit, composed as it is.
+    """Return the coherent SI unit of a unit, with the same composition.
 
     `kN` → `N`, `mPa*s` → `Pa*s`, `rpm` → `rad/s`.
     """
@@ -106,7 +106,7 @@ def si_unit(text: str) -> str:
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
     """Return the candidate of the same dimension.
 
-    An angle is given in rad, though it counts as a pure number.
+    An angle is given in rad, although it counts as a pure number.
     """
     measured = unit(text)
     alike = [si for si in candidates if dimension_of(unit(si)) == dimension_of(measured)]
@@ -115,7 +115,7 @@ def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
 
 
 def _all_digits(value: float) -> tuple[str, str]:
-    """Return a number with all digits that were typed."""
+    """Return a number with all digits that the user typed."""
     shown = f"{value:.{DIGITS_TYPED}g}"
     if "e" in shown:
         return tuple(numbers.aligned(value))  # type: ignore[return-value]

@@ -1,7 +1,7 @@
 """Charts of a report as SVG: lines over linear or logarithmic axes, the same on screen and on paper.
 
-Equal charts give equal bytes. The SVG has no style attributes, which the pages' policy forbids, and no
-scripts.
+Equal charts give equal bytes. The SVG has no scripts and no style attributes, which the pages' security
+policy forbids.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from math import ceil, floor, isfinite, log10
 
 from app.presentation import numbers
 
-WIDTH, HEIGHT, SQUARE = 560, 280, 380  # of the whole drawing
+WIDTH, HEIGHT, SQUARE = 560, 280, 380  # size of the drawing
 LEFT, RIGHT, TOP, BOTTOM = 70, 14, 12, 44  # margins
-LEGEND = 18  # height of a line of the legend
-MOST_POINTS = 1500  # of a line; a cycle has 720 or so
+LEGEND = 18  # height of a line in the legend
+MOST_POINTS = 1500  # points of a line; a cycle has about 720
 TICKS = 6
 COLOURS = ("#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "#0f8a8a")
 FONT = "Liberation Sans, Arial, sans-serif"
@@ -24,7 +24,7 @@ FONT = "Liberation Sans, Arial, sans-serif"
 
 @dataclass(frozen=True)
 class Series:
-    """A line, with points where `marked`, or points alone; a None among its values interrupts it."""
+    """A line, with points if `marked`, or only points; a None among its values interrupts the line."""
 
     name: str
     x: Sequence[float | None]
@@ -36,14 +36,14 @@ class Series:
 
 @dataclass(frozen=True)
 class Chart:
-    """Lines with one pair of axes; a `square` one has the same scale on both."""
+    """Lines with a common pair of axes; a `square` chart has the same scale on both."""
 
     x: str
     y: str
     series: Sequence[Series]
     square: bool = False
     logarithmic: bool = False
-    highest: float | None = None  # of y
+    highest: float | None = None  # upper limit of y
 
 
 @dataclass(frozen=True)
@@ -53,16 +53,16 @@ class _Axis:
     logarithmic: bool
 
     def share(self, value: float) -> float:
-        """Return the position of a value between the ends of the axis, 0 to 1."""
+        """Return the position of a value between the ends of the axis [0 to 1]."""
         low, high = self._scaled(self.low), self._scaled(self.high)
         return (self._scaled(value) - low) / (high - low)
 
     def holds(self, value: float | None) -> bool:
-        """Return whether a value can be drawn."""
+        """Return whether the axis can show a value."""
         return value is not None and isfinite(value) and not (self.logarithmic and value <= 0)
 
     def ticks(self) -> list[float]:
-        """Return round values between the ends."""
+        """Return round values between the ends of the axis."""
         if self.logarithmic:
             return [10.0**n for n in range(ceil(log10(self.low)), floor(log10(self.high)) + 1)]
         step = _round_step((self.high - self.low) / TICKS)
@@ -73,7 +73,7 @@ class _Axis:
 
 
 def _round_step(least: float) -> float:
-    """Return the smallest of 1, 2 or 5 times a power of ten that is not below `least`."""
+    """Return the smallest step of 1, 2 or 5 times a power of ten that is not below `least`."""
     power = 10.0 ** floor(log10(least))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * (1 - 1e-9))
 
@@ -111,7 +111,7 @@ def _axis(values: Sequence[Sequence[float | None]], logarithmic: bool, highest: 
 
 @dataclass(frozen=True)
 class _Frame:
-    """The field within the axes."""
+    """The area within the axes."""
 
     x: _Axis
     y: _Axis
@@ -127,18 +127,18 @@ class _Frame:
         return self.height - self.top - BOTTOM
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Return a point of the drawing."""
+        """Return the position of a point in the drawing."""
         return LEFT + self.x.share(x) * self.width, self.top + (1 - self.y.share(y)) * self.depth
 
     def with_equal_scales(self) -> _Frame:
-        """Return the same frame with one axis made longer, so that circles are round."""
+        """Return a frame with one axis lengthened, so that both have the same scale and circles are round."""
         scale = max((self.x.high - self.x.low) / self.width, (self.y.high - self.y.low) / self.depth) * 1.05
         return _Frame(
             _around(self.x, scale * self.width), _around(self.y, scale * self.depth), self.height, self.top
         )
 
     def grid(self) -> Iterator[str]:
-        """Yield lines and numbers at the ticks, and the frame."""
+        """Yield the frame, and grid lines with numbers at the ticks."""
         for value in self.x.ticks():
             at, bottom = _text(self.place(value, self.y.low)[0]), _text(self.height - BOTTOM)
             yield f'<path d="M{at},{self.top}V{bottom}" stroke="#d6dde4"/>'
@@ -180,7 +180,7 @@ def _lines(frame: _Frame, series: Sequence[Series]) -> Iterator[str]:
 
 
 def _path(frame: _Frame, line: Series) -> str:
-    """Return the line, begun again after every value that is missing."""
+    """Return the SVG path of a line, interrupted where values are missing."""
     pieces, down = [], False
     for x, y in _points(frame, line):
         if x is None or y is None:

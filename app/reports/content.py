@@ -1,6 +1,6 @@
-"""The content of a report as plain data: built once, then shown by the page and by the typesetter.
+"""The content of a report as plain data, built once for the page and for the PDF.
 
-Formulas are MathML, numbers are texts; nothing here knows HTML or Typst.
+Formulas are MathML and numbers are texts; this module does not depend on HTML or Typst.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from app.reports.cells import NOTHING, Cell
 
 @dataclass(frozen=True)
 class Line:
-    """A value with its words: an input, a result, a measure."""
+    """A value with its meaning: an input, a result, or a measure."""
 
     words: str
     symbol: str  # MathML
@@ -20,12 +20,12 @@ class Line:
     si: Cell = NOTHING
     origin: str = ""  # given, default, or the relation
     error: str = ""
-    relation: str = ""  # MathML, where the origin is a relation that is more than a name
+    relation: str = ""  # MathML; empty if the origin is no relation, or only a name
 
 
 @dataclass(frozen=True)
 class Formula:
-    """One line of the calculation, in MathML; parts that do not exist are empty."""
+    """One formula of the calculation, in MathML; missing parts are empty."""
 
     words: str
     source: str
@@ -36,7 +36,7 @@ class Formula:
 
 @dataclass(frozen=True)
 class Criterion:
-    """A criterion as judged, in words about the case."""
+    """A criterion as judged, in words about this case."""
 
     words: str
     verdict: str  # met, not_met, undecided, not_checked
@@ -46,12 +46,12 @@ class Criterion:
     margin: str
     error: str
     source: str
-    remarks: list[str]  # what restricts the verdict, and what to give
+    remarks: list[str]  # restrictions of the verdict, and missing inputs
 
 
 @dataclass(frozen=True)
 class ReportVerdict:
-    """The verdict with which a report begins; without criteria, the headline says why there is none."""
+    """The verdict at the head of a report; without criteria, the headline states why there is no verdict."""
 
     headline: str
     tone: str  # green, bad, open, plain
@@ -61,13 +61,13 @@ class ReportVerdict:
 
 @dataclass(frozen=True)
 class Rule:
-    """A range or a rule of a template, held against the values; no verdict on the design."""
+    """A range or a rule of a template, and whether the values satisfy it; it does not judge the design."""
 
     words: str
     kind: str
     demand: str  # MathML
-    numbers: str  # MathML, with the sign that is true
-    used: str  # of the allowance
+    numbers: str  # MathML, with the sign that holds
+    used: str  # used share of the allowance
     holds: bool
     state: str  # inside, outside; kept, violated
     remark: str
@@ -91,19 +91,19 @@ class StepWarning:
 
 @dataclass(frozen=True)
 class Identity:
-    """Version and digest of the code of a template or model."""
+    """The version of a template or model, with the digest of its code."""
 
     id: str
     version: int
     digest: str
     title: str
     withdrawn: str
-    review: str = ""  # of a worksheet
+    review: str = ""  # review of a worksheet
 
 
 @dataclass(frozen=True)
 class Step:
-    """A calculation."""
+    """A calculation step of the design."""
 
     name: str
     template: Identity
@@ -113,21 +113,21 @@ class Step:
     formulas: list[Formula]
     results: list[Line]
     plots: list[Plot]
-    ranges: list[Rule]  # the range of validity: domains and published ranges
+    ranges: list[Rule]  # range of validity: domains and published ranges
     rules: list[Rule]
     warnings: list[StepWarning]
-    assumed: list[str]  # defaults that make a part look safer, and stand
+    assumed: list[str]  # default values in use that make a part look safer
     references: list[str]
 
 
 @dataclass(frozen=True)
 class MappedParameter:
-    """A parameter of a model: the relation that drives it, what it was and is, and what the solid has."""
+    """A parameter of a model: the relation that drives it, its old and new value, and the measured size."""
 
     words: str
     symbol: str
     relation: str
-    formula: str  # the relation in MathML, where it is more than a name
+    formula: str  # the relation in MathML; empty if it is only a name
     old: Cell
     new: Cell
     measured: Cell
@@ -136,7 +136,7 @@ class MappedParameter:
 
 @dataclass(frozen=True)
 class File:
-    """A file of a build."""
+    """A file of a build, with its hash."""
 
     kind: str
     sha256: str
@@ -144,30 +144,30 @@ class File:
 
 @dataclass(frozen=True)
 class PaintedField:
-    """A picture of a part in the colours of a field."""
+    """A picture of a part, coloured by a field."""
 
     id: str
     title: str
-    low: Cell  # of the scale of colours
+    low: Cell  # lower end of the colour scale
     high: Cell
 
 
 @dataclass(frozen=True)
 class Model:
-    """A part."""
+    """A CAD model of the design."""
 
     name: str
     model: Identity
     state: str
     build: str
-    compared: str  # with which revision
+    compared: str  # the revision used for comparison
     parameters: list[MappedParameter]
     measures: list[Line]
-    analyses: list[Line]  # what finite elements computed; origin is how
+    analyses: list[Line]  # finite-element results; the origin states how
     warnings: list[StepWarning]
     rules: list[Rule]
     files: list[File]
-    remark: str  # on pictures that could not be had
+    remark: str  # on pictures that are not available
     painted: list[PaintedField] = field(default_factory=list)
 
 
@@ -183,7 +183,7 @@ class Round:
 
 @dataclass(frozen=True)
 class Columns:
-    """A part of the table of variants, as wide as paper: headings, and a row of texts for each variant."""
+    """A part of the table of variants that fits the paper: headings, and a row of texts for each variant."""
 
     heads: list[str]
     rows: list[list[str]]
@@ -197,16 +197,16 @@ class VariantLine:
     governs: bool
     verdict: str  # met, not_met, undecided, not_checked; empty without criteria
     headline: str
-    governing: str  # its governing criterion, with value and limit
+    governing: str  # the governing criterion, with value and limit
     used: str
     problem: str
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A solid that one or more variants share."""
+    """A solid that one variant uses, or several share."""
 
-    name: str  # of its picture
+    name: str  # name of the picture
     words: str
     file: File | None
     remark: str
@@ -214,41 +214,41 @@ class Solid:
 
 @dataclass(frozen=True)
 class Variants:
-    """All variants of the design, the one that governs first."""
+    """All variants of the design, with the governing one first."""
 
     governing: str  # in one sentence; empty without criteria
-    judged: ReportVerdict | None  # every criterion of the variant that governs
+    judged: ReportVerdict | None  # every criterion of the governing variant
     lines: list[VariantLine]
     inputs: list[Columns]
-    used: list[Columns]  # what each uses of each limit
+    used: list[Columns]  # used share of each limit
     solids: list[Solid]
 
 
 @dataclass(frozen=True)
 class Signature:
-    """A step of the approval; without a name nobody has taken it."""
+    """A step of the approval; without a name the step has not been taken."""
 
     role: str
     name: str = ""
     at: str = ""
     digest: str = ""
-    reason: str = ""  # of a withdrawal
-    acknowledged: str = ""  # why criteria that are not confirmed may stand, and how many they are
+    reason: str = ""  # reason for a withdrawal
+    acknowledged: str = ""  # why unconfirmed criteria are acceptable, and their number
 
 
 @dataclass(frozen=True)
 class Signatures:
     """The people who calculated, checked and released the revision."""
 
-    words: str  # how far its approval is
+    words: str  # state of the approval, in words
     is_released: bool
     items: list[Signature]
-    block: str  # the same for programs, as JSON
+    block: str  # the same as JSON, for programs
 
 
 @dataclass(frozen=True)
 class Report:
-    """A revision, whole."""
+    """The complete report of a revision."""
 
     title: str
     design: str
@@ -268,4 +268,4 @@ class Report:
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
     variants: Variants | None = None
-    author: str = ""  # who saved the revision; empty where nobody is asked for a key
+    author: str = ""  # who saved the revision; empty on a service without keys

@@ -1,7 +1,8 @@
-"""The crank star: the crankpins of an engine seen from its flywheel, each with its cylinders.
+"""Draw the crank star: the crankpins of an engine seen from its flywheel, each with its cylinders.
 
-`static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 1 counts its angles, so the
-shaft turns anticlockwise. Pins at the same angle share one ray, whichever throws they are on.
+`static/crank_star.js` draws the same in the page. x points up and y to the left, as `engine` 1 counts its
+angles, so the shaft turns anticlockwise. Pins at the same angle share one ray, whichever throws they belong
+to.
 """
 
 from __future__ import annotations
@@ -9,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import cos, radians, sin
 
-WIDTH, HEIGHT = 560, 240  # as wide as the charts beside it
-RAY, WORDS = 74, 98  # radius of the pins, and of their words
-_SAME = 0.05  # deg, pins nearer than this are drawn as one
+WIDTH, HEIGHT = 560, 240  # as wide as the charts next to it
+RAY, WORDS = 74, 98  # radius of the pins, and of their labels
+_SAME = 0.05  # pins closer than this are drawn as one [deg]
 
 
 def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
-    """Return angles of pins [deg] from 0 up to 360, and which cylinders, counted from 1, are at each."""
+    """Return the distinct angles of pins [deg, 0 to 360], each with its cylinders, counted from 1."""
     star: list[tuple[float, list[int]]] = []
     for cylinder, angle in enumerate(angles, 1):
         for at, cylinders in star:
@@ -28,7 +29,7 @@ def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
 
 
 def crank_star(angles: Sequence[float]) -> str:
-    """Return the star as SVG; empty without pins. `angles` are those of the cylinders' pins [deg]."""
+    """Return the star as SVG for the pin angles of the cylinders [deg]; empty without pins."""
     if not angles:
         return ""
     drawn = [_ray(angle, cylinders) for angle, cylinders in rays(angles)]
@@ -43,7 +44,7 @@ def crank_star(angles: Sequence[float]) -> str:
 
 
 def _ray(angle: float, cylinders: Sequence[int]) -> str:
-    """Return one pin and its web."""
+    """Return the SVG of one pin and its web."""
     left, up = sin(radians(angle)), cos(radians(angle))
     x, y = _place(-RAY * left), _place(-RAY * up)
     at_x, at_y = _place(-WORDS * left), _place(-WORDS * up + 4)
@@ -55,5 +56,5 @@ def _ray(angle: float, cylinders: Sequence[int]) -> str:
 
 
 def _place(value: float) -> str:
-    """Return a coordinate, without a minus of zero."""
+    """Return a coordinate, with −0 replaced by 0."""
     return f"{value + 0.0 if abs(value) >= 0.05 else 0.0:.1f}"

@@ -1,5 +1,5 @@
-"""Errors of reports; this module knows nothing of HTTP."""
+"""Errors of reports, independent of HTTP."""
 
 
 class Unprintable(Exception):
-    """A report that cannot be set on paper within the time and memory that a job may have."""
+    """The report cannot be typeset within a job's limits of time and memory."""

@@ -1,4 +1,4 @@
-"""Models of a revision as a report shows them: the mapping old → new, the solid, its files."""
+"""Collect the models of a revision for a report: old and new parameters, the solid, its files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.paper.verdicts import checks
 
-KEPT = ("step", DRAWING, PICTURE)  # files that a report lists, whichever others were asked for
+KEPT = ("step", DRAWING, PICTURE)  # kinds of files that a report lists
 NO_VALUES = "its parameters wait for a solid, or are not set"
 MEASURES = ("mass", "volume", "polar_inertia")
 
@@ -43,7 +43,7 @@ def model_of(
     remark: str,
     painted: Sequence[SolidField] = (),
 ) -> Model:
-    """Return one model of a revision, compared with the newest good one before it."""
+    """Return one model of a revision, compared with its newest valid predecessor."""
     cls = class_of(catalogue, model.id, model.version)
     row = rows.build(session, model.build or "")
     measured = measures.measurements(**row.measurements) if row else None
@@ -85,7 +85,7 @@ def _parameters(
     cls: type[CadModel] | None,
     system: System,
 ) -> Iterator[MappedParameter]:
-    """Yield the mapping; `before` are the parameters of the model that it is compared with, as stored."""
+    """Yield the parameters with their relations; `before` are the stored parameters of the predecessor."""
     dimensions = measured.dimensions if measured else {}
     for name in [n for n in (cls.inputs if cls else model.parameters) if n in model.parameters]:
         old = Shown.model_validate(before[name]) if name in before else None
@@ -108,7 +108,7 @@ def _measures(measured: Measurements, system: System) -> Iterator[Line]:
 
 
 def _measured(measured: Measurements) -> Iterator[tuple[str, Quantity]]:
-    """Yield the measurements that a report shows, in their own units and words."""
+    """Yield the measurements that a report shows, with their words and units."""
     for name in MEASURES:
         quantity: Quantity | None = getattr(measured, name)
         if quantity is not None:
@@ -149,7 +149,10 @@ def _error(output: AnalysisOutput) -> str:
 
 
 def _rules(model: RevisionModel, cls: type[CadModel] | None) -> list[Rule]:
-    """Return the rules between the parameters; ranges are those of a whole family of sizes and say little."""
+    """Return the rules between parameters.
+
+    Ranges are left out, because they hold for a whole family of sizes.
+    """
     if cls is None or not model.parameters:
         return []
     given = {n: p.value if p.unit is None else p.plain() for n, p in model.parameters.items()}

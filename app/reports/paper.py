@@ -1,4 +1,4 @@
-"""Typeset reports and drawings, a few at a time, each in a process that can be stopped."""
+"""Typeset reports and drawings, only a few at a time, each in a process that can be stopped."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.drafting.paper import as_pdf
 
-KEPT = 32 * 2**20  # bytes of drawings in memory
+KEPT = 32 * 2**20  # largest size of the cached drawings [bytes]
 
 
 class Press:
-    """Typesets reports, `at_once` at the same time; others wait. It keeps the latest drawings."""
+    """Typesets reports, `at_once` of them at a time, while others wait; it keeps the latest drawings."""
 
     def __init__(self, worker: Worker, limits: Limits, at_once: int) -> None:
         self._worker, self._limits = worker, limits
@@ -28,7 +28,7 @@ class Press:
         self._lock = Lock()
 
     def print(self, report: Report, pictures: Pictures) -> bytes:
-        """Return a report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
+        """Return a report as PDF; equal reports give equal bytes. The call blocks, so make it in a thread.
 
         Raises
         ------
@@ -45,7 +45,7 @@ class Press:
                 raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error
 
     def draw(self, svg: bytes) -> bytes:
-        """Return a drawing as PDF; equal drawings give equal bytes. It waits, so call it in a thread.
+        """Return a drawing as PDF; equal drawings give equal bytes. The call blocks, so make it in a thread.
 
         Raises
         ------
@@ -61,12 +61,12 @@ class Press:
             try:
                 pdf = self._worker.run(as_pdf, svg, limits=self._limits)
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
-                raise Unprintable(f"this drawing cannot be typeset; take its SVG or DXF ({error})") from error
+                raise Unprintable(f"this drawing cannot be typeset; use its SVG or DXF ({error})") from error
         self._keep(key, pdf)
         return pdf
 
     def _keep(self, key: bytes, pdf: bytes) -> None:
-        """Keep a drawing, and forget the drawings that were requested least recently."""
+        """Keep a drawing, and drop the drawings that were requested least recently."""
         with self._lock:
             self._drawn[key] = pdf
             while sum(map(len, self._drawn.values())) > KEPT:

@@ -1,6 +1,6 @@
-"""Choose the pictures of a calculation: one table, by the names of its outputs and whether they are curves.
+"""Choose the pictures of a calculation from one table, by the names of its outputs and which are curves.
 
-`static/pictures.js` draws them in the page, `plots.py` in a report, from the same answer of the interface.
+`static/pictures.js` draws them in the page and `plots.py` in a report, from the same response.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.templates import Schema
 from app.designs.schemas.designs import RevisionStep
 
-FEWEST = 3  # points of a curve
-AXES = ("crank_angle",)  # of curves that say no other
-MEASURED_AXIS = "measured_angle"  # of the values of a measurement, which have no angle in common with others
-MOST_LINES = 6  # in one picture
-MOST_PINS = 100  # in one star: pins at one angle are looked for one by one
+FEWEST = 3  # fewest points of a curve
+AXES = ("crank_angle",)  # axis of curves that declare none
+MEASURED_AXIS = "measured_angle"  # axis of measured values, whose angles are their own
+MOST_LINES = 6  # largest number of lines in a picture
+MOST_PINS = 100  # largest number of pins in a star, whose angles are compared one by one
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Picture:
     names: Mapping[str, object]
 
     def for_script(self, scope: str) -> dict[str, object]:
-        """Return the picture for the script that draws it."""
+        """Return the picture in the form that the script on the page draws."""
         return {"kind": self.kind, "scope": scope, **self.names}
 
 
@@ -40,7 +40,7 @@ Rule = Callable[[Values, Members], Iterable[Picture]]
 
 
 class Declarations(Protocol):
-    """A declaration of inputs and outputs."""
+    """The interface of an object that declares inputs and outputs."""
 
     @property
     def inputs(self) -> Schema:
@@ -62,7 +62,7 @@ def pictures(template: Declarations, answer: Results | RevisionStep) -> list[Pic
 
 
 def axis_of(template: Declarations, answer: Results | RevisionStep, name: str) -> str | None:
-    """Return the name of the axis of a value of an evaluation; None for a single value."""
+    """Return the name of the axis of a curve in an evaluation; None for a single value."""
     output = answer.outputs.get(name)
     if output is None or not isinstance(output.value, list):
         return None
@@ -122,7 +122,7 @@ def _orbit(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _star(values: Values, declared: Members) -> Iterator[Picture]:
-    """Yield the crankpins of an engine, of one cylinder too."""
+    """Yield the picture of an engine's crankpins, even for one cylinder."""
     angles = values["crankpin_angles"].value if "crankpin_angles" in values else None
     if not isinstance(angles, list) or not 1 <= len(angles) <= MOST_PINS:
         return
@@ -145,7 +145,7 @@ def _modes(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _curves(values: Values, declared: Members) -> Iterator[Picture]:
-    """Yield every curve over its axis: curves of the same unit and axis together."""
+    """Yield a picture for the curves of each unit and axis."""
     groups: dict[tuple[str, str], list[str]] = {}
     for name, about in declared.items():
         axis = _axis(values, declared, name)
@@ -159,7 +159,7 @@ def _curves(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _rows(values: Values, declared: Members) -> Iterator[Picture]:
-    """Yield each array of rows over an input list, such as vibratory torques of shafts over the speeds."""
+    """Yield a picture for each array of rows over an input list, such as vibratory torques over speeds."""
     for name, about in declared.items():
         axis = about.along
         if axis is None or name not in values or about.unit is None:
@@ -172,9 +172,9 @@ def _rows(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _most(table: object, length: int) -> list[int]:
-    """Return the rows with the largest numbers, counted from 1, in their order.
+    """Return the rows with the largest numbers, counted from 1, in their original order.
 
-    None for a value that is not a table.
+    Return None for a value that is not a table.
     """
     if not isinstance(table, list) or not table:
         return []
@@ -188,9 +188,9 @@ def _most(table: object, length: int) -> list[int]:
 
 
 def _axis(values: Values, declared: Members, name: str) -> str | None:
-    """Return the name over which a curve is drawn.
+    """Return the name of the quantity over which a curve is drawn.
 
-    Its own axis, or else the crank angle or an array of inputs.
+    It is the curve's own axis, or else the crank angle or an array of inputs.
     """
     if not _is_curve(values, name) or declared[name].unit is None:
         return None
@@ -201,7 +201,9 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
         return MEASURED_AXIS if _length(values[MEASURED_AXIS]) == length else None
     is_output = isinstance(values[name], Output)
     given = [other for other in arrays if is_output and _is_given(values[other])]
-    others = given if along is None else []  # a list by cylinders is not a curve over another list
+    others = (
+        given if along is None else []
+    )  # a list with one value per cylinder is not a curve over another list
     for axis in filter(None, (along, *AXES, *others)):
         if axis in arrays and _length(values[axis]) == length:
             return axis

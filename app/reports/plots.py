@@ -18,15 +18,15 @@ from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
 from templates.core.paper.schema import inputs_schema, outputs_schema
 
-MOST = 10  # plots of a step
-SHOWN = 4  # outputs in the diagram of accuracy
+MOST = 10  # largest number of plots of a step
+SHOWN = 4  # outputs in the chart of accuracy
 
 Valued = UsedInput | Output
 Values = Mapping[str, Valued]
 
 
 def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
-    """Return the plots of a step that has results; none if the file of its version was removed."""
+    """Return the plots of a step that has results; empty if the file of its version was removed."""
     if cls is None or not step.outputs:
         return []
     declared = SimpleNamespace(inputs=inputs_schema(cls), outputs=outputs_schema(cls))
@@ -34,7 +34,7 @@ def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
 
 
 def drawn(declared: Declarations, step: PreviewedStep) -> list[Plot]:
-    """Return the pictures of a step's values."""
+    """Return the charts of a step's values."""
     used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
     values: Values = {**used, **step.outputs}
     plots = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in DRAWN]
@@ -67,7 +67,7 @@ def _curves(picture: Picture, values: Values) -> Chart:
 
 
 def _rows(picture: Picture, values: Values) -> Chart:
-    """Return some rows of an array over a list, each by its number."""
+    """Return the chosen rows of an array over a list, labelled by number."""
     x, y, rows = _name(picture, "x"), _name(picture, "y"), picture.names["rows"]
     assert isinstance(rows, list)
     table = values[y].value
@@ -91,7 +91,7 @@ def _orbit(picture: Picture, values: Values) -> Chart:
 
 
 def _campbell(picture: Picture, values: Values) -> Chart:
-    """Return natural frequencies as level lines, engine orders as rays, over the speed."""
+    """Return natural frequencies as horizontal lines and engine orders as rays over the speed."""
     frequencies = [f for f in _numbers(values[_name(picture, "frequencies")]) if f > 1e-9]
     orders = _numbers(values[_name(picture, "orders")])
     spans = values.get(_name(picture, "range"))
@@ -104,7 +104,7 @@ def _campbell(picture: Picture, values: Values) -> Chart:
 
 
 def _ray(order: float, speed: float, top: float) -> Series:
-    """Return an engine order, as far as it stays below the top of the diagram."""
+    """Return the line of an engine order, cut off at the top of the diagram."""
     end = min(speed, 60 * top / order)
     return Series(f"order {numbers.plain(order)}", [0, end], [0, order * end / 60], dashed=True)
 
@@ -137,7 +137,7 @@ DRAWN = frozenset({*KINDS, STAR})
 
 
 class _Cost(TypedDict, total=False):
-    single: float | None  # s of one point
+    single: float | None  # time for one point [s]
 
 
 class _Level(TypedDict):
@@ -148,7 +148,7 @@ class _Level(TypedDict):
 
 
 def _accuracy(cls: type[Template]) -> Iterator[Plot]:
-    """Yield the measured median error of every level over its cost, of the first outputs."""
+    """Yield the measured median error of every level over its cost, for the first outputs."""
     measured = accuracy(cls)
     if measured is None:
         return

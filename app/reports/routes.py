@@ -1,4 +1,4 @@
-"""`/designs/{id}/report` (HTML, PDF) and `/designs/{id}/worksheet` (JSON, CSV, XLSX), of any revision."""
+"""`/designs/{id}/report` (HTML, PDF) and `/designs/{id}/worksheet` (JSON, CSV, XLSX), for any revision."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ TABLES = {
     "csv": "text/csv",
     "xlsx": XLSX,
 }
-PATIENCE = 15.0  # s that a report waits for its pictures, unless the client says otherwise
+PATIENCE = 15.0  # default wait of a report for its pictures [s]
 
 
 def _described(kinds: Mapping[str, str], *, later: bool = False) -> RouteOptions:
@@ -64,7 +64,7 @@ Pictures = Callable[[str, int, str], list[str]]
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """A request for a report, with the services that answer it."""
+    """A request for a report, with the services that it needs."""
 
     request: Request
     reports: Reports
@@ -90,7 +90,7 @@ class ReportRequest:
         Raises
         ------
         NotFound
-            If there is no such kind, design or revision.
+            If there is no such format, design or revision.
         """
         wanted = _wanted("report", kind, self.accept, REPORTS)
         revision = await run_in_threadpool(self.reports.number, id, number)
@@ -101,7 +101,7 @@ class ReportRequest:
         return await self._printed(report, wanted, job)
 
     async def _waited(self, pictures: Sequence[Pictures], id: str, number: int) -> str | None:
-        """Return the job that still draws pictures of this revision after the waiting time, if any."""
+        """Wait for the pictures of this revision; return the job that still draws them afterwards, if any."""
         lists = [await run_in_threadpool(each, id, number, self.client) for each in pictures]
         ends = time.monotonic() + patience(self.prefer, PATIENCE)
         for job in chain.from_iterable(lists):
@@ -111,7 +111,7 @@ class ReportRequest:
         return None
 
     async def _printed(self, report: Report, kind: str, job: str | None) -> Response:
-        """Return a report as a page or a PDF, or that it has not changed."""
+        """Return a report as a page or a PDF, or a 304 response if it has not changed."""
         headers = _headers(report, kind, job)
         if job is None and self.if_none_match and headers["ETag"] in self.if_none_match:
             return Response(status_code=304, headers=headers)
@@ -135,7 +135,7 @@ async def report_request(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> ReportRequest:
-    """Return the parts of a request that all routes of reports have in common."""
+    """Return the parts of a request that all routes of reports share."""
     return ReportRequest(request, reports, press, jobs, threads, client, units, accept, prefer, if_none_match)
 
 
@@ -163,7 +163,7 @@ async def show_variants_report(
 ) -> Response:
     """Return one report of all variants of a revision: the governing one first, then the table of all.
 
-    The worksheet of the design itself follows once, with a picture of every distinct solid.
+    The design's own worksheet follows once, with a picture of every distinct solid.
     """
     reports = asked.reports
     pictures = [reports.request_pictures, reports.request_variant_pictures]
@@ -187,10 +187,10 @@ async def show_worksheet(
     step: Annotated[str | None, Query(max_length=200, description="this step alone")] = None,
     formulas: Annotated[bool, Query(description="write out the formulas of the steps")] = True,
 ) -> Response:
-    """Inputs and outputs of a revision, the newest if none is named.
+    """Return the inputs and outputs of a revision, by default the newest.
 
-    As JSON with every formula of its steps written out (symbol = expression = numbers = result), or as a
-    table.
+    The answer is JSON with every formula of the steps written out (symbol = expression = numbers = result),
+    or a table.
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
@@ -221,12 +221,12 @@ def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
 
 
 def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str, str]) -> str:
-    """Return the kind named in the path, else the kind that the client prefers; the first by default.
+    """Return the format in the path, else the one that the client prefers, else the first.
 
     Raises
     ------
     NotFound
-        If there is no such kind.
+        If there is no such format.
     """
     if kind is not None:
         if kind not in kinds:
@@ -237,7 +237,7 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
 
 
 def display(formula: str) -> Markup:
-    """Return a formula of the report, which is MathML, set as in a line of its own."""
+    """Return a MathML formula of the report, set on its own line."""
     return Markup(formula.replace('display="inline"', 'display="block"', 1))
 
 

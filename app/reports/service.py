@@ -1,7 +1,7 @@
-"""Reports: collect the data of a revision in one report, and draw its pictures by jobs.
+"""Build reports: collect the data of a revision in one report, and draw its pictures by jobs.
 
-The report of a revision never changes. Only pictures and the drawing, which jobs create at the first request,
-may be missing at first; the report then says so.
+The report of a revision never changes. Only pictures and the drawing may be missing at first, because jobs
+create them at the first request; the report then says so.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ NO_PICTURE = "no picture and drawing could be made of it"
 
 
 class Reports:
-    """Gathers reports of revisions."""
+    """Collects the data of reports."""
 
     def __init__(
         self, database: Database, store: Artifacts, models: Models, catalogues: Catalogues, owner: str
@@ -74,7 +74,7 @@ class Reports:
         only: str | None = None,
         has_formulas: bool = True,
     ) -> schemas.RevisionWorksheet:
-        """Return a revision with its formulas written out, or without them; with `only`, that step alone.
+        """Return a revision with or without its formulas written out; with `only`, just that step.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Reports:
         return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """Return the jobs that draw the pictures of every built model for a report; none if all exist."""
+        """Return the jobs that draw the pictures of every built model for a report; empty if all exist."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             analysed = (row.results or {}).get("analyses", {})
@@ -102,9 +102,9 @@ class Reports:
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """Return the job that makes a picture of every distinct solid of the variants.
+        """Return the job that draws a picture of every distinct solid of the variants.
 
-        None if all exist.
+        Return None if all exist.
         """
         with self.database.read() as session:
             row = repository.revision(session, id, number)
@@ -132,7 +132,7 @@ class Reports:
         return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
-        """Gather the content of the report; `pending` if a job still draws its pictures."""
+        """Return the content of the report; `pending` states that a job still draws its pictures."""
         worked = self.worksheet(id, number, system)
         with self.database.read() as session:
             row = repository.lean(session, id, number)
@@ -143,7 +143,7 @@ class Reports:
             ]
             document, signed = row.document, [shown(one) for one in steps_taken(session, row)]
             is_released = any(one.step == "released" for one in signed)
-            # The report of a released revision is the same for ever, whatever follows it.
+            # The report of a released revision never changes, whatever revisions follow.
             head = number if is_released else repository.newest_number(session, id)
         steps = [
             step_of(name, step, document["steps"][name], self.catalogues)
@@ -172,7 +172,7 @@ class Reports:
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:
-        """Return the picture and drawing of every model that has them; the drawing with its stamp."""
+        """Return the existing picture and drawing of every model; the drawing has its stamp."""
         files = {model.name: {file.kind: file.sha256 for file in model.files} for model in report.models}
         with self.database.read() as session:
             models = repository.revision(session, report.design, report.revision).models
@@ -230,7 +230,7 @@ class Reports:
 
 
 def _kinds(*, is_analysed: bool) -> tuple[str, ...]:
-    """Return the files that a report shows a model by; a field is painted on the third."""
+    """Return the kinds of files that a report needs of a model; fields are painted on the third."""
     return (PICTURE, DRAWING, SURFACE) if is_analysed else (PICTURE, DRAWING)
 
 
@@ -245,7 +245,7 @@ def _round(one: schemas.Round) -> Round:
 
 
 def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
-    """Return the notes for a checker besides the verdict: warnings, values out of range, violated rules."""
+    """Return notes for a checker besides the verdict: warnings, values out of range, violated rules."""
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     outside = [f"{step.name}: {one.words}" for step in steps for one in step.ranges if not one.holds]
     rules = [(part.name, part.rules) for part in steps] + [(part.name, part.rules) for part in models]

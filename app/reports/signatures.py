@@ -1,4 +1,4 @@
-"""The signature block of a report: who calculated, checked and released the revision, and the digests."""
+"""The signature block of a report: who calculated, checked and released the revision, with the digests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROLES = {"calculated": "Calculated", "checked": "Checked", "released": "Released
 
 
 def signatures_of(design: str, revision: int, units: System, steps: Sequence[Approval]) -> Signatures:
-    """Return the signatures of a revision; a step not yet taken has none."""
+    """Return the signatures of a revision; a step not yet taken has no name."""
     taken = {one.step: one for one in steps}
     state: ApprovalState = steps[-1].step if steps else "unsigned"
     block = Block(
@@ -38,9 +38,9 @@ def signatures_of(design: str, revision: int, units: System, steps: Sequence[App
 
 
 def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
-    """Return the name of a revision's author; empty for `local`, and before 0.2.
+    """Return the name of a revision's author; empty for `local`, and for revisions from before 0.2.
 
-    From the hand-over on it is the name of that time: to rename somebody changes no report that is signed.
+    After the hand-over it is the name at that time, so that renaming a principal changes no signed report.
     """
     if author is None or author.id == LOCAL.id:
         return ""
@@ -74,7 +74,7 @@ def _counted(criteria: Sequence[str]) -> str:
 
 
 def moment(at: str) -> str:
-    """Return a time as it is printed."""
+    """Return a time in its printed form."""
     return f"{at[:10]} {at[11:19]} UTC"
 
 

@@ -1,4 +1,4 @@
-"""Steps of a revision as a report shows them."""
+"""Prepare the steps of a revision for a report."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from templates.core.paper.schema import documentation
 from templates.core.paper.verdicts import Check
 
 WAITS = "waits for a solid that is not built"
-GUARD = 1e-5  # a domain that is used less than this guards against overflow and says nothing to an engineer
+GUARD = 1e-5  # a domain with less utilisation only guards against overflow and means nothing to an engineer
 OF_CURVE = " of its largest value"
 """The reference value for the error of a curve, which may cross zero."""
 KINDS = {"domain": "range", "published": "published range", "rule": "rule", "warning": "rule"}
@@ -47,7 +47,7 @@ class StepDocument(TypedDict):
 
 
 def step_of(name: str, step: PreviewedStep, document: StepDocument, catalogues: Catalogues) -> Step:
-    """Return one step from the worksheet of a revision and from its `document`, the step as typed."""
+    """Return one step, from the worksheet of a revision and from the step as typed (`document`)."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)
@@ -89,7 +89,7 @@ def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:
 
 
 def version_of(calculated_by: CalculatedBy, cls: Class) -> Identity:
-    """Return a version with the digest of the code that calculated, as far as the revision has it."""
+    """Return a version with the digest of the code that calculated, if the revision has the digest."""
     digest = calculated_by.digest or (identity(cls)["digest"] if cls else "")
     title = cls.title() if cls else "a version that is no longer there"
     withdrawn = (cls and cls.withdrawn) or ""
@@ -97,7 +97,7 @@ def version_of(calculated_by: CalculatedBy, cls: Class) -> Identity:
 
 
 def rules(checks: Iterable[Check]) -> list[Rule]:
-    """Return ranges or rules, those that do not hold first, then those that use most."""
+    """Return ranges or rules: first those that are violated, then those with the highest utilisation."""
     useful = [c for c in checks if not (c.kind == "domain" and c.holds and _idle(c.used))]
     return [_rule(check) for check in sorted(useful, key=lambda c: (c.holds, -(c.used or 0.0)))]
 
@@ -121,10 +121,7 @@ def _rule(check: Check) -> Rule:
 
 
 def _about_the_case(detail: str, checks: Iterable[Check]) -> str:
-    """Return a warning.
-
-    Where it begins with the sentence of a rule that is violated, what is instead of that.
-    """
+    """Return a warning; replace the sentence of a violated rule at its beginning by the actual values."""
     for check in checks:
         if check.violation and detail.startswith(check.words):
             return check.violation + detail.removeprefix(check.words)
@@ -140,13 +137,13 @@ def _level(level: object, tolerance: float | None) -> str:
 
 
 def _inputs(step: PreviewedStep, typed: Mapping[str, Raw], cls: Class) -> list[Line]:
-    """Return inputs in the order of the template; the inputs of a waiting step are as typed."""
+    """Return inputs in the order of the template; the inputs of a waiting step appear as typed."""
     names = _ordered(step.inputs, cls.inputs if cls else ())
     return [_input(name, step.inputs[name], typed.get(name), cls) for name in names]
 
 
 def _ordered(there: Iterable[str], declared: Iterable[str]) -> list[str]:
-    """Return names in the order of their declarations, where there are any."""
+    """Return names in the order of their declarations, if there are declarations."""
     order = {name: place for place, name in enumerate(declared)}
     return sorted(there, key=lambda name: order.get(name, len(order)))
 
@@ -168,13 +165,13 @@ def _input(name: str, used: UsedInput | Raw, raw: Raw, cls: Class) -> Line:
 
 
 def relation_mathml(raw: Raw) -> str:
-    """Return a relation in MathML; empty if it is only a name, or absent."""
+    """Return a relation in MathML; empty if the relation is only a name, or absent."""
     latex = relation_latex(raw)
     return mathml(latex) if latex else ""
 
 
 def _exists(output: Output) -> bool:
-    """Return whether there is a value; if not, the results say why."""
+    """Return whether there is a value; if not, the results state the reason."""
     return output.value is not None
 
 
@@ -205,7 +202,7 @@ def words_of(name: str, cls: Class) -> str:
 
 
 def symbol_of(name: str, cls: Class) -> str:
-    """Return the symbol of a name in MathML; empty for options, which have none on paper."""
+    """Return the symbol of a name in MathML; empty for options, which have no symbol."""
     declared = _declared(name, cls)
     return mathml(symbol(declared)) if declared and not hasattr(declared, "options") else ""
 

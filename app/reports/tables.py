@@ -1,7 +1,8 @@
-"""Inputs and outputs of a revision as a table: CSV with a row for each value, XLSX with a sheet for curves.
+"""Write inputs and outputs of a revision as a table: CSV with a row for each value, or XLSX.
 
-Numbers are numbers, units have a column of their own. A text that a spreadsheet would take for a formula is
-stored as a text: in XLSX by its type, in CSV by a leading apostrophe.
+XLSX has a sheet of single values and one for the curves of each block. Numbers are stored as numbers, and
+units have their own column. A text that a spreadsheet would read as a formula is stored as a text: in XLSX
+by its type, in CSV by a leading apostrophe.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class Table:
 
 
 def of(worksheet: RevisionWorksheet) -> Table:
-    """Return the quantities of a revision."""
+    """Return all quantities of a revision."""
     return Table(worksheet.name, worksheet.number, worksheet.created, [*_rows(worksheet)])
 
 
@@ -79,7 +80,7 @@ def _of_step(block: str, step: RevisionStep) -> Iterator[Row]:
         if isinstance(used, UsedInput):
             origin = text_of(step.relations[name]) if name in step.relations else used.source
             yield _quantity(block, "input", name, used, origin)
-        else:  # as typed, of a step that waits for a solid
+        else:  # as typed, for a step that waits for a solid
             yield Row(block, "input", name, *_read(used), "given", "")
     for name, output in step.outputs.items():
         yield _quantity(block, "output", name, output, "")
@@ -94,9 +95,9 @@ def _of_model(block: str, model: RevisionModel) -> Iterator[Row]:
 
 
 def _read(raw: Raw) -> tuple[object, str]:
-    """Return a parameter as typed.
+    """Return a parameter as its user typed it.
 
-    Its number and unit, or its text if it is a relation or a list with one.
+    The result is its number and unit, or its text if it is a relation or a list with a relation.
     """
     try:
         typed = read_any(raw) if not is_relation(raw) else None
@@ -113,7 +114,7 @@ def _quantity(
 
 
 def write_csv(table: Table) -> bytes:
-    """Return a row for each single value; an array has a row for each of its values, with the index."""
+    """Return CSV with a row for each single value; each value of an array has its own row with its index."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerow(HEAD)
@@ -125,7 +126,7 @@ def write_csv(table: Table) -> bytes:
 
 
 def _each(value: object, remark: object, index: str = "") -> Iterator[tuple[str, Value, str]]:
-    """Yield every single value of an array, with its index: `3` or `3 1`, counted from 1."""
+    """Yield every value of an array with its index, counted from 1: `3` or `3 1`."""
     if not isinstance(value, list):
         yield index, cast(Value, value), "" if remark is None else str(remark)
         return
@@ -135,7 +136,7 @@ def _each(value: object, remark: object, index: str = "") -> Iterator[tuple[str,
 
 
 def write_xlsx(table: Table) -> bytes:
-    """Return a sheet of all single values, and for each block with arrays a sheet with a column for each."""
+    """Return XLSX: a sheet of all single values, and a sheet for each block with arrays."""
     from openpyxl import Workbook  # type: ignore[import-untyped]
     from openpyxl.worksheet.worksheet import Worksheet
 
@@ -159,9 +160,9 @@ def write_xlsx(table: Table) -> bytes:
 
 
 def _single(row: Row) -> tuple[Value, ...]:
-    """Return a line of the sheet of values.
+    """Return a row of the sheet of single values.
 
-    An array is only counted here, its values are in the sheet of its block.
+    For an array it has only the number of values, which are in the sheet of its block.
     """
     if isinstance(row.value, list):
         remark = f"{len(row.value)} values, in the sheet of {row.block}"
@@ -179,7 +180,7 @@ def _single(row: Row) -> tuple[Value, ...]:
 
 
 def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
-    """Write arrays side by side: name, unit, values; with several axes, one column for each index."""
+    """Write arrays side by side: name, unit, values; several axes give a column for each index."""
     columns: list[Column] = []
     for row in arrays:
         assert isinstance(row.value, list), "an array"

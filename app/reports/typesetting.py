@@ -1,8 +1,9 @@
-"""Typeset a report as PDF by Typst. Worker processes import this module, so it imports little.
+"""Typeset a report as PDF with Typst. Worker processes import this module, so it imports little.
 
-The typesetter gets a fixed document, `report.typ`, and the report as data. Nothing that a user wrote is ever
-read as markup: texts come from the data as strings, formulas as MathML whose elements the document knows. The
-fonts come with Typst; fonts of the system serve only for characters that these lack, such as other alphabets.
+The typesetter receives a fixed document, `report.typ`, and the report as data. User texts are never
+interpreted as markup: they are strings in the data, and formulas are MathML whose elements the document
+knows. Typst provides the fonts; fonts of the system serve only for characters that these lack, such as other
+alphabets.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ import typst
 from app.presentation.bidi import bare_everywhere
 from app.reports.widths import CELL, LINE, fits
 
-PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows of a model
-PAINTED = "painted "  # before the name of a field, whose picture is a PNG too
-SKETCH = "svg"  # and of each solid of variants: its lines, which cost a tenth of a shaded picture
+PICTURE, DRAWING = "png", "drawing.svg"  # kinds of a model's files that a report shows
+PAINTED = "painted "  # prefix for the name of a field; its picture is also a PNG
+SKETCH = "svg"  # kind of file for each solid of variants: a line drawing costs a tenth of a shaded picture
 
 Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
 
@@ -87,7 +88,7 @@ def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
             "solids": [{**solid, **_illustrated(solid, pictures)} for solid in variants["solids"]],
         }
     data = json.dumps(bare_everywhere(shown), ensure_ascii=True).encode()
-    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # missing in the types of typst
+    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # type stubs of typst lack this
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
     pdf = typst.compile(files, format="pdf", timestamp=date)
     assert isinstance(pdf, bytes), "one document makes one file"
@@ -95,7 +96,7 @@ def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
 
 
 def _bounded(step: _Step) -> dict[str, object]:
-    """Return a step that marks the formulas that surely fit, so that they need not be measured."""
+    """Return a step in which formulas that certainly fit are marked, so that they need not be measured."""
     return {
         **step,
         "formulas": [
@@ -120,12 +121,12 @@ def _rules(rules: Iterable[_Rule]) -> list[dict[str, object]]:
 
 
 def _illustrated(part: _Solid, pictures: Pictures) -> dict[str, object]:
-    """Return the pictures of a model or solid, which stand by its name, as a field of it."""
+    """Return a model or solid with its pictures as a field, found by its name."""
     return {"pictures": _as_svg(pictures.get(part["name"], {}))}
 
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
-    """Return pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
+    """Return pictures as SVG texts, because the typesetter's data is text; a PNG is embedded in an SVG."""
     kinds = {"drawing": DRAWING, "picture": SKETCH}
     pictures = {name: files[kind].decode() for name, kind in kinds.items() if kind in files}
     if PICTURE in files:

@@ -1,4 +1,4 @@
-"""The variants of a design in its report: the one that governs first, then inputs, verdicts and solids."""
+"""The variants of a design in its report: the governing one first, then inputs, verdicts and solids."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.reports.typesetting import SKETCH
 from app.reports.verdict import governing_sentence, row_of
 from app.schemas.criteria import Criterion
 
-MOST_COLUMNS = 6  # of one table on paper, beside the names
+MOST_COLUMNS = 6  # columns of one table on paper, besides the names
 SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}
 
 
@@ -36,7 +36,7 @@ def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
 
 
 def _worst_first(out: VariantsOut) -> list[VariantResult]:
-    """Return the variants in their order, the one that governs before them."""
+    """Return the variants in their order, with the governing one first."""
     rows = [*([out.base] if out.base else []), *out.rows]
     governs = out.governing.variant if out.governing else ""
     return sorted(rows, key=lambda row: row.name != governs)
@@ -97,7 +97,7 @@ def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
 
 
 def _used(rows: Sequence[VariantResult]) -> list[Column]:
-    """Return the verdict and utilisation of every criterion."""
+    """Return the verdict and utilisation of every criterion for each variant."""
     names = dict.fromkeys(one.name for row in rows for one in row.criteria)
     columns = []
     for name in names:
@@ -113,7 +113,7 @@ def _share(shown: Line | None) -> str:
 
 
 def _parts(columns: Sequence[Column], rows: Sequence[VariantResult]) -> Iterable[Columns]:
-    """Yield tables that are as wide as paper, each with the names of the variants."""
+    """Yield tables that fit the width of the paper, each with the names of the variants."""
     for start in range(0, len(columns), MOST_COLUMNS):
         part = columns[start : start + MOST_COLUMNS]
         texts = [[_called(row), *(column[1][at] for column in part)] for at, row in enumerate(rows)]

@@ -24,12 +24,12 @@ def judged(revision: RevisionWorksheet) -> ReportVerdict:
 
 
 def _governing(first: Line | None) -> str:
-    """Return the criterion that governs, in one sentence; empty without one."""
+    """Return one sentence on the criterion that governs; empty if there is none."""
     return governing_sentence(first) if first else ""
 
 
 def governing_sentence(first: Line) -> str:
-    """Return a criterion that governs, in one sentence."""
+    """Return one sentence on a criterion that governs."""
     used = f"{first.used} of the limit used" if first.used else ""
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""
@@ -40,7 +40,7 @@ def governing_sentence(first: Line) -> str:
 
 def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
     """Return a criterion as a row of the report."""
-    truth = None if is_model(criterion.truth) else criterion.truth  # a remark names the model
+    truth = None if is_model(criterion.truth) else criterion.truth  # a remark names the model instead
     basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(

@@ -17,9 +17,9 @@ from app.approvals.schemas import ATTACHMENT, Approval, Approvals, Block, BlockS
 from app.reports.signatures import moment
 from templates.core.errors import plain
 
-LARGEST = 64 * 2**20  # bytes of a report that is read
-LARGEST_BLOCK = 64 * 2**10  # bytes of the attachment
-MOST_SHOWN = 3  # places in which the text differs
+LARGEST = 64 * 2**20  # largest report [bytes]
+LARGEST_BLOCK = 64 * 2**10  # largest attachment [bytes]
+MOST_SHOWN = 3  # largest number of differences listed
 
 
 class NotReport(Exception):
@@ -28,7 +28,7 @@ class NotReport(Exception):
 
 @dataclass(frozen=True)
 class Line:
-    """One thing that was checked."""
+    """One check and its result."""
 
     holds: bool
     words: str
@@ -42,7 +42,7 @@ def read_block(pdf: bytes) -> Block:
     NotReport
         If it contains none.
     """
-    from pypdf import PdfReader  # of the extra `team`; nothing else reads PDF
+    from pypdf import PdfReader  # in the extra `team`; only this module reads PDF
 
     if len(pdf) > LARGEST:
         raise NotReport(f"the file has more than {LARGEST // 2**20} MiB: it is not a report of this service")
@@ -52,7 +52,7 @@ def read_block(pdf: bytes) -> Block:
         raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
     if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
         raise NotReport(
-            f"the file has no attachment {ATTACHMENT}: it is not a report, or one of an older version"
+            f"the file has no attachment {ATTACHMENT}: it is not a report, or an older version printed it"
         )
     try:
         return Block.model_validate_json(attached[0])
@@ -63,16 +63,16 @@ def read_block(pdf: bytes) -> Block:
 
 
 def verify(pdf: bytes, block: Block, approvals: Approvals, printed: bytes) -> Iterator[Line]:
-    """Compare a report with what a service has.
+    """Compare a report with the approval in the service, and return the checks.
 
     Parameters
     ----------
     pdf
         The report.
     block
-        What it carries for programs.
+        The approval block in the report.
     approvals
-        The approval of the revision that the block names, as the service has it.
+        The service's approval of the revision that the block names.
     printed
         The report of that revision as the service prints it now.
     """
@@ -87,7 +87,7 @@ def verify(pdf: bytes, block: Block, approvals: Approvals, printed: bytes) -> It
 
 
 def _signature(step: BlockStep, row: Approval | None) -> Line:
-    """Report whether the service has a signature of the block."""
+    """Return the check that the service has a signature of the block."""
     if row is None:
         return Line(False, f"{step.step}: the service knows no such step of this revision")
     if step.digest != row.digest:
@@ -99,7 +99,7 @@ def _signature(step: BlockStep, row: Approval | None) -> Line:
 
 
 def _row(row: Approval, approvals: Approvals) -> Iterator[Line]:
-    """Report whether a row of the service and the revision still have the content that was signed."""
+    """Return the check that the revision in the service still has the content that was signed."""
     content, present = row.content, approvals.present
     sound = hashed(content) == row.digest and (
         (content.step, content.name, content.at, content.principal)
@@ -119,7 +119,7 @@ def _row(row: Approval, approvals: Approvals) -> Iterator[Line]:
 
 
 def _chain(steps: Sequence[Approval]) -> Line:
-    """Report whether every step names the previous one."""
+    """Return the check that every step names the previous one."""
     linked = all(later.content.previous == earlier.digest for earlier, later in pairwise(steps))
     if not (linked and (not steps or steps[0].content.previous is None)):
         return Line(False, "the steps do not follow each other: one was replaced")
@@ -127,7 +127,7 @@ def _chain(steps: Sequence[Approval]) -> Line:
 
 
 def _state(block: Block, approvals: Approvals) -> Line:
-    """Report whether the revision is released."""
+    """Return the check that the revision is released."""
     if approvals.state == "withdrawn":
         last = approvals.steps[-1]
         reason = last.content.reason or "no reason"
@@ -141,7 +141,7 @@ def _state(block: Block, approvals: Approvals) -> Line:
 
 
 def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
-    """Report whether the pages are those that the service prints."""
+    """Return the check that the pages equal those that the service prints."""
     if hashlib.sha256(pdf).digest() == hashlib.sha256(printed).digest():
         yield Line(True, "every byte is that of the report as the service prints it")
         return
@@ -163,7 +163,7 @@ def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
 
 
 def _lines(pdf: bytes) -> list[str]:
-    """Return the lines of the pages."""
+    """Return the lines of text on the pages."""
     from pypdf import PdfReader
 
     pages = PdfReader(io.BytesIO(pdf)).pages

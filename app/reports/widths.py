@@ -1,6 +1,6 @@
-"""Upper bounds of the widths of formulas on paper, so that the typesetter measures only wide candidates.
+"""Upper bounds of the widths of formulas on paper, so that the typesetter measures only wide formulas.
 
-To see whether a formula fits its line, the typesetter sets it once to measure it and once to print it. A
+To find whether a formula fits its line, the typesetter sets it once to measure it and once to print it. A
 bound needs no typesetting: it counts every character with at least the widest advance of its class in New
 Computer Modern Math, and every operator with the widest space on both sides. Lengths are in em. An unknown
 character may come from any system font; then there is no bound, and the typesetter measures the formula.
@@ -47,12 +47,12 @@ _REFERENCE = re.compile("&#x([0-9A-Fa-f]+);")
 
 
 def fits(mathml: Iterable[str], width: float) -> bool:
-    """Return whether formulas side by side are certainly no wider than a width [em]."""
+    """Return whether formulas side by side are certainly no wider than a given width [em]."""
     return sum(_bound(_alike(one)) for one in mathml if one) <= width
 
 
 def _alike(mathml: str) -> str:
-    """Return a formula with a zero for each digit in its texts: all digits have the same width."""
+    """Return a formula with a zero for each digit in its texts, because all digits have the same width."""
     return _TEXT.sub(_with_zeros, mathml)
 
 

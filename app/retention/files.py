@@ -1,4 +1,4 @@
-"""Files of the store that no row refers to: left over from deleted builds or from a killed server."""
+"""Delete files of the store that no row names, left over from deleted builds or from a killed server."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ GRACE = 24 * 3600.0  # s
 
 
 class Sweep:
-    """Deletes files that nothing has referred to for a while.
+    """Deletes files that no row has named for some time.
 
-    A file is stored before its row is written, and a backup copies rows before files: both take less than
-    that while. `put` makes a file that is there already as young as a new one.
+    A file is stored before its row is written, and a backup copies rows before files; both take less than
+    that time. `put` renews the age of an existing file.
 
-    The only server of a database compares two sweeps in succession, whatever the wall clock says. Of several,
-    one sweeps at a time, and no one sees all sweeps: they go by the age of the file. `grace` [s] is long
-    against the differences of their clocks; S3 refuses requests of a clock that is 15 min wrong.
+    A single server compares two successive sweeps, so its wall clock does not matter. If several servers
+    share a database, one sweeps at a time and none sees all sweeps, so they use the age of the file. `grace`
+    [s] is long compared with the differences of their clocks; S3 refuses requests from a clock that is 15
+    min wrong.
     """
 
     def __init__(self, database: Database, store: Artifacts, grace: float = GRACE) -> None:
         self._database, self._store, self._grace = database, store, grace
-        self._seen: set[StoredFile] = set()  # by the last sweep, without a reference
+        self._seen: set[StoredFile] = set()  # files that the last sweep found without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
         """Sweep once, unless another server does; return how many files were deleted.
@@ -35,7 +36,7 @@ class Sweep:
         Raises
         ------
         DatabaseCopied
-            A copy of the database uses the store as well.
+            If a copy of the database uses the same store.
         """
         with alone(self._database, "sweep of files") as is_alone:
             if not is_alone:
@@ -45,17 +46,14 @@ class Sweep:
             return self._swept(is_stopping)
 
     def _swept(self, is_stopping: Callable[[], bool]) -> int:
-        files = set(self._store.list())  # before the rows: a file that is put meanwhile is not looked at
+        files = set(self._store.list())  # before the rows, so that files stored meanwhile are not considered
         with self._database.read() as session:
             referenced = referenced_files(session)
         unused = {file for file in files if file.sha not in referenced or self._is_spare(file)}
         return sum(self._store.delete_unchanged(file) for file in self._old(unused) if not is_stopping())
 
     def _is_spare(self, file: StoredFile) -> bool:
-        """Return whether a discarded file that a row refers to is back in its place.
-
-        Restore it if necessary.
-        """
+        """Return whether a discarded file is in its place again; the store restores it if necessary."""
         return file.is_discarded and self._store.exists(file.sha)
 
     def _old(self, unused: set[StoredFile]) -> Iterable[StoredFile]:

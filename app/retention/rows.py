@@ -1,4 +1,7 @@
-"""All SQL of retention. Ages are in seconds of operation. Every function runs in its caller's transaction."""
+"""All SQL for retention; every function runs in its caller's transaction.
+
+Ages are in seconds of the service's run time.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +44,7 @@ def delete_keys(session: Session, kept: float, most: int) -> int:
 
 def delete_jobs(session: Session, kept: float, most: int) -> int:
     """Delete some of the jobs that ended longer ago than an age [s]; return their number."""
-    # Not "state in (…)": SQLite would collect and sort all ended jobs instead of walking the index of ages.
+    # Not "state in (…)": SQLite would collect and sort all ended jobs instead of using the index of ages.
     old = select(JobRow.id).where(JobRow.operated < operated(session) - kept, JobRow.state.not_in(UNFINISHED))
     some = old.order_by(JobRow.operated).limit(most)
     return _count(session.execute(delete(JobRow).where(JobRow.id.in_(some))))
@@ -58,7 +61,7 @@ def delete_events(session: Session, kept: float, most: int) -> int:
 
 
 def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:
-    """Return some builds that no revision uses and nobody requested for a time [s], by key."""
+    """Return the keys of some builds that no revision uses and nobody has requested for a time [s]."""
     unwanted = select(BuildRow.key).where(BuildRow.key > after, _is_unwanted(session, kept))
     return list(session.scalars(unwanted.order_by(BuildRow.key).limit(most)))
 
@@ -66,7 +69,7 @@ def unwanted_builds(session: Session, kept: float, after: str, most: int) -> lis
 def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
     """Delete the builds that are still unwanted, with their analyses; return their number.
 
-    Their files stay in the store, where nothing refers to them any more.
+    Their files stay in the store until a sweep finds that no row names them.
     """
     still = select(BuildRow.key).where(BuildRow.key.in_(keys), _is_unwanted(session, kept))
     gone = set(session.scalars(still)) - _awaited(session)
@@ -77,12 +80,11 @@ def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
 
 
 def referenced_files(session: Session) -> set[str]:
-    """Return the SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
+    """Return the SHA-256 of every file that a row names, and some other hashes, such as keys of builds.
 
-    Files belong to artifacts, to outputs of analyses that are files, to whatever a job was given or made, and
-    to studies: the rows that they were given and those that they calculated; and worksheets to the files from
-    which they were imported, and imported models to theirs.
-    Whoever lets another column refer to files adds it here.
+    Files belong to artifacts, outputs of analyses, inputs and results of jobs, given and calculated rows of
+    studies, and the original files of imported worksheets and models. Add any further column that names
+    files here.
     """
     files = set(session.scalars(select(ArtifactRow.sha256)))
     files.update(session.scalars(select(StudyChunkRow.sha256)))
@@ -107,7 +109,7 @@ def _is_unwanted(session: Session, kept: float) -> ColumnElement[bool]:
 
 
 def _awaited(session: Session) -> set[str]:
-    """Return the builds of which unfinished jobs make further files."""
+    """Return the builds for which unfinished jobs create further files."""
     payloads = session.scalars(select(JobRow.payload).where(JobRow.state.in_(UNFINISHED)))
     named = ([payload["build"]] if "build" in payload else payload.get("builds", ()) for payload in payloads)
     return set(chain.from_iterable(named))

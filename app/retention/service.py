@@ -20,21 +20,21 @@ from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
 
-PAUSE = 900.0  # between two rounds [s]
+PAUSE = 900.0  # time between two rounds [s]
 HOUR = 3600.0  # s
-GRACE = HOUR  # between two sweeps of the files [s of operation]
-SOME_ROWS = 200  # that one unit deletes: others' writes wait a few milliseconds for it
-SOME_BUILDS = 10  # likewise; each has its artifacts and analyses
+GRACE = HOUR  # time between two sweeps of the files [s of run time]
+SOME_ROWS = 200  # rows deleted in one unit, which delays other writes by a few milliseconds
+SOME_BUILDS = 10  # builds deleted in one unit; each has artifacts and analyses
 
 
 class Retention:
-    """Deletes old rows and files as the settings say, at the start and then every quarter of an hour."""
+    """Deletes old rows and files as the settings state, at the start and then every quarter of an hour."""
 
     def __init__(self, database: Database, store: Artifacts, settings: Settings) -> None:
         self._database = database
         self._sweep = Sweep(database, store, settings.keep_files_hours * HOUR)
-        self._swept: int | None = None  # when [s of operation]
-        # The record of a request names its job, which must not be missed when the request is repeated.
+        self._swept: int | None = None  # time of the last sweep [s of run time]
+        # The record of a request names its job, which must exist when the request is repeated.
         self._keys = settings.keep_keys_days * DAY
         self._events = settings.keep_events_days * DAY
         self._jobs = max(settings.keep_jobs_days, settings.keep_keys_days) * DAY
@@ -43,16 +43,16 @@ class Retention:
         self._thread = threading.Thread(target=self._work, name="retention", daemon=True)
 
     def start(self) -> None:
-        """Start the rounds; the first comes at once."""
+        """Start the thread; the first round begins at once."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End after the unit of work that runs."""
+        """Stop the thread after the running unit of work."""
         self._stopping.set()
         self._thread.join()
 
     def run(self) -> dict[str, int]:
-        """Delete one round of expired data; return the number deleted of each kind."""
+        """Delete expired data once; return the number of deleted items of each kind."""
         counts = {
             "keys": self._repeat(partial(rows.delete_keys, kept=self._keys, most=SOME_ROWS)),
             "events": self._repeat(partial(rows.delete_events, kept=self._events, most=SOME_ROWS)),
@@ -61,7 +61,7 @@ class Retention:
             "files": self._sweep_files(),
         }
         if any(counts.values()):
-            logger.info("Deleted what nobody wanted any more: %s", counts)
+            logger.info("Deleted expired data: %s", counts)
         return counts
 
     def _work(self) -> None:
@@ -73,14 +73,14 @@ class Retention:
             self._stopping.wait(PAUSE)
 
     def _repeat(self, unit: Callable[[Session], int]) -> int:
-        """Run a unit until it finds no more; between two of them, the units of others can run."""
+        """Run a unit of work until it finds nothing more; other units can run in between."""
         total = 0
         while not self._stopping.is_set() and (count := self._database.write(unit)):
             total += count
         return total
 
     def _delete_builds(self) -> int:
-        """Read builds without the writer, page by page; the unit that deletes a page looks at it again."""
+        """Read unused builds page by page without the writer; the unit that deletes a page rechecks it."""
         total, last = 0, ""
         while not self._stopping.is_set():
             with self._database.read() as session:

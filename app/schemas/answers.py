@@ -1,7 +1,7 @@
-"""Building blocks of the answers of the interface.
+"""Building blocks for responses of the interface.
 
-An answer is a Pydantic model that its route, the client, the pages and the reports share. A field that an
-answer leaves out is not written; a field that may be null says so.
+A response is a Pydantic model that its route, the client, the pages and the reports share. A field that is
+not set is not written; a field that may be null is declared so.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ Item = TypeVar("Item")
 
 
 class Answer(BaseModel):
-    """An answer of the interface; a name that the model lacks is a fault of the program."""
+    """Base class of responses; a field that the model lacks is an error of the program."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def plain(self) -> JsonObject:
-        """Return the answer as plain JSON values, without the fields that it leaves out."""
+        """Return the response as plain JSON values, without fields that are not set."""
         return self.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
     def in_units(self, system: System) -> Self:
-        """Return the answer with every quantity in a system of units.
+        """Return the response with every quantity in a system of units.
 
         A value without a unit stays unchanged.
         """
@@ -39,7 +39,7 @@ class Answer(BaseModel):
 
 
 def _in_units(value: object, system: System) -> object:
-    """Return a field of an answer, or an item of one, in a system of units."""
+    """Return a field of a response, or an item of it, in a system of units."""
     if isinstance(value, Answer):
         return value.in_units(system)
     if isinstance(value, dict):
@@ -59,12 +59,12 @@ VALUE: JsonDict = {
         {"type": "null"},
     ],
 }
-Value = Annotated[object, WithJsonSchema(VALUE)]  # Pydantic would look at each of a million numbers
+Value = Annotated[object, WithJsonSchema(VALUE)]  # Pydantic would validate each of a million numbers
 """A magnitude of any shape, or a choice. JSON Schema has no finite form for arrays of any depth."""
 
 
 class Measured(Answer):
-    """A magnitude `value` with its `unit`, which another system of units replaces."""
+    """A magnitude `value` with its `unit`; both change with the system of units."""
 
     def in_units(self, system: System) -> Self:
         """Return the magnitude in a system of units."""
@@ -97,13 +97,13 @@ class Values(Measured):
 
 
 class Shown(Measured):
-    """A value as it is shown: a quantity of any shape, or a choice, which has no unit."""
+    """A displayed value: a quantity of any shape, or a choice, which has no unit."""
 
     value: Value
-    unit: str | None = Field(None, description="absent for a choice")
-    upper: float | None = Field(None, description="limit deviations of a toleranced dimension, in that unit")
+    unit: str | None = Field(None, description="unit; absent for a choice")
+    upper: float | None = Field(None, description="limit deviations of a toleranced dimension, in `unit`")
     lower: float | None = None
-    zone: str | None = Field(None, description="of ISO 286, from which the limits come")
+    zone: str | None = Field(None, description="ISO 286 tolerance zone that defines the limits")
 
     def in_units(self, system: System) -> Self:
         """Return the magnitude and its limit deviations, which are differences, in a system of units."""
@@ -115,22 +115,22 @@ class Shown(Measured):
 
 
 class Warning(Answer):
-    """Something that the user of a result should know."""
+    """A warning for the user of a result."""
 
     code: str
-    name: str = Field(description="the input or output it is about")
+    name: str = Field(description="the input or output that the warning is about")
     detail: str
 
 
 class Page(Answer, Generic[Item]):
-    """Items of a list, and where the next ones begin."""
+    """A page of a list, and the cursor of the next page."""
 
     items: list[Item]
-    next: str | None = Field(description="`cursor` of the next page; null on the last one")
+    next: str | None = Field(description="`cursor` of the next page; null on the last page")
 
 
 class Accepted(Answer):
-    """The work goes on as a job."""
+    """The work continues as a job."""
 
     job: str = Field(description="path of the job")
 

@@ -1,4 +1,4 @@
-"""The steps in which a revision is approved, and its state between them."""
+"""The steps in which a revision is approved, and the states between them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""JSON objects with a bounded number of names, so that a large wrong object gives few errors.
+"""JSON objects with a limited number of names, so that a large wrong object causes few errors.
 
-Pydantic validates every entry of an object before it counts the entries, and reports each invalid one.
+Without this, Pydantic validates every entry of an object before it counts the entries, and reports each
+invalid one.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ MOST_FIELDS = 100
 
 
 class Bounded(BaseModel):
-    """A model that refuses an object with far more names than any of ours has, before it looks at them."""
+    """A model that refuses an object with too many names before it validates their values."""
 
     @model_validator(mode="before")
     @classmethod
     def few_fields(cls, raw: object) -> object:
-        """Refuse an object with too many names before its values are read.
+        """Refuse an object with too many names before its values are validated.
 
         Raises
         ------
@@ -31,9 +32,9 @@ class Bounded(BaseModel):
 
 
 def at_most(count: int) -> BeforeValidator:
-    """Return an annotation of a dictionary.
+    """Return an annotation that limits the number of entries of a dictionary.
 
-    The number of entries is checked before the entries themselves.
+    The number is checked before the entries themselves.
     """
     return BeforeValidator(partial(_few, most=count))
 

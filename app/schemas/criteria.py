@@ -1,4 +1,4 @@
-"""Criteria as judged, and the overall verdict."""
+"""Schemas for criteria as judged, and for the overall verdict."""
 
 from __future__ import annotations
 
@@ -18,55 +18,61 @@ Word = Literal["met", "not_met", "undecided", "not_checked"]
 
 
 class Band(Measured):
-    """Bounds of the true value, lower and upper; null where it is open."""
+    """Lower and upper bound of the true value; null for an open side."""
 
     value: list[float | None] = Field(min_length=2, max_length=2)
     unit: str
 
 
 class Criterion(Answer):
-    """One criterion with its value and verdict; what does not apply is absent.
+    """One criterion with its value and verdict; fields that do not apply are absent.
 
     Over several points, or along a curve, the numbers are those of the worst place.
     """
 
-    name: str = Field(description="in a design with its step: `film.film`")
+    name: str = Field(description="name of the criterion; in a design with its step: `film.film`")
     words: str
     require: str = Field(description="the comparison, such as `film >= 3 um`")
     verdict: Word
-    sentence: str = Field("", description="what is the case: value, relation, limit and verdict")
+    sentence: str = Field("", description="sentence with value, relation, limit and verdict")
     value: Quantity | None = None
     limit: Quantity | None = None
-    band: Band | None = Field(None, description="of the value; absent where its error is not known")
+    band: Band | None = Field(None, description="bounds of the true value; absent if the error is unknown")
     relative_error: float | None = None
     error_known: bool = Field(
-        True, description="whether every contribution to its error is known; if not, `met` confirms nothing"
+        True, description="whether all contributions to the error are known; if not, `met` is not confirmed"
     )
-    error_stated: bool = Field(True, description="the same as `error_known`")
-    utilisation: float | None = Field(None, description="above 1 it is not met; none of a temperature")
-    margin: Quantity | None = Field(None, description="positive is safe; of a temperature in K")
-    needs: float | None = Field(None, description="the relative error that would decide")
+    error_stated: bool = Field(True, description="alias of `error_known`")
+    utilisation: float | None = Field(
+        None, description="utilisation; above 1 the criterion is not met; null for a temperature"
+    )
+    margin: Quantity | None = Field(
+        None, description="margin, positive on the safe side; for a temperature in K"
+    )
+    needs: float | None = Field(None, description="the relative error that would allow a verdict")
     give: list[str] = Field([], description="what is missing")
     reason: str | None = None
-    level: str | None = Field(None, description="of fidelity")
-    truth: str | None = Field(None, description="against which solution the error was measured")
+    level: str | None = Field(None, description="level of fidelity")
+    truth: str | None = Field(None, description="the solution with which the error was measured")
     where: dict[str, Shown | str] | None = Field(
         None,
-        description="the worst place; points count from 1; `variant` is the name of the worst one",
+        description="the worst place; points are counted from 1; `variant` is the name of the worst variant",
     )
-    points: int | None = Field(None, description="how many were judged")
-    counts: dict[str, int] | None = Field(None, description="points of each verdict")
-    source: str | None = Field(None, description="of the limit, or of the rule")
-    unverified: str | None = Field(None, description="why the limit is not sure; the verdict is never green")
-    waived: str | None = Field(None, description="why it does not count")
+    points: int | None = Field(None, description="number of points that were judged")
+    counts: dict[str, int] | None = Field(None, description="number of points with each verdict")
+    source: str | None = Field(None, description="source of the limit or of the rule")
+    unverified: str | None = Field(
+        None, description="why the limit is uncertain; the verdict is then never green"
+    )
+    waived: str | None = Field(None, description="why the criterion is waived")
 
     def in_units(self, system: System) -> Self:
-        """Return the criterion in a system of units, its sentence too."""
+        """Return the criterion, including its sentence, in a system of units."""
         shown = super().in_units(system)
         return shown if shown is self else shown.model_copy(update={"sentence": shown.stated()})
 
     def stated(self) -> str:
-        """Return the sentence, made from the numbers as they are shown."""
+        """Return the sentence, written with the displayed numbers."""
         numbers = (
             None
             if self.value is None or self.limit is None
@@ -87,11 +93,11 @@ class Verdict(Answer):
 
     verdict: Word
     counts: dict[str, int]
-    error_unknown: int = Field(0, description="criteria that are met, with an unknown error")
+    error_unknown: int = Field(0, description="number of criteria that are met with an unknown error")
     governing: str | None = Field(
         None,
-        description="the first criterion that was checked, worst first; "
-        "one met by a limit fixed in its template only if no limit of its value is missing",
+        description="the worst criterion that was checked; one that meets a limit fixed in its template "
+        "counts only if no other limit of the same value is missing",
     )
-    headline: str = Field(description="such as `3 met, 1 undecided, 2 not checked`")
-    green: bool = Field(description="all are met, every error is known, nothing is unverified")
+    headline: str = Field(description="summary such as `3 met, 1 undecided, 2 not checked`")
+    green: bool = Field(description="whether all are met, every error is known, and no limit is unverified")

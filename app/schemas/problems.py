@@ -1,4 +1,4 @@
-"""Problems (RFC 9457): the answer to every request that is refused, and how routes declare theirs."""
+"""Problems (RFC 9457): the response to every refused request, and how routes declare theirs."""
 
 from __future__ import annotations
 
@@ -14,25 +14,27 @@ MEDIA_TYPE = "application/problem+json"
 
 
 class Fault(BaseModel):
-    """One thing that is wrong."""
+    """One fault of a request."""
 
     name: str = Field(description="the input, parameter or part of the request")
     code: str
-    detail: str = Field(description="what is wrong, in which unit, and what would be right")
-    also: list[str] = Field([], description="other names that the detail is about, where there are any")
+    detail: str = Field(description="what is wrong, in which unit, and how to correct it")
+    also: list[str] = Field([], description="other names that the detail refers to")
 
 
 class Problem(BaseModel):
-    """Why a request was refused; some kinds carry more, such as the range that a target can reach."""
+    """The reason for a refusal; some kinds have further fields, such as the range that a target can reach."""
 
     model_config = ConfigDict(extra="allow")
 
-    type: str = Field(description="link to the meaning of the kind and what helps")
+    type: str = Field(description="link to the meaning of this kind of problem and its remedy")
     title: str
     status: int
     detail: str
-    request_id: str | None = Field(None, description="as in the header X-Request-ID and in the log")
-    errors: list[Fault] = Field([], description="every fault at once, where there are several")
+    request_id: str | None = Field(
+        None, description="id of the request, as in the header X-Request-ID and in the log"
+    )
+    errors: list[Fault] = Field([], description="all faults of the request, if there are several")
 
 
 class ProblemKind(BaseModel):
@@ -82,5 +84,5 @@ class RouteOptions(TypedDict):
 
 
 def refusals(*statuses: int) -> Responses:
-    """Return the `responses` of a route for its problems."""
+    """Return the `responses` of a route that declare its problems."""
     return {status: {"description": MEANINGS[status], "content": PROBLEM_CONTENT} for status in statuses}

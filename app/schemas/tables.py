@@ -11,7 +11,7 @@ _STRICT = ConfigDict(strict=True, extra="forbid")
 
 
 class TableField(Bounded):
-    """A field that can take a column."""
+    """A field of a form that accepts a column."""
 
     model_config = _STRICT
 
@@ -22,7 +22,7 @@ class TableField(Bounded):
 
 
 class ChosenColumn(Bounded):
-    """The choice of the user for a column: the field that takes it (empty for none), and its unit."""
+    """The user's choice for a column: its field (empty for none), and its unit."""
 
     model_config = _STRICT
 
@@ -31,19 +31,23 @@ class ChosenColumn(Bounded):
 
 
 class PastedTable(Bounded):
-    """A table as pasted, the fields of the form, and what was chosen so far."""
+    """A pasted table, the fields of the form, and the user's choices so far."""
 
     model_config = _STRICT
 
     text: str
-    file: str = Field("", description="a file in base64, which is read in place of the text")
+    file: str = Field("", description="a file in base64, which is read instead of the text")
     fields: list[TableField] = Field(max_length=200)
-    columns: list[ChosenColumn] | None = Field(None, max_length=32, description="null for a proposal")
-    offset: str = Field("", max_length=100, description="added to the angles, such as `10 deg`")
+    columns: list[ChosenColumn] | None = Field(
+        None, max_length=32, description="the user's choices; null to request a proposal"
+    )
+    offset: str = Field(
+        "", max_length=100, description="offset that is added to the angles, such as `10 deg`"
+    )
 
 
 class ReadColumn(Answer):
-    """A column as it was read, and the field that takes it."""
+    """A column as it was read, and the field assigned to it."""
 
     name: str
     unit: str
@@ -51,14 +55,14 @@ class ReadColumn(Answer):
 
 
 class ReadTable(Answer):
-    """The columns, the first rows, what to know, what is wrong, and the texts of the fields."""
+    """The columns and first rows of a table, assumptions and faults, and the texts for the fields."""
 
     columns: list[ReadColumn]
-    first: list[list[float]] = Field(description="the first rows, as they are taken")
+    first: list[list[float]] = Field(description="the first rows, as they will be inserted")
     rows: int
     notes: list[str] = []
     assumed: list[str] = Field(
-        [], description="what was assumed: the decimal mark, cycles that were averaged"
+        [], description="assumptions made, such as the decimal mark and the averaging of cycles"
     )
     faults: list[str] = []
-    texts: dict[str, str] = Field({}, description="by field; none while something is wrong")
+    texts: dict[str, str] = Field({}, description="texts by field; empty while there are faults")

@@ -1,6 +1,6 @@
-r"""Classes of letters for the patterns of texts.
+r"""Character classes for the patterns of texts.
 
-They are listed by number, as pydantic and JSON Schema disagree on what `\s` stands for (U+0085, U+FEFF).
+They list code points, because Pydantic and JSON Schema disagree on what `\s` matches (U+0085, U+FEFF).
 """
 
 CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029"

@@ -1,6 +1,6 @@
 """Input values in the OpenAPI description.
 
-It describes only the form. The schema of each template and model says which units and options are valid.
+This describes only their form; the schema of each template and model states valid units and options.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Limits = Annotated[
     dict[str, Given],
     Field(
         max_length=200,
-        description="limits of criteria that the calculation does not take, by name, or a row of a library: "
+        description="limits of criteria that are no inputs of the calculation, by name, or library rows: "
         '`{"permissible_pressure": "35 MPa"}`, `{"bearing_material": "…"}`',
     ),
     at_most(200),

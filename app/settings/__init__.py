@@ -20,13 +20,13 @@ class Settings(BaseSettings):
     data: Path = Field(Path("crankwright-data"), description="folder of the database and the artifacts")
     database_url: str | None = Field(None, description="SQLAlchemy URL; a SQLite file in `data` if not given")
     database_pool: int = Field(
-        16, gt=0, description="connections to PostgreSQL that write at the same time; as many read"
+        16, gt=0, description="connections to PostgreSQL for writing; the same number again for reading"
     )
     artifacts_url: str | None = Field(
         None,
         description=(
-            "where files are: `s3://bucket`, `s3://bucket/prefix`, or `file:///folder` for a folder that "
-            "all servers share; a folder in `data` if not given"
+            "where files are stored: `s3://bucket`, `s3://bucket/prefix`, or `file:///folder` for a folder "
+            "that all servers share; a folder in `data` if not given"
         ),
     )
     s3_endpoint: str | None = Field(
@@ -37,65 +37,77 @@ class Settings(BaseSettings):
         "local",
         description="what runs jobs: `local`, or a Dask scheduler such as `tls://scheduler:8786`",
     )
-    dask_ca: Certificate = Field(None, description="certificate of the authority that signs those of Dask")
-    dask_cert: Certificate = Field(None, description="own certificate in the network of Dask")
+    dask_ca: Certificate = Field(
+        None, description="certificate of the authority that signs Dask's certificates"
+    )
+    dask_cert: Certificate = Field(None, description="certificate of this machine for Dask's connections")
     dask_key: Certificate = Field(None, description="key of that certificate")
     lanes: Annotated[dict[Lane, Count], AfterValidator(check_lanes)] = Field(
         {"geometry": 1, "analysis": 1},
-        description="jobs that `crankwright worker` runs at the same time, by kind of work",
+        description="number of jobs of each kind that `crankwright worker` runs at the same time",
     )
     lease_seconds: float = Field(
-        30.0, gt=0, description="after so long without a sign of its server a job is queued again [s]"
+        30.0,
+        gt=0,
+        description="if the server of a job sends no sign of life for this time, the job is queued again [s]",
     )
-    beat_seconds: float = Field(10.0, gt=0, description="time between two such signs [s]")
+    beat_seconds: float = Field(10.0, gt=0, description="time between two signs of life [s]")
     poll_seconds: float = Field(
-        5.0, gt=0, description="how often a server of a team looks into the database without a hint [s]"
+        5.0, gt=0, description="time between two checks of the database by a server of a team [s]"
     )
-    minimum_free_mb: int = Field(200, ge=0, description="free disk space below which /readyz says 503 [MiB]")
+    minimum_free_mb: int = Field(
+        200, ge=0, description="free disk space below which /readyz returns 503 [MiB]"
+    )
     owner: str = Field(
-        "", max_length=80, description="legal owner of drawings, in their title blocks (ISO 7200)"
+        "", max_length=80, description="legal owner in the title blocks of drawings (ISO 7200)"
     )
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
     allowed_hosts: tuple[Annotated[str, AfterValidator(check_entry)], ...] = Field(
         (),
         description=(
-            "host names that the service answers to beside localhost, 127.0.0.0/8, [::1] and the address it "
+            "accepted host names besides localhost, 127.0.0.0/8, [::1] and the address on which the service "
             'listens on; `"*.example.com"` stands for all sub-domains'
         ),
     )
     body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     template_seconds: float = Field(
-        30.0, gt=0, description="longest time in which a team's file is loaded and checked [s]"
+        30.0, gt=0, description="longest time for loading and checking a team's file [s]"
     )
     freecad: Path | None = Field(
-        None, description="folder of FreeCAD's modules; where Linux distributions have it if not given"
+        None, description="folder of FreeCAD's modules; the usual folder of Linux distributions if not given"
     )
     freecad_python: str = Field(
         "/usr/bin/python3",
-        description="the Python that FreeCAD was built for: it draws models in .FCStd files",
+        description="the Python for which FreeCAD was built; it builds models from .FCStd files",
     )
     creoson_url: str | None = Field(
-        None, description="CREOSON beside a running Creo: `http://127.0.0.1:9056/creoson`"
+        None,
+        description="address of CREOSON on the machine with a running Creo: `http://127.0.0.1:9056/creoson`",
     )
     creoson_folder: Path | None = Field(
-        None, description="folder into which Creo exports, as this service names it"
+        None, description="folder into which Creo exports, as a path on this machine"
     )
     creoson_exports: str | None = Field(
-        None, description="the same folder as Creo names it; as `creoson_folder` if not given"
+        None,
+        description="the same folder as a path on Creo's machine; equal to `creoson_folder` if not given",
     )
     creo_version: int | None = Field(
-        None, ge=7, le=99, description="main version of Creo, from Creo 7 on: CREOSON has to know it"
+        None, ge=7, le=99, description="major version of Creo; required by CREOSON from Creo 7 on"
     )
-    wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
-    queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
-    client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")
-    workers: int = Field(1, gt=0, description="jobs that run at the same time, beside one analysis")
+    wait_seconds: float = Field(2.0, ge=0, description="how long a request waits for its job by default [s]")
+    queue_limit: int = Field(
+        1000, gt=0, description="largest number of queued jobs; further ones are refused"
+    )
+    client_queue_limit: int = Field(50, gt=0, description="largest number of queued jobs of one client")
+    workers: int = Field(1, gt=0, description="jobs that run at the same time, in addition to one analysis")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
-    job_memory_mb: int = Field(3072, gt=0, description="memory of one job process beside the program [MiB]")
+    job_memory_mb: int = Field(
+        3072, gt=0, description="memory of one job process in addition to the program [MiB]"
+    )
     calculation_processes: int = Field(
-        0, ge=0, description="processes for expensive calculations; 0: as many as cores"
+        0, ge=0, description="processes for expensive calculations; 0: one for each core"
     )
     calculation_waiting: int = Field(
         32, gt=0, description="expensive calculations that may wait before new ones are refused"
@@ -103,17 +115,17 @@ class Settings(BaseSettings):
     calculation_deadline: float = Field(
         30.0,
         gt=0,
-        description="how long an answer waits for its calculation, which then goes on as a job [s]",
+        description="how long an answer waits for its calculation, which then continues as a job [s]",
     )
     calculation_job_deadline: float = Field(300.0, gt=0, description="longest run of one calculation [s]")
     calculation_memory_mb: int = Field(
-        2048, gt=0, description="memory of one calculation beside the program [MiB]"
+        2048, gt=0, description="memory of one calculation in addition to the program [MiB]"
     )
     analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")
-    analysis_memory_mb: int = Field(6144, gt=0, description="memory of one such analysis [MiB]")
-    cache_mb: int = Field(256, gt=0, description="memory for results that are kept to be used again [MiB]")
+    analysis_memory_mb: int = Field(6144, gt=0, description="memory limit of an analysis of a solid [MiB]")
+    cache_mb: int = Field(256, gt=0, description="memory for cached results [MiB]")
     keep_jobs_days: float = Field(
-        90, gt=0, description="how long an ended job is listed [days of operation]; at least as long as keys"
+        90, gt=0, description="how long an ended job is listed [days of operation]; at least `keep_keys_days`"
     )
     keep_keys_days: float = Field(
         7, gt=0, description="how long an Idempotency-Key is remembered [days of operation]"
@@ -127,41 +139,53 @@ class Settings(BaseSettings):
     keep_files_hours: float = Field(
         24,
         ge=2,
-        description="how long several servers keep a file that no row names [h]",
+        description="how long servers that share files keep a file to which no row refers [h]",
     )
     drain_seconds: float = Field(10.0, gt=0, description="longest time from SIGTERM to the end [s]")
     connections: int = Field(1000, gt=0, description="connections at the same time; others get 503")
-    header_seconds: float = Field(10.0, gt=0, description="longest time for the head of a request [s]")
-    body_seconds: float = Field(10.0, gt=0, description="longest pause while a body comes [s]")
-    write_seconds: float = Field(60.0, gt=0, description="longest time in which an answer is not read [s]")
-    slowest_rate: float = Field(
-        16384, gt=0, description="what a body brings, or a client reads, on average at least [bytes/s]"
+    header_seconds: float = Field(
+        10.0, gt=0, description="longest time for receiving the header of a request [s]"
     )
-    keep_alive_seconds: int = Field(5, gt=0, description="longest rest of a connection between requests [s]")
-    oidc_issuer: str | None = Field(None, description="OpenID provider by which people sign in")
-    oidc_client: str | None = Field(None, description="this service's name at that provider")
-    oidc_secret: SecretStr | None = Field(None, description="and its secret there")
+    body_seconds: float = Field(10.0, gt=0, description="longest pause while a request body arrives [s]")
+    write_seconds: float = Field(
+        60.0, gt=0, description="longest time for which a client may stop reading its answer [s]"
+    )
+    slowest_rate: float = Field(
+        16384,
+        gt=0,
+        description="lowest average rate at which a client must send a body or read an answer [bytes/s]",
+    )
+    keep_alive_seconds: int = Field(
+        5, gt=0, description="longest idle time of a connection between requests [s]"
+    )
+    oidc_issuer: str | None = Field(None, description="OpenID provider with which users sign in")
+    oidc_client: str | None = Field(None, description="client id of this service at that provider")
+    oidc_secret: SecretStr | None = Field(None, description="client secret of this service at that provider")
     session_hours: float = Field(12, gt=0, description="how long a browser stays signed in [h]")
-    principal_rate: float = Field(600, gt=0, description="requests of one principal; others get 429 [1/min]")
+    principal_rate: float = Field(
+        600, gt=0, description="largest request rate of one principal; further requests get 429 [1/min]"
+    )
     principal_storage_mb: int = Field(
         20480, gt=0, description="files that one principal may have stored [MiB]"
     )
     principal_seconds: float = Field(
-        36000, gt=0, description="calculation that one principal may use on a day (UTC) [s]"
+        36000, gt=0, description="calculation time that one principal may use per day (UTC) [s]"
     )
     traces_url: Annotated[str | None, AfterValidator(check_collector)] = Field(
-        None, description="OpenTelemetry collector that traces are sent to: `http://127.0.0.1:4318`"
+        None, description="address of the OpenTelemetry collector for traces: `http://127.0.0.1:4318`"
     )
-    streams: int = Field(200, gt=0, description="streams of events that may be open")
-    streams_per_client: int = Field(20, gt=0, description="streams of events that one client may have open")
+    streams: int = Field(200, gt=0, description="largest number of open event streams")
+    streams_per_client: int = Field(
+        20, gt=0, description="largest number of open event streams of one client"
+    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
-        "warning", description="what is logged; `info` has a line for each request"
+        "warning", description="least severe level that is logged; `info` logs a line for each request"
     )
     log_format: Literal["text", "json"] = Field(
-        "text", description="how a line of the log is written: for people, or a JSON object"
+        "text", description="format of a log line: plain text, or a JSON object"
     )
 
     @property
     def stop_seconds(self) -> float:
-        """Return the share of the drain time kept for jobs and database after the last request [s]."""
+        """Return the part of the drain time reserved for jobs and the database after the last request [s]."""
         return min(4.0, 0.4 * self.drain_seconds)

@@ -13,7 +13,7 @@ from functools import lru_cache
 from ipaddress import IPv6Address, ip_address, ip_network
 
 SETTING = "CRANKWRIGHT_ALLOWED_HOSTS"
-LONGEST = 253 + len(":65535")  # of a name and a port [characters]
+LONGEST = 253 + len(":65535")  # longest name with a port [characters]
 DEFAULT_PORTS = {"http": 80, "https": 443}
 
 _LABEL = "[a-z0-9_-]{1,63}"
@@ -26,27 +26,26 @@ _LOOPBACK = ip_network("127.0.0.0/8")
 
 @dataclass(frozen=True)
 class Authority:
-    """A host name in lower case, or an address without brackets, and the port if one was given."""
+    """A host name in lower case, or an address without brackets, and the port, if any."""
 
     name: str
     port: int | None
 
     def port_of(self, scheme: str) -> int:
-        """Return the port, or the default one of the scheme."""
+        """Return the port, or the default port of the scheme."""
         return self.port or DEFAULT_PORTS.get(scheme, 80)
 
 
 def parse(text: str) -> Authority | None:
     """Return the authority in a text such as `localhost:8000` or `[::1]:8000`.
 
-    None if it is not an authority.
-
-    A name may end with the dot of the root, as in `localhost.`: it is the same name.
+    Return None if the text is not an authority. A name may end with the dot of the root, as in `localhost.`,
+    which is the same name.
     """
     return _parsed(text.lower()) if len(text) <= LONGEST and text.isascii() else None
 
 
-@lru_cache(maxsize=1024)  # of short texts only
+@lru_cache(maxsize=1024)  # only short texts are cached
 def _parsed(text: str) -> Authority | None:
     match = _AUTHORITY.fullmatch(text)
     port = match and match["port"]
@@ -57,7 +56,7 @@ def _parsed(text: str) -> Authority | None:
 
 
 def _compressed(address: str) -> str | None:
-    """Return an IPv6 address in its one canonical form."""
+    """Return an IPv6 address in its canonical form."""
     try:
         return str(IPv6Address(address))
     except ValueError:
@@ -66,7 +65,7 @@ def _compressed(address: str) -> str | None:
 
 @lru_cache(maxsize=1024)
 def is_loopback(name: str) -> bool:
-    """Return whether a name in lower case is `localhost` or an address of this machine alone."""
+    """Return whether a name in lower case is `localhost` or a loopback address."""
     if name == "localhost":
         return True
     try:
@@ -103,14 +102,14 @@ def _is_address(name: str) -> bool:
 
 
 class Hosts:
-    """The hosts that the service answers to.
+    """The host names of the service.
 
     Parameters
     ----------
     allowed
         Entries of the allow-list: `name`, `name:port`, or `*.domain` with or without a port.
     bound
-        The host that the server was asked to listen on. A wildcard such as 0.0.0.0 is not a name of it.
+        The host that the server listens on. A wildcard address such as 0.0.0.0 is not a host name.
     """
 
     def __init__(self, allowed: Iterable[str] = (), bound: str = "127.0.0.1") -> None:
@@ -122,25 +121,25 @@ class Hosts:
         self._bound = _bound_name(bound)
 
     def allows(self, asked: Authority, scheme: str, server: tuple[str, int | None] | None) -> bool:
-        """Return whether the service answers to a host.
+        """Return whether a host is one of the service.
 
-        `server` is the address that the connection arrived at.
+        `server` is the address at which the connection arrived.
         """
         return is_loopback(asked.name) or self._is_bound(asked, scheme, server) or self.lists(asked)
 
     def lists(self, asked: Authority) -> bool:
-        """Return whether the operator allows a host."""
+        """Return whether the operator's allow-list contains a host."""
         return any(asked.name == entry.name and _fits(entry, asked) for entry in self._plain) or any(
             asked.name.endswith(f".{entry.name}") and _fits(entry, asked) for entry in self._wild
         )
 
     def publishes(self, source: Authority) -> bool:
-        """Return whether an https origin is the public one of a reverse proxy: listed by its full name."""
+        """Return whether an https origin is the public one of a reverse proxy, listed with its full name."""
         port = source.port_of("https")
         return any(source.name == entry.name and port == entry.port_of("https") for entry in self._plain)
 
     def _is_bound(self, asked: Authority, scheme: str, server: tuple[str, int | None] | None) -> bool:
-        """Return whether a host is the address of the socket, with its port."""
+        """Return whether a host is the address and port at which the connection arrived."""
         if server is None or server[1] != asked.port_of(scheme):
             return False
         return asked.name == self._bound or (_is_address(asked.name) and asked.name == server[0])
@@ -154,7 +153,7 @@ def _fits(entry: Authority, asked: Authority) -> bool:
 
 
 def _bound_name(host: str) -> str | None:
-    """Return a bound host as browsers name it; none for all addresses at once."""
+    """Return the bound host as browsers name it; None for a wildcard address."""
     try:
         address = ip_address(host)
     except ValueError:

@@ -1,6 +1,6 @@
-"""Settings of the machines: CRANKWRIGHT_ENGINE chooses where jobs run; export of traces.
+"""Settings for other machines: CRANKWRIGHT_ENGINE selects where jobs run; a collector receives traces.
 
-Dask sends pickles, so anybody who can connect can run code. Beyond this machine, TLS authenticates the peers.
+Dask sends pickles, so anyone who can connect can run code. Beyond this machine, TLS authenticates both sides.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ TEAM = "the extra `team` is not installed: pip install 'crankwright[team]'"
 
 
 def check_engine(engine: str) -> str:
-    """Return the setting, if it is `local` or the address of a scheduler that may be used.
+    """Return the setting, if it is `local` or the permitted address of a scheduler.
 
     Raises
     ------
     ValueError
-        What is wrong with it, and what would be right.
+        With the fault, and a correct form.
     """
     if engine == LOCAL:
         return engine
@@ -50,12 +50,12 @@ def is_installed() -> bool:
 
 
 def check_collector(url: str | None) -> str | None:
-    """Return the address that traces are sent to, if it is one and there is what sends them.
+    """Return the address of the collector of traces, if it is valid and OpenTelemetry is installed.
 
     Raises
     ------
     ValueError
-        What is wrong with it, and what would be right.
+        With the fault, and a correct form.
     """
     if url is None:
         return None
@@ -92,12 +92,12 @@ def _scheme_and_host(engine: str) -> tuple[str, str]:
 
 
 def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
-    """Return the places of a worker, if there is any.
+    """Return the slots of a worker by lane, if there is at least one.
 
     Raises
     ------
     ValueError
-        There is none.
+        If there is none.
     """
     if not any(lanes.values()):
         raise ValueError('a worker needs at least one slot, such as {"geometry": 1}')
@@ -105,12 +105,12 @@ def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
 
 
 def check_certificate(file: Path | None, info: ValidationInfo) -> Path | None:
-    """Return a file of TLS, which an engine `tls://…` needs and which must be there.
+    """Return a TLS file, which must exist if the engine is `tls://…`.
 
     Raises
     ------
     ValueError
-        It is missing.
+        If it is missing.
     """
     engine = info.data.get("engine", LOCAL)
     if file is None and engine.startswith("tls://"):

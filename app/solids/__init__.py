@@ -1,1 +1,1 @@
-"""Builds, with their files, measurements and analyses: each is stored under the key of the build."""
+"""Builds with their files, measurements and analyses, all stored under the key of the build."""

@@ -1,4 +1,4 @@
-"""Analyses of CAD models outside of any design."""
+"""Finite-element analyses of CAD models outside of designs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ANALYSIS = "analysis"
 
 
 class Analyses:
-    """Questions about models, and their answers."""
+    """Requests analyses of models, and returns their results."""
 
     def __init__(self, database: Database, store: Artifacts, jobs: Jobs) -> None:
         self.database, self.store, self.jobs = database, store, jobs
@@ -56,12 +56,12 @@ class Analyses:
         return None if there and fresh else self._enqueued(shape, question, outputs, client, there=there)
 
     def request_surface(self, key: str, catalogue: Catalogue[CadModel]) -> str:
-        """Return the job that finds the lost surface of an analysis again.
+        """Return the job that recomputes the lost surface of an analysis.
 
         Raises
         ------
         CannotRebuild
-            If this program keeps the answer to the same question under another key; that one is on its way.
+            If this program stores the answer to the same request under another key; a job computes that one.
         """
         with self.database.read() as session:
             build, question, _ = repository.asked(session, key)
@@ -73,7 +73,7 @@ class Analyses:
         links = {"analysis": f"/api/v1/analyses/{now}", "job": f"/api/v1/jobs/{job}"}
         detail = (
             f"the surface of analysis {key} was computed by another version of the kernel, the solver or the "
-            "recipe. Restore the file from a backup, or take the new analysis"
+            "recipe. Restore the file from a backup, or use the new analysis"
         )
         raise CannotRebuild("other_recipe", detail, links)
 
@@ -86,7 +86,7 @@ class Analyses:
         *,
         there: bool = False,
     ) -> str | None:
-        """Return the job; None if all outputs were there, and their build was not purged meanwhile."""
+        """Return the job; None if all outputs are stored and their build has not been deleted meanwhile."""
         payload = {
             "model": shape.id,
             "version": shape.version,
@@ -103,7 +103,7 @@ class Analyses:
         return self.jobs.commit(unit)
 
     def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
-        """Return the requested outputs, as far as they are stored."""
+        """Return the requested outputs that are stored."""
         build = build_key(shape)
         with self.database.read() as session:
             stored = repository.outputs_of(session, question.key(build))
@@ -111,12 +111,12 @@ class Analyses:
         return shown(Version(id=shape.id, version=shape.version), build, question, computed)
 
     def show_all(self, key: str, load: float) -> Analysis:
-        """Return all stored outputs for a question about a build, under a load [N·m].
+        """Return all stored outputs of an analysis of a build, under a load [N·m].
 
         Raises
         ------
         NotFound
-            If there is none of this key.
+            If there is no analysis with this key.
         """
         with self.database.read() as session:
             build, question, outputs = repository.asked(session, key)
@@ -159,13 +159,13 @@ def _model_of(session: Session, build: str) -> Version:
 
 
 class ModelAnalysis:
-    """The handler of jobs of the kind `analysis`: build the model, then find what was asked."""
+    """The handler of jobs of the kind `analysis`, which build a model and analyse it."""
 
     def __init__(self, builds: Builds, analysing: AnalysisRunner, catalogues: Catalogues) -> None:
         self.builds, self.analysing, self.catalogues = builds, analysing, catalogues
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Build and analyse.
+        """Build the model, then analyse it.
 
         Raises
         ------

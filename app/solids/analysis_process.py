@@ -1,4 +1,4 @@
-"""Run analyses in a worker process and store them: each output of a solid and a question is computed once."""
+"""Run analyses in a worker process and store their results: each output is computed only once."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ class AnalysisRunner:
         self.database, self.store, self.limits = database, store, limits
 
     def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
-        """Compute the outputs of a built model that are not stored yet.
+        """Compute and store the outputs of a built model that are not stored yet.
 
         Raises
         ------
         AnalysisError
-            If the solid cannot be analysed as asked.
+            If the solid cannot be analysed as requested.
         DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
-            If the process was stopped, or stopped itself.
+            If the process exceeded a limit, crashed or was cancelled.
         """
         build = build_key(shape)
         with self.database.read() as session:
@@ -61,7 +61,7 @@ class AnalysisRunner:
     def _computed(
         self, shape: CadModel, question: Question, unknown: tuple[str, ...], step: str, context: Runner
     ) -> Computed:
-        """Return outputs from the file of the build, or from those of its throws, which are drawn for it."""
+        """Return outputs computed from the file of the build, or from its throws, drawn one by one."""
         if question.kind == BORE_COMPLIANCE:
             bytes_, place = self.store.read(step), bore_of(shape)
             return context.run(analyse_bore_in_worker, bytes_, place, question, limits=self.limits)
@@ -80,7 +80,7 @@ class AnalysisRunner:
         return context.run(analyse_in_worker, bytes_, shaft, throw, question, unknown, limits=self.limits)
 
     def _stored(self, output: Mapping[str, object]) -> StoredOutput:
-        """Return an output as its row holds it: for a file, its hash in the store."""
+        """Return an output in the form of its row: for a file, its hash in the store."""
         file = output.get(FILE)
         if not isinstance(file, bytes):
             return cast(StoredOutput, output)
@@ -89,7 +89,7 @@ class AnalysisRunner:
 
 
 def is_stored(outputs: Outputs, output: str, store: Artifacts) -> bool:
-    """Return whether an output is stored, and its file, if it is one, is good."""
+    """Return whether an output is stored; if it is a file, whether that file is valid."""
     return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
 
 
@@ -99,7 +99,7 @@ def bore_of(shape: CadModel) -> BorePlace:
     Raises
     ------
     AnalysisError
-        `no_bore`.
+        With code `no_bore`, if the model has none.
     """
     place = bore_place(shape)
     if place is None:
@@ -113,7 +113,7 @@ def shaft_of(shape: CadModel) -> Shaft:
     Raises
     ------
     AnalysisError
-        `no_shaft`.
+        With code `no_shaft`, if the model is not a shaft.
     """
     shaft = shape.shaft()
     if shaft is None:
@@ -127,7 +127,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     Raises
     ------
     AnalysisError
-        `no_throw`.
+        With code `no_throw`, if the model is not one throw of a crank, or has split pins.
     """
     if question.kind != UNIT_LOADS:
         return None
@@ -143,11 +143,12 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
 def analyse_in_worker(
     step: bytes, shaft: Shaft, crank: Crank | None, question: Question, outputs: tuple[str, ...]
 ) -> Computed:
-    """Return `cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process.
+    """Return the result of `cad.analysis.analyse.analyse`, and report progress to the job.
 
-    Of a throw's tables all are answered, whichever are asked for: they cost the same together.
+    This runs in the worker's process. Of a throw's tables all are returned, whichever are requested, because
+    computing them together costs the same.
     """
-    # The server imports this module too, and needs no solver.
+    # Imported here because the server also imports this module and needs no solver.
     from cad.analysis.analyse import AnalysisRequest, analyse
     from cad.analysis.throw_tables import unit_load_tables
 
@@ -165,11 +166,10 @@ def analyse_in_worker(
 
 
 def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> Computed:
-    """Return `cad.analysis.chain_answers.chain_answers` with progress reported to the job.
+    """Return the result of `cad.analysis.chain_answers.chain_answers`, and report progress to the job.
 
-    In the worker's process.
-
-    All outputs are answered, whichever are asked for: they cost the same together.
+    This runs in the worker's process. All outputs are returned, whichever are requested, because computing
+    them together costs the same.
     """
     from cad.analysis.chain_answers import chain_answers
 
@@ -183,9 +183,9 @@ def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> Computed:
 
 
 def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) -> Computed:
-    """Return `cad.analysis.bore_tables.bore_tables` with progress reported to the job.
+    """Return the result of `cad.analysis.bore_tables.bore_tables`, and report progress to the job.
 
-    In the worker's process.
+    This runs in the worker's process.
     """
     from cad.analysis.bore_tables import bore_tables
 

@@ -1,4 +1,4 @@
-"""All SQL of analyses: one row for each output that was computed."""
+"""All SQL for analyses: one row for each computed output."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from cad.regenerate import build_key
 
 
 def outputs_of(session: Session, key: str) -> Outputs:
-    """Return the stored outputs of a question about a build, by output."""
+    """Return the stored outputs of an analysis of a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: _output(row) for row in rows}
 
 
 def analysed(database: Database) -> Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]:
-    """Return a look-up of results of finite elements on models, where all wanted results are stored."""
+    """Return a function that looks up finite-element results of models, if all of them are stored."""
 
     def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
         with database.read() as session:
@@ -41,7 +41,7 @@ def analysed(database: Database) -> Callable[[CadModel, Question, tuple[str, ...
 
 
 def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str, Outputs]:
-    """Return the stored outputs of all questions about some builds, by key of the question and output."""
+    """Return the stored outputs of all analyses of some builds, by key of the analysis and output."""
     outputs: dict[str, dict[str, StoredOutput]] = {}
     for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
         outputs.setdefault(row.key, {})[row.output] = _output(row)
@@ -51,7 +51,7 @@ def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str,
 def stresses(session: Session, build: str, question: Question) -> Outputs:
     """Return the stored stresses of a build, at any level.
 
-    Their meshes follow from the stress.
+    The stress itself determines their meshes.
     """
     rows = session.scalars(
         select(AnalysisRow).where(AnalysisRow.build_key == build, AnalysisRow.output.in_(STRESSES))
@@ -67,7 +67,7 @@ def stresses(session: Session, build: str, question: Question) -> Outputs:
 
 
 def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
-    """Return the build, the question, and all its known answers.
+    """Return the build, the request, and all stored answers of an analysis.
 
     Raises
     ------
@@ -81,13 +81,13 @@ def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
 
 
 def key_of_surface(session: Session, sha256: str) -> str | None:
-    """Return the analysis whose surface has this hash; rare, so no index serves it."""
+    """Return the analysis whose surface has this hash; the query is rare, so it has no index."""
     named = type_coerce(AnalysisRow.found, Text).contains(f'"sha256":"{sha256}"', autoescape=True)
     return session.scalar(select(AnalysisRow.key).where(AnalysisRow.output == SURFACE, named).limit(1))
 
 
 def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
-    """Return every question about a build, by kind, with all its known answers."""
+    """Return every analysis of a build, by kind, with all stored answers."""
     rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.build_key == build)))
     grouped: dict[str, list[AnalysisRow]] = {}
     for row in sorted(rows, key=lambda row: (row.asked["kind"], row.key)):
@@ -96,7 +96,7 @@ def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
 
 
 def _together(rows: list[AnalysisRow]) -> tuple[Question, Outputs]:
-    """Return a question with its answers from their rows."""
+    """Return a request with its answers from their rows."""
     question = Question(**rows[0].asked)
     outputs = {row.output: _output(row) for row in rows}
     return question, {name: outputs[name] for name in in_order(question.kind, outputs)}
@@ -107,7 +107,7 @@ def _output(row: AnalysisRow) -> StoredOutput:
 
 
 def add(session: Session, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> None:
-    """Record outputs; the same computed twice is one."""
+    """Record outputs; an output that was computed twice is stored once."""
     key = question.key(build)
     for name, output in outputs.items():
         row = AnalysisRow(

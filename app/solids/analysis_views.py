@@ -1,4 +1,4 @@
-"""Analyses as the interface shows them, on their own and in designs."""
+"""Convert analyses, of builds and in designs, to the schemas of the interface."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cad.analysis.kinds import SURFACE
 
 
 def shown(model: Version, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> Analysis:
-    """Return one analysis in full. Outputs that were computed together have one mesh and one time."""
+    """Return one complete analysis. Outputs that were computed together have one mesh and one time."""
     meshes = [output["mesh"] for output in outputs.values()]
     levels = (output["level"] for output in outputs.values() if output["level"])
     fields = {
@@ -27,7 +27,7 @@ def shown(model: Version, build: str, question: Question, outputs: Mapping[str, 
 
 
 def in_design(build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> ModelAnalysis:
-    """Return an analysis in a revision, without times: equal revisions are equal."""
+    """Return an analysis in a revision, without times, so that equal revisions are equal."""
     return ModelAnalysis.model_validate(_fields(build, question, outputs))
 
 
@@ -51,5 +51,5 @@ def _timeless(output: StoredOutput) -> dict[str, object]:
 
 
 def _linked(key: str, name: str, output: Mapping[str, object]) -> dict[str, object]:
-    """Return an output; a file has a link."""
+    """Return an output, with a link if it is a file."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}

@@ -31,7 +31,7 @@ Output = Annotated[
 
 
 class AnalysisIn(Options):
-    """Analyse a model's solid by finite elements."""
+    """A request to analyse a model's solid by finite elements."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -46,5 +46,5 @@ class AnalysisIn(Options):
     outputs: list[Output] | None = Field(
         None,
         max_length=10,
-        description="what to compute; without it all but `maximum_stress`, which is expensive, and `surface`",
+        description="outputs to compute; default: all but `surface` and the expensive `maximum_stress`",
     )

@@ -1,4 +1,4 @@
-"""Builds, created in a worker process and stored with their STEP files; other files only on request.
+"""Create builds in a worker process, and store them with their STEP files; other files only on request.
 
 If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
 the row verifies the result.
@@ -46,22 +46,22 @@ STEP = "step"
 
 
 class Builds:
-    """Makes builds in a worker process and records them with their STEP files."""
+    """Creates builds in a worker process, and records them with their STEP files."""
 
     def __init__(self, database: Database, store: Artifacts, programs: Programs | None = None) -> None:
         self.database, self.store, self.programs = database, store, programs
 
     def make(self, shape: CadModel, context: Runner) -> None:
-        """Build a model unless it is built already and its STEP file is good.
+        """Build a model, unless it is built already and its STEP file is valid.
 
         Raises
         ------
         GeometryError
-            If the kernel fails, or makes anything but what was asked for.
+            If the kernel fails, or its result differs from what was requested.
         CannotRebuild
-            If the build is recorded, its file is lost, and what comes out now is another one.
+            If the build is recorded, its file is lost, and the program now makes a different file.
         DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
-            If the process was stopped, or stopped itself.
+            If the process exceeded a limit, crashed or was cancelled.
         """
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
@@ -74,7 +74,7 @@ class Builds:
             self.database.write(lambda session: self._record(session, shape, build, sha))
 
     def _built(self, shape: CadModel, context: Runner) -> Build:
-        """Return the build of a model; an imported one is drawn by its program first."""
+        """Return the build of a model; for an imported model its program draws it first."""
         source, texts = source_of(type(shape)), as_text(shape)
         if not isinstance(shape, ImportedModel):
             return context.run(build_in_worker, source, texts)
@@ -85,7 +85,7 @@ class Builds:
         return context.run(build_drawn_in_worker, source, texts, self.programs.draw(shape, context))
 
     def keep(self, shapes: Iterable[CadModel]) -> bool:
-        """Keep builds while the job that needs them runs; return whether all exist."""
+        """Protect builds from deletion while the job that needs them runs; return whether all exist."""
         keys = [build_key(shape) for shape in shapes]
         if not keys:
             return True
@@ -106,18 +106,17 @@ class Builds:
         self.make(shape, context)
 
     def derive(self, key: str, kind: str, context: Runner) -> None:
-        """Make a file of another kind from the good STEP file of a build, unless it is there and good.
+        """Create a file of another kind from the STEP file of a build, unless a valid one exists.
 
         A drawing of an older program, which has no room for a stamp, is drawn again.
 
-        A derived file depends on libraries that the build's key does not name. If its bytes come out
-        otherwise than before, it is another artifact, and the row names that one; but not where a signed
-        revision uses the build.
+        A derived file depends on libraries that the build's key does not name. If its bytes now differ, it
+        is another artifact, and the row then names that one, unless a signed revision uses the build.
 
         Raises
         ------
         CannotRebuild
-            If the bytes come out otherwise than those that were signed.
+            If the bytes differ from those that were signed.
         """
         row, step = self._row(key, kind), self._row(key, STEP)
         if row and self.store.exists(row.sha256) and not self._is_outdated(row):
@@ -129,9 +128,7 @@ class Builds:
             with self.database.read() as session:
                 if rows.is_signed(session, key):
                     raise _signed_otherwise(row)
-            logger.warning(
-                "%s of build %s: artifact %s is out of use, now it is %s", kind, key, row.sha256, sha
-            )
+            logger.warning("%s of build %s: artifact %s was replaced by %s", kind, key, row.sha256, sha)
         if row is None or row.sha256 != sha:
             self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
 
@@ -163,8 +160,8 @@ class Builds:
 
 def _changed(shape: CadModel, row: rows.Artifact) -> CannotRebuild:
     detail = (
-        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} makes "
-        "other bytes now: its file has been changed since. Put the old file back, or restore artifact "
+        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} now "
+        "gives different bytes because its file was changed. Put the old file back, or restore artifact "
         f"{row.sha256} from a backup"
     )
     return CannotRebuild("model_changed", detail)
@@ -172,7 +169,7 @@ def _changed(shape: CadModel, row: rows.Artifact) -> CannotRebuild:
 
 def _signed_otherwise(row: rows.Artifact) -> CannotRebuild:
     detail = (
-        f"file {row.kind} of build {row.build_key} is lost, and is made of other bytes now: libraries have "
+        f"file {row.kind} of build {row.build_key} is lost, and a new one has other bytes: libraries have "
         f"changed since. A signed revision has artifact {row.sha256}: restore it from a backup"
     )
     return CannotRebuild("signed_otherwise", detail)
@@ -180,9 +177,10 @@ def _signed_otherwise(row: rows.Artifact) -> CannotRebuild:
 
 @may_share(lambda source, texts: isinstance(source, FileSource) and not source.digest)
 def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
-    """Return `cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process.
+    """Return the result of `cad.regenerate.regenerate_class`, and report progress to the job.
 
-    The process may build for another job after a built-in model, never after a team's own code.
+    This runs in the worker's process. After a built-in model the process may build for another job, but
+    never after a team's own code.
     """
     cls = loaded(source)
     assert issubclass(cls, CadModel), "the source is that of a model"
@@ -190,7 +188,10 @@ def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
 
 
 def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: ProgramResult) -> Build:
-    """Return the build of what a program drew, checked like any other; runs in the worker's process."""
+    """Return the build of a model that a program drew, checked like any other.
+
+    This runs in the worker's process.
+    """
     shape = loaded(source).from_quantities(texts)
     assert isinstance(shape, ImportedModel), "the source is that of an imported model"
     shape.take(drawn)
@@ -198,12 +199,12 @@ def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Progr
 
 
 def rehearse(called: Callable[[], bool]) -> None:
-    """Build something small, in a worker's process that waits: a first build takes twice as long as a second.
+    """Build a small solid in an idle worker process, because a first build takes twice as long as a second.
 
     Raises
     ------
     InterruptedError
-        Between two of its steps, once it is called to its job; the kernel may word it as a GeometryError.
+        Between two steps, once the process receives its job; the kernel may turn this into a GeometryError.
     """
 
     def give_way(_done: float, _what: str) -> None:
@@ -215,7 +216,7 @@ def rehearse(called: Callable[[], bool]) -> None:
 
 @contextmanager
 def failures_named(model: str, analysis: str = "") -> Iterator[None]:
-    """Name the design's model in failures of its geometry, and the analysis in failures of an analysis."""
+    """Add the name of the design's model to errors of its geometry, and of the analysis to its errors."""
     try:
         yield
     except GeometryError as error:

@@ -1,4 +1,4 @@
-"""Measurements of a solid in the units of the interface."""
+"""Convert measurements of a solid to the units of the interface."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cad.overlaps import Clearance as ValueRange
 
 
 def clearance(one: ValueRange) -> Clearance:
-    """Return the distance and overlap of two parts of an assembly."""
+    """Return the distance and the overlap of two parts of an assembly."""
     overlap = {"overlap": Quantity(value=one.overlap, unit="mm**3")} if one.overlap else {}
     distance = Quantity(value=one.distance, unit="mm")
     return Clearance(parts=[one.one, one.other], distance=distance, **overlap)
@@ -25,7 +25,7 @@ def measurements(
     trust: str | None = None,
     clearances: Sequence[Mapping[str, object]] = (),
 ) -> Measurements:
-    """Return the measurements of a solid; builds of an older recipe have fewer."""
+    """Return the measurements of a solid; builds of an older recipe have fewer measurements."""
 
     def one(name: str) -> Quantity:
         return Quantity(value=measures[name], unit=MEASURES[name])
@@ -50,6 +50,6 @@ def measurements(
 
 
 def _dimension(size: Mapping[str, object]) -> Quantity | Values:
-    """Return one number, or the items of a list."""
+    """Return a dimension as one number, or as a list of its items."""
     is_list = isinstance(size["value"], list)
     return Values.model_validate(size) if is_list else Quantity.model_validate(size)

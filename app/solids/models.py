@@ -44,7 +44,7 @@ class File:
 
 
 class Models:
-    """Builds outside of any design, and files of builds inside and outside."""
+    """Provides builds outside of designs, and the files of all builds."""
 
     def __init__(self, database: Database, store: Artifacts, jobs: Jobs, catalogues: Catalogues) -> None:
         self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
@@ -55,7 +55,7 @@ class Models:
         return self.catalogues.models
 
     def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
-        """Return the job that makes a build and its files, or None if all exist."""
+        """Return the job that creates a build and its files, or None if all exist."""
         key = build_key(shape)
         with self.database.read() as session:
             there = rows.artifacts(session, key)
@@ -71,22 +71,22 @@ class Models:
         }
 
         def unit(session: Session) -> str | None:
-            if renew(session, [key]) and is_there:  # it did not go meanwhile
+            if renew(session, [key]) and is_there:  # it was not deleted meanwhile
                 return None
             return self.jobs.request(session, BUILD, payload, client)
 
         return self.jobs.commit(unit)
 
     def request_file(self, key: str, kind: str, client: str = "") -> str:
-        """Return the job that makes a file of a finished build, regardless of its recipe."""
+        """Return the job that creates a file of a finished build, whatever recipe made the build."""
         return self.request_files(key, (kind,), client)
 
     def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
-        """Return the job that makes several files of a finished build."""
+        """Return the job that creates several files of a finished build."""
         return self._requested([key], {"build": key, "kinds": [*kinds]}, client)
 
     def request_files_of_all(self, keys: Sequence[str], kinds: tuple[str, ...], client: str = "") -> str:
-        """Return the one job that makes files of several finished builds, in as few processes as possible."""
+        """Return the job that creates files of several finished builds, in as few processes as possible."""
         return self._requested(keys, {"builds": [*keys], "kinds": [*kinds]}, client)
 
     def _requested(self, keys: Sequence[str], payload: dict[str, str | list[str]], client: str) -> str:
@@ -97,7 +97,7 @@ class Models:
         return self.jobs.commit(unit)
 
     def show(self, key: str) -> Build:
-        """Return a build: its files and measures.
+        """Return a build with its files and measurements.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Models:
             )
 
     def file(self, key: str, kind: str) -> File | None:
-        """Return a file of a build, or None if it is not made yet."""
+        """Return a file of a build, or None if it does not exist yet."""
         with self.database.read() as session:
             row = rows.artifact(session, key, kind)
         return File(kind, row.sha256) if row else None
@@ -125,16 +125,16 @@ class Models:
     def verify(self, step: bytes) -> Verification:
         """Return the build of a STEP file, the revisions that use it, and whether its bytes are unchanged.
 
-        A file with validation properties, of a build whose own file has none, is compared with the stored
-        copy that has them. What the file states beside its shape is read and compared; what a stamp says is
-        not looked at.
+        If the file has validation properties and the build's own file has none, the file is compared with
+        the stored copy that has them. The statements in the file besides its shape are read and compared;
+        those in a stamp are ignored.
 
         Raises
         ------
         NotFound
-            If it does not say, or there is no such build here.
+            If the file does not name its build, or there is no such build here.
         ArtifactMissing, ArtifactDamaged
-            If it is not the file of the build as stored, and that is lost, so nothing can be compared.
+            If the file is not the stored one, and the stored one is lost, so that nothing can be compared.
         """
         header = read_header(step)
         if header is None:
@@ -157,25 +157,25 @@ class Models:
         return Verification.model_validate({**about, "statements": read} if read else about)
 
     def _compared_with(self, step: bytes, artifacts: Mapping[str, str]) -> tuple[str, str]:
-        """Return the kind and hash of the stored file of a build that a STEP file should be."""
+        """Return the kind and hash of the stored file with which a STEP file is compared."""
         copy = artifacts.get(VALIDATED)
         if copy is not None and is_validated(step) and not is_validated(self.store.read(artifacts["step"])):
             return VALIDATED, copy
         return "step", artifacts["step"]
 
     def _is_intact(self, step: bytes, sha: str) -> bool:
-        """Return whether a file is the artifact of this hash, with or without a stamp."""
+        """Return whether a file, with or without a stamp, is the artifact with this hash."""
         return hashlib.sha256(step).hexdigest() == sha or is_copy(step, self.store.read(sha))
 
 
 class ModelBuild:
-    """The handler of jobs of the kind `build`: a build and the files of it that are asked for."""
+    """The handler of jobs of the kind `build`, which create a build and the requested files."""
 
     def __init__(self, builds: Builds, catalogues: Catalogues) -> None:
         self.builds, self.catalogues = builds, catalogues
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Build, then derive.
+        """Build the model, then derive its files.
 
         Raises
         ------
@@ -197,9 +197,9 @@ class ModelBuild:
         return self._derived(key, asked["kinds"], context)
 
     def _derived_of_all(self, keys: Sequence[str], kinds: Sequence[str], context: JobContext) -> Completion:
-        """Return the files of several builds.
+        """Derive the files of several builds.
 
-        The error of one build is raised after the files of all others exist.
+        The error of one build is raised only after the files of all others exist.
         """
         failures: list[JobFailed | JobCrashed] = []
         for number, key in enumerate(keys):
@@ -228,9 +228,9 @@ LONGEST = 200
 
 
 def statements(original: bytes, step: bytes) -> list[StepStatement]:
-    """Return every statement of a build's STEP file beside that of another file.
+    """Return every statement in a build's STEP file, each with the corresponding one in another file.
 
-    Equal bytes are read once.
+    Files with equal bytes are read once.
     """
     expected = read_statements(original)
     read = expected if step is original else read_statements(step)

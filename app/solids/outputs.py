@@ -1,4 +1,4 @@
-"""An output of an analysis as its database row holds it."""
+"""An output of an analysis, as its database row stores it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TypedDict
 
 
 class Refinement(TypedDict):
-    """One step of the refinement until a stress settles."""
+    """One step of the mesh refinement until a stress converges."""
 
     elements: int
     value: float  # MPa under 1 N·m
@@ -23,7 +23,7 @@ class Mesh(TypedDict):
 
 
 class StoredOutput(TypedDict, total=False):
-    """An output as its row holds it; `app.solids.schemas.analyses.AnalysisOutput` describes its fields."""
+    """An output as its row stores it; `app.solids.schemas.analyses.AnalysisOutput` describes its fields."""
 
     value: float | list[float] | list[list[float]] | None
     unit: str | None
@@ -38,7 +38,7 @@ class StoredOutput(TypedDict, total=False):
     error_reason: str | None
     seconds: float
     sha256: str
-    size: int  # of the file [bytes]
+    size: int  # size of the file [bytes]
     triangles: int
 
 

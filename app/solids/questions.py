@@ -1,6 +1,6 @@
 """Finite-element analyses of a solid, and the cache key of each result.
 
-For the REST interface and for relations of designs. `cad.analysis.kinds` lists the analyses; it does not
+The REST interface and relations of designs use them. `cad.analysis.kinds` lists the analyses; it does not
 import the kernel that computes them.
 """
 
@@ -72,7 +72,7 @@ class Options(Bounded):
 
 @dataclass(frozen=True)
 class Question:
-    """An analysis as it was asked for."""
+    """A requested analysis."""
 
     kind: str
     boundary: Boundary
@@ -81,35 +81,35 @@ class Question:
     load: float = 1.0  # [N m]
 
     def key(self, build: str) -> str:
-        """Return the key of the answers for a build: SHA-256 of build, question, solver and recipe.
+        """Return the key of the answers for a build: SHA-256 of build, request, solver and recipe.
 
-        Not by the load: everything is linear in it, so what is kept is computed under 1 N·m.
+        The load is not part of it: all results are linear in the load, so they are stored for 1 N·m.
         """
         identity = [build, self.kept(), _MADE_BY]
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
 
     def whatever_level(self) -> Question:
-        """Return the question without level, under 1 N·m: a stress refines its own mesh."""
+        """Return the request without its level, under 1 N·m, because a stress refines its own mesh."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """Return the question as stored with its answers, without the load."""
+        """Return the request as stored with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:
-        """Return the question in the form of an answer."""
+        """Return the request in the form of a response."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
 
 def question(kind: str, options: Options) -> Question:
-    """Return the question from options of a kind; the defaults are the default level and a load of 1 N·m."""
+    """Return the requested analysis with these options; the defaults are the default level and 1 N·m."""
     level = options.level or (None if options.tolerance else DEFAULT_LEVEL)
     load = 1.0 if options.load is None or load_faults(options.load) else load_of(options.load)
     return Question(kind, options.boundary, level, options.tolerance, load)
 
 
 def load_of(raw: Raw) -> float:
-    """Return a load [N·m] without faults."""
+    """Return a load [N·m] that has no faults."""
     return float(read(raw, "N*m").si)
 
 
@@ -142,7 +142,7 @@ _OF_TABLES = {
 
 
 def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
-    """Yield the options that tables do not have."""
+    """Yield a fault for each option that analyses with tables do not have."""
     why = _OF_TABLES[kind]
     if options.boundary != "free_end":
         yield Fault("boundary", "not_offered", f"{kind} {why['boundary']}: leave boundary out")
@@ -166,7 +166,7 @@ def load_faults(raw: Raw) -> list[Fault]:
 
 
 def under_load(asked: Question, outputs: Mapping[str, StoredOutput]) -> Outputs:
-    """Return outputs under the load of the question from those under 1 N·m.
+    """Return outputs under the requested load, computed from those under 1 N·m.
 
     Stress is proportional to the load.
     """
@@ -183,12 +183,12 @@ def _times(load: float, stress: StoredOutput) -> StoredOutput:
 
 
 def offered(kind: str) -> tuple[str, ...]:
-    """Return all outputs of a kind that can be requested."""
+    """Return all outputs that an analysis of this kind can compute."""
     return (*KINDS[kind],) if kind in WITHOUT_SURFACE else (*KINDS[kind], SURFACE)
 
 
 def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
-    """Return outputs of a kind, each once and always in the same order."""
+    """Return outputs of a kind in a fixed order, each only once."""
     return tuple(name for name in offered(kind) if name in outputs)
 
 
@@ -202,9 +202,9 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 
 
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
-    """Return why solids of a model cannot be analysed in this way; None if they can."""
+    """Return why solids of a model do not allow this kind of analysis; None if they do."""
     if kind == BORE_COMPLIANCE:
-        from cad.shells.bore_place import has_split_bore  # it draws too
+        from cad.shells.bore_place import has_split_bore  # this module also draws
 
         if has_split_bore(cls):
             return None
@@ -214,7 +214,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
         return Fault("model", "no_shaft", reason)
     if kind not in (UNIT_LOADS, CHAIN) or (kind == UNIT_LOADS and cls.is_throw()):
         return None
-    from cad.cranks.chain_throw import has_throws  # it draws, so it brings the kernel
+    from cad.cranks.chain_throw import has_throws  # this module draws, so it imports the kernel
 
     if has_throws(cls):
         return None
@@ -242,7 +242,7 @@ def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:
 
 
 def warnings(asked: Question, outputs: Mapping[str, StoredOutput]) -> list[dict[str, str]]:
-    """Return the outputs whose error may be larger than requested."""
+    """Return warnings for outputs whose error may be larger than requested."""
     wanted = asked.tolerance
     return [
         {"code": "tolerance_unmet", "name": name, "detail": _unmet(error, wanted)}

@@ -1,4 +1,4 @@
-"""Rebuild missing or damaged files: the jobs that create them again."""
+"""Rebuild missing or damaged files by jobs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.storage.database import Database
 from app.storage.errors import ArtifactMissing, CannotRebuild
 from cad.regenerate import build_key
 
-REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they start no other job
+REMEMBERED = 1000  # artifacts that could not be rebuilt, for which requests start no other job
 
 
 class ArtifactRepair:
@@ -32,19 +32,19 @@ class ArtifactRepair:
     def is_good(self, sha: str) -> bool:
         """Return whether an artifact exists with the right bytes.
 
-        Otherwise what is there has been set aside.
+        A file with wrong bytes is set aside.
         """
         return self.store.exists(sha)
 
     def request(self, sha: str) -> str:
-        """Return the job that makes an artifact again.
+        """Return the job that rebuilds an artifact.
 
         Raises
         ------
         ArtifactMissing
-            No row names the artifact.
+            If no row names the artifact.
         CannotRebuild
-            It cannot be made again under its hash; its replacement is on its way.
+            If it cannot be rebuilt with its hash; a job creates its replacement.
         """
         with self.database.read() as session:
             row = rows.artifact_named(session, sha)
@@ -56,12 +56,12 @@ class ArtifactRepair:
         raise ArtifactMissing(sha)
 
     def refused(self, sha: str) -> JsonObject | None:
-        """Return the problem for which an artifact could not be made again since the service started."""
+        """Return the problem that has prevented rebuilding an artifact since the service started, if any."""
         with self._lock:
             return self._refused.get(sha)
 
     def refuse(self, sha: str, problem: JsonObject) -> None:
-        """Remember why an artifact cannot be made again: nothing but a new start with other files helps."""
+        """Remember why an artifact cannot be rebuilt, until the service restarts."""
         with self._lock:
             self._refused[sha] = problem
             while len(self._refused) > REMEMBERED:
@@ -78,7 +78,7 @@ class ArtifactRepair:
         raise error
 
     def _needs_another(self, session: Session, key: str) -> bool:
-        """Return whether a build's STEP file is lost and this program would make another build of it."""
+        """Return whether a build's STEP file is lost and this program would make a different build of it."""
         step = rows.artifact(session, key, "step")
         if step and self.store.exists(step.sha256):
             return False
@@ -86,9 +86,9 @@ class ArtifactRepair:
 
 
 def other_bytes(sha: str) -> CannotRebuild:
-    """Return the artifact whose recalculation gave other bytes."""
+    """Return the artifact whose recalculation gave different bytes."""
     detail = (
-        f"artifact {sha} is lost. It was made again from its row and has other bytes now, because libraries "
+        f"artifact {sha} is lost. It was rebuilt from its row and now has different bytes, because libraries "
         "have changed since: GET the build, the revision or the analysis that names it for the new hash"
     )
     return CannotRebuild("other_bytes", detail)

@@ -1,7 +1,7 @@
-"""All SQL of builds and their artifacts, and the ages of unused builds.
+"""All SQL for builds and their artifacts, and the ages of unused builds.
 
-A build that no revision uses is deleted after a time, see `app.retention`. A caller that needs a build renews
-its age in the same unit of work, or is told there that the build was deleted.
+A build that no revision uses is deleted after some time, see `app.retention`. A caller that needs a build
+renews its age in the same unit of work, or learns there that the build was deleted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _ARTIFACTS = Base.metadata.tables[ArtifactRow.__tablename__]
 
 
 class Build(NamedTuple):
-    """A build as it was recorded."""
+    """A recorded build."""
 
     key: str
     model: str
@@ -76,16 +76,17 @@ def build(session: Session, key: str) -> Build | None:
 
 
 def measures(session: Session, key: str) -> Mapping[str, float] | None:
-    """Return the measures of a build, if it exists."""
+    """Return the measurements of a build, if it exists."""
     for (measured,) in _MEASURED.run(session, {"of": key}):
         return dict(measured["measures"])
     return None
 
 
 def built(database: Database) -> Callable[[CadModel], Mapping[str, float] | None]:
-    """Return a look-up of what built models measure.
+    """Return a function that looks up the measurements of built models.
 
-    A step may take minutes: so it is looked up when it is asked for, and no connection is held meanwhile.
+    It reads them only when a step needs them, because a step may take minutes, and holds no connection
+    meanwhile.
     """
 
     def measured(shape: CadModel) -> Mapping[str, float] | None:
@@ -103,7 +104,7 @@ def artifact(session: Session, key: str, kind: str) -> Artifact | None:
 
 
 def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
-    """Return an artifact by the hash of its bytes; several builds may have files of equal bytes."""
+    """Return an artifact by the hash of its bytes; several builds may have files with equal bytes."""
     return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
 
 
@@ -114,7 +115,7 @@ def artifacts(session: Session, key: str | None) -> dict[str, str]:
 
 
 def builds(session: Session, keys: Collection[str]) -> dict[str, BuildRow]:
-    """Return those of several builds that were made, by key."""
+    """Return the existing ones of several builds, by key."""
     return {row.key: row for row in session.scalars(select(BuildRow).where(BuildRow.key.in_(keys)))}
 
 
@@ -135,7 +136,7 @@ def add_build(
     measured: JsonObject,
     maker: str,
 ) -> None:
-    """Record a build; the same build made twice is one."""
+    """Record a build; a build that was made twice is stored once."""
     row = {
         "key": key,
         "model": model,
@@ -160,7 +161,7 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
 def users_of(session: Session, key: str) -> list[dict[str, object]]:
     """Return the revisions that use a build, oldest first, and whether each is its design's newest.
 
-    A revision stands there once for its own models, and once for each of its variants.
+    A revision is listed once for its own models, and once for each of its variants.
     """
     query = (
         select(RevisionModelRow.design_id, RevisionModelRow.number, RevisionModelRow.name, DesignRow.head)
@@ -172,7 +173,7 @@ def users_of(session: Session, key: str) -> list[dict[str, object]]:
 
 
 def is_signed(session: Session, key: str) -> bool:
-    """Return whether a revision that was handed over for checking, or signed further, uses a build."""
+    """Return whether a signed revision uses a build; hand-over for checking counts as signed."""
     signed = (
         select(ApprovalRow.step)
         .join(
@@ -186,7 +187,7 @@ def is_signed(session: Session, key: str) -> bool:
 
 
 def _use(design: str, number: int, model: str, head: int) -> dict[str, object]:
-    """Return a use of a build; a dot in the name of the model stands behind that of a variant."""
+    """Return a use of a build; the stored name of a variant's model is the variant, a dot, and the model."""
     variant = variant_of(model)
     more = {} if variant is None else {"variant": variant}
     return {"design": design, "revision": number, "current": number == head, **more}
@@ -198,17 +199,17 @@ FRESH = (
 
 
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
-    """Return whether all of these builds exist, and will stay longer than any request or job takes."""
+    """Return whether all of these builds exist, and will remain longer than any request or job takes."""
     wanted, present = set(keys), operated(session)
     seen = _seen(session, wanted)
     return len(seen) == len(wanted) and min(map(itemgetter(1), seen), default=present) >= present - FRESH
 
 
 def renew(session: Session, keys: Collection[str]) -> bool:
-    """Renew the age of builds in a unit of work; return whether all of them are there.
+    """Renew the age of builds in a unit of work; return whether all of them exist.
 
-    A build that was wanted within the last hour stays as it is, so units that share one do not wait for each
-    other: none of them locks its row.
+    The row of a build that was renewed within the last hour is not touched, so units that share a build do
+    not wait for each other's row lock.
     """
     if not keys:
         return True
@@ -218,12 +219,12 @@ def renew(session: Session, keys: Collection[str]) -> bool:
     if not old:
         return len(seen) == len(wanted)
     renewal = update(BuildRow).where(BuildRow.key.in_(old)).values(operated=present)
-    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # what is not deleted meanwhile
+    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # those not deleted in the meantime
     return len(seen) - len(old) + len(renewed) == len(wanted)
 
 
 def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
-    """Return the key and age of those of these builds that are there."""
+    """Return the key and age of the existing ones of these builds."""
     ages = _ages(len(keys))
     return ages.run(session, dict(zip(ages.names, keys, strict=True)))
 

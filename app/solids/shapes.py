@@ -1,4 +1,4 @@
-"""The model of a build, created from its row."""
+"""Create the model of a build from its row."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ OLDER = "an older version of this program"
 def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadModel:
     """Return the model of a build, with its parameters.
 
-    Its key may be another, if another recipe made the build.
+    Its key differs if another recipe made the build.
 
     Raises
     ------
     NotFound
         If there is no such build.
     CannotRebuild
-        If the model is gone, or refuses the parameters that it took.
+        If the model no longer exists, or refuses the parameters that it once accepted.
     """
     row = rows.build(session, key)
     if row is None:
@@ -42,9 +42,9 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
 
 
 def built_by_another(session: Session, key: str, shape: CadModel) -> CannotRebuild:
-    """Return why a build cannot be made again by this program.
+    """Return the problem that this program cannot rebuild a build.
 
-    The link leads to the build that it makes instead.
+    The problem links to the build that the program makes instead.
     """
     row = rows.build(session, key)
     maker, now = (row.made_by if row else "") or OLDER, made_by(type(shape))
@@ -56,6 +56,6 @@ def built_by_another(session: Session, key: str, shape: CadModel) -> CannotRebui
         return CannotRebuild("model_changed", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})
     detail = (
         f"build {key} was made by {maker}; this program ({now}) makes another build of the same "
-        "parameters. Restore the file from a backup, or take the new build"
+        "parameters. Restore the file from a backup, or use the new build"
     )
     return CannotRebuild("other_recipe", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})

@@ -1,1 +1,1 @@
-"""Storage: the database with its one writer, the artifacts, and the folder that holds both."""
+"""Storage: the database with its single writer, the artifacts, and the folder that contains both."""

@@ -1,4 +1,4 @@
-"""Files named by the SHA-256 of their bytes: written whole or not at all, verified when they are read."""
+"""Store files under the SHA-256 of their bytes: written whole or not at all, verified when read."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from app.storage.verification import OpenFile, Stamp, VerifiedStamps, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")
-OWNER = "database"  # under which a store that is shared holds the identity of its database
-LOCK = "crankwright.lock"  # of a folder that several servers share
-ABANDONED = 3600.0  # age of a temporary file that no running server writes any more [s]
+OWNER = "database"  # name under which a shared store has the identity of its database
+LOCK = "crankwright.lock"  # name of the lock file in a folder that several servers share
+ABANDONED = 3600.0  # age from which a temporary file counts as abandoned [s]
 _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 
 
@@ -34,7 +34,7 @@ _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 class StoredFile:
     """A file in the store: its name, its size [bytes] and when it was last put [s since 1970].
 
-    A discarded one lies in a bucket's `discarded/`, whence it comes back if it is asked for.
+    A discarded file is in a bucket's `discarded/` and is restored if it is requested.
     """
 
     sha: str
@@ -44,10 +44,9 @@ class StoredFile:
 
 
 class Artifacts(Protocol):
-    """A store of artifacts: the operations that each offers.
+    """The interface of an artifact store.
 
-    A store that cannot be reached raises ArtifactsUnreachable; it never takes its own silence for a missing
-    file.
+    A store that cannot be reached raises ArtifactsUnreachable; it never reports a missing file instead.
     """
 
     @property
@@ -58,33 +57,33 @@ class Artifacts(Protocol):
     def put(self, *parts: bytes | memoryview) -> str:
         """Store bytes, whole or in parts, and return their SHA-256; they are durable when it returns.
 
-        Bytes that are stored already become as young as new ones, so that no sweep deletes them before their
-        row is written.
+        If the bytes are stored already, their age is renewed, so that no sweep deletes them before their row
+        is written.
         """
         ...
 
     def fetch(self, sha: str) -> Path:
-        """Return the path of the verified bytes; raises ArtifactMissing, ArtifactDamaged."""
+        """Return the path of the verified bytes; raise ArtifactMissing or ArtifactDamaged otherwise."""
         ...
 
     def read(self, sha: str) -> bytes:
-        """Return the verified bytes; raises as `fetch` does."""
+        """Return the verified bytes; raise the same errors as `fetch`."""
         ...
 
     def open(self, sha: str) -> OpenFile:
-        """Open the verified bytes for reading; they stay although the file is deleted; raises as `fetch`."""
+        """Open the verified bytes for reading, even if the file is deleted later; raise as `fetch` does."""
         ...
 
     def exists(self, sha: str) -> bool:
-        """Return whether the bytes are there and good."""
+        """Return whether the bytes exist and are good."""
         ...
 
     def delete(self, sha: str) -> None:
-        """Remove the bytes, if they are there."""
+        """Delete the bytes if they exist."""
         ...
 
     def delete_unchanged(self, seen: StoredFile) -> bool:
-        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        """Delete a file unless it was put again since it was listed; return whether it was deleted."""
         ...
 
     def list(self) -> Iterator[StoredFile]:
@@ -92,29 +91,29 @@ class Artifacts(Protocol):
         ...
 
     def claim(self, owner: str) -> str:
-        """Claim the store for an owner, if it has none; return its owner."""
+        """Claim the store for an owner if it has none; return its owner."""
         ...
 
     def read_note(self, name: str) -> str | None:
-        """Read the note of a name that is not a hash; None if there is none."""
+        """Return the note with a name that is not a hash; None if there is none."""
         ...
 
     def write_note(self, name: str, text: str) -> None:
-        """Write a note of the store under a name, and replace any earlier one."""
+        """Write a note under a name, and replace any earlier one."""
         ...
 
     def probe(self) -> None:
-        """Check that the store answers; raises ArtifactsUnreachable."""
+        """Check that the store answers; raise ArtifactsUnreachable if not."""
         ...
 
 
 class ArtifactStore:
     """Artifacts in a folder, spread over 256 folders by the first two digits of their names.
 
-    Without `is_shared` one process writes at a time (see `DataFolder`), so temporary files present at the
-    start are left-overs. In a folder that several servers share only old ones are.
-    A file whose bytes no longer have its hash goes into the folder `quarantine` and is never served.
-    Files that need not be durable, because they are copies, are not synced.
+    Unless `is_shared`, only one process writes at a time (see `DataFolder`), so temporary files present at
+    the start are left-overs. In a folder that several servers share, only old temporary files are. A file
+    whose bytes no longer match its hash is moved to the folder `quarantine` and never served. Files that need
+    not be durable, because they are copies, are not synced.
     """
 
     def __init__(self, folder: Path, *, is_shared: bool = False, is_durable: bool = True) -> None:
@@ -122,19 +121,19 @@ class ArtifactStore:
         self._is_durable = is_durable
         self._verified = VerifiedStamps()
         folder.mkdir(parents=True, exist_ok=True)
-        # Nobody deletes or sets aside a file while it is put.
+        # The lock prevents that a file is deleted or set aside while it is put.
         self._changing = SharedLock(folder / LOCK) if is_shared else OwnLock()
         oldest = time.time() - ABANDONED if is_shared else math.inf
-        with self._changing.putting():  # also shows that the folder can be written
+        with self._changing.putting():  # also verifies that the folder can be written
             for stale in folder.glob(f"*/{TEMPORARY}*"):
                 with suppress(FileNotFoundError):  # another server has just renamed or deleted it
                     if stale.stat().st_mtime < oldest:
                         stale.unlink()
 
     def put(self, *parts: bytes | memoryview) -> str:
-        """Store bytes, whole or in parts, durably and return their SHA-256; the same bytes are stored once.
+        """Store bytes, whole or in parts, durably and return their SHA-256; equal bytes are stored once.
 
-        A file that is there keeps its bytes, if they are good, and is as young as if it were new.
+        An existing file is kept if its bytes are good, and its age is renewed.
         """
         sha = hashed(parts)
         target = self._location(sha)
@@ -154,15 +153,15 @@ class ArtifactStore:
         Raises
         ------
         ArtifactMissing
-            Nothing is stored under this name, or it is not a SHA-256.
+            If nothing is stored under this name, or the name is not a SHA-256.
         ArtifactDamaged
-            The bytes had another hash; the file has been set aside.
+            If the bytes had another hash; the file has been set aside.
         """
         with self.open(sha):
             return self._location(sha)
 
     def read(self, sha: str) -> bytes:
-        """Return the bytes of an artifact, verified by themselves; raises as `fetch` does."""
+        """Return the verified bytes of an artifact; raise the same errors as `fetch`."""
         with self._opened(sha) as file:
             try:
                 data = file.read()
@@ -173,10 +172,10 @@ class ArtifactStore:
         return data
 
     def open(self, sha: str) -> OpenFile:
-        """Open a verified artifact for reading; raises as `fetch` does.
+        """Open a verified artifact for reading; raise the same errors as `fetch`.
 
-        The file stays the verified one even if another takes its name. Its bytes are hashed once for every
-        inode, size and times that it shows.
+        The open file stays the verified one even if another file replaces it. Its bytes are hashed once for
+        every combination of inode, size and times.
         """
         file = self._opened(sha)
         try:
@@ -186,9 +185,9 @@ class ArtifactStore:
             raise
 
     def exists(self, sha: str) -> bool:
-        """Return whether the artifact exists and its bytes still have this hash.
+        """Return whether the artifact exists and its bytes still match its hash.
 
-        A damaged one is set aside.
+        A damaged artifact is set aside.
         """
         try:
             self.open(sha).file.close()
@@ -197,13 +196,13 @@ class ArtifactStore:
         return True
 
     def delete(self, sha: str) -> None:
-        """Remove an artifact, if it is there."""
+        """Delete an artifact if it exists."""
         with self._changing.removing():
             self._location(sha).unlink(missing_ok=True)
         self._verified.forget(sha)
 
     def delete_unchanged(self, seen: StoredFile) -> bool:
-        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        """Delete a file unless it was put again since it was listed; return whether it was deleted."""
         location = self._location(seen.sha)
         with self._changing.removing(), suppress(FileNotFoundError):
             if location.stat().st_mtime == seen.modified:
@@ -213,42 +212,42 @@ class ArtifactStore:
         return False
 
     def list(self) -> Iterator[StoredFile]:
-        """Yield every artifact in the folder, verified or not, without those that were set aside."""
+        """Yield every artifact in the folder, verified or not, except those that were set aside."""
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
-                with suppress(FileNotFoundError):  # deleted meanwhile
+                with suppress(FileNotFoundError):  # deleted in the meantime
                     seen = path.lstat()
                     yield StoredFile(path.name, seen.st_size, seen.st_mtime)
 
     def claim(self, owner: str) -> str:
-        """Claim the folder for an owner, if it has none; return its owner."""
+        """Claim the folder for an owner if it has none; return its owner."""
         descriptor, temporary = tempfile.mkstemp(dir=self.folder, prefix=TEMPORARY)
         try:
             with os.fdopen(descriptor, "w") as file:
                 file.write(owner)
                 file.flush()
                 os.fsync(descriptor)
-            with suppress(FileExistsError):  # of two who link at once, one is first
+            with suppress(FileExistsError):  # another server may have claimed it at the same time
                 os.link(temporary, self.folder / OWNER)
         finally:
             os.unlink(temporary)
         return (self.read_note(OWNER) or "").strip()
 
     def read_note(self, name: str) -> str | None:
-        """Read the note of a name; None if there is none."""
+        """Return the note with a name; None if there is none."""
         try:
             return (self.folder / name).read_text(errors="replace")
         except FileNotFoundError:
             return None
 
     def write_note(self, name: str, text: str) -> None:
-        """Write a note of the folder under a name, durably."""
+        """Write a note under a name in the folder, durably."""
         with self._changing.putting():
             write_whole(self.folder / name, [text.encode()], self._clear, is_durable=self._is_durable)
         sync_folder(self.folder)
 
     def probe(self) -> None:
-        """Check that the folder is there; raises ArtifactsUnreachable."""
+        """Check that the folder can be read; raise ArtifactsUnreachable if not."""
         try:
             self.folder.stat()
         except OSError as error:
@@ -274,24 +273,24 @@ class ArtifactStore:
             if not stat.S_ISREG(location.lstat().st_mode):  # a pipe, a link, a folder
                 raise ArtifactMissing(sha)
             return location.open("rb")
-        except (FileNotFoundError, IsADirectoryError):  # since it was looked at
+        except (FileNotFoundError, IsADirectoryError):  # removed or replaced in the meantime
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
-        """Set aside an object that is not a file but has the name of one, such as a folder."""
+        """Set aside an object that has the name of a file but is none, such as a folder."""
         if target.is_dir() and not target.is_symlink():
             aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
             aside.parent.mkdir(exist_ok=True)
             os.replace(target, aside)
 
     def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
-        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is."""
+        """Return ArtifactDamaged if the disk cannot read the bytes; return any other error unchanged."""
         if error.errno not in _FAILING_DISK:
             return error
         return self._set_aside(sha, stamp_of(file), f"the disk cannot read it ({error.strerror})")
 
     def _set_aside(self, sha: str, stamp: Stamp, reason: str) -> ArtifactDamaged:
-        """Move the damaged file away, unless good bytes have taken its place meanwhile."""
+        """Move the damaged file away, unless good bytes have replaced it in the meantime."""
         self._verified.forget(sha)
         location, aside = self._location(sha), self.folder / QUARANTINE / f"{sha}.damaged-{_moment()}"
         with self._changing.removing(), suppress(FileNotFoundError):
@@ -302,7 +301,7 @@ class ArtifactStore:
         return ArtifactDamaged(sha, reason)
 
     def _renewed(self, path: Path) -> bool:
-        """Make a file as young as a new one, for `delete_unchanged`; return whether it was still there."""
+        """Renew the age of a file, for `delete_unchanged`; return whether the file still exists."""
         with self._changing.putting(), suppress(FileNotFoundError):
             os.utime(path)
             return True
@@ -314,19 +313,19 @@ class ArtifactStore:
 
 
 def require_name(sha: str) -> None:
-    """Check that this is a hash: names come from URLs, and any other could lead out of the store.
+    """Check that a name is a hash: names come from URLs, and any other name could lead out of the store.
 
     Raises
     ------
     ArtifactMissing
-        It is not a hash.
+        If it is not a hash.
     """
     if not SHA256.fullmatch(sha):
         raise ArtifactMissing(sha)
 
 
 def hashed(parts: Iterable[bytes | memoryview]) -> str:
-    """Return the SHA-256 of bytes in parts."""
+    """Return the SHA-256 of bytes that are given in parts."""
     total = hashlib.sha256()
     for part in parts:
         total.update(part)

@@ -1,6 +1,6 @@
-"""Artifacts in a bucket of S3, served from verified copies on this machine.
+"""Artifacts in an S3 bucket, served from verified copies on this machine.
 
-The bucket holds `<sha>`, the files; `database`, the identity of their database; `sweeps`, the last
+The bucket contains `<sha>`, the files; `database`, the identity of their database; `sweeps`, the last
 collections; `quarantine/<sha>.<tag>`, copies of files whose bytes do not match their name; `discarded/<sha>`,
 unreferenced files, kept until the next sweep.
 
@@ -25,13 +25,13 @@ from app.storage.verification import Newest, OpenFile
 
 logger = logging.getLogger(__name__)
 
-YOUNG = 3600.0  # an object of this age is not renewed: no sweep's grace is so short [s]
+YOUNG = 3600.0  # a younger object is not renewed, because every sweep waits longer than this [s]
 DISCARDED = "discarded/"
-_TRIES = 2  # at a download whose bytes are not those of the name
+_TRIES = 2  # attempts at a download whose bytes do not match the name
 
 
 class BucketStore:
-    """Artifacts in a bucket. `on_look` is called with whether a read found its copy on this machine."""
+    """Artifacts in a bucket. `on_look` is called at each read with whether a local copy was found."""
 
     is_shared = True
 
@@ -39,15 +39,15 @@ class BucketStore:
         self, bucket: Bucket, copies: Copies, on_look: Callable[[bool], object] | None = None
     ) -> None:
         self._bucket, self._copies = bucket, copies
-        self._tags: Newest[str] = Newest()  # of objects whose bytes this process has hashed or sent
+        self._tags: Newest[str] = Newest()  # tags of objects whose bytes this process has hashed or sent
         self._on_look = on_look or (lambda is_there: None)
-        self._fetching = [threading.Lock() for _ in range(16)]  # by the first digit: one download at a time
+        self._fetching = [threading.Lock() for _ in range(16)]  # one download at a time for each first digit
 
     def put(self, *parts: bytes | memoryview) -> str:
         """Store bytes in the bucket, and return their SHA-256; a copy stays on this machine.
 
-        If-None-Match keeps simultaneous puts apart. An object that is there already is replaced by the same
-        bytes, which renews its age and repairs it, unless this process knows it to be good and young.
+        If-None-Match separates simultaneous puts. An existing object is replaced by the same bytes, which
+        renews its age and repairs it, unless this process knows that it is good and young.
         """
         sha, data = hashed(parts), b"".join(parts)
         if not self._is_good_and_young(sha):
@@ -59,12 +59,12 @@ class BucketStore:
         return sha
 
     def fetch(self, sha: str) -> Path:
-        """Return the path of a verified copy; it stays there for a minute. Raises as `open` does."""
+        """Return the path of a verified copy, which exists for at least a minute; raise as `open` does."""
         with self.open(sha):
             return self._copies.path(sha)
 
     def read(self, sha: str) -> bytes:
-        """Return the verified bytes; raises as `open` does."""
+        """Return the verified bytes; raise the same errors as `open`."""
         require_name(sha)
         data = self._copies.read(sha)
         self._on_look(data is not None)
@@ -74,16 +74,16 @@ class BucketStore:
         return data
 
     def open(self, sha: str) -> OpenFile:
-        """Open a verified copy for reading, downloaded if there is none on this machine.
+        """Open a verified copy for reading; download it if this machine has none.
 
         Raises
         ------
         ArtifactMissing
-            The bucket has no such object, or the name is not a SHA-256.
+            If the bucket has no such object, or the name is not a SHA-256.
         ArtifactDamaged
-            Its bytes have another hash; a copy of it lies under `quarantine/`.
+            If its bytes have another hash; a copy of it is stored under `quarantine/`.
         ArtifactsUnreachable
-            There is no copy, and the bucket does not answer.
+            If there is no copy, and the bucket does not answer.
         """
         require_name(sha)
         opened = self._copies.open(sha)
@@ -101,8 +101,9 @@ class BucketStore:
     def exists(self, sha: str) -> bool:
         """Return whether the bucket has the bytes, and they are good.
 
-        It asks the bucket, so that an object that somebody deleted is noticed. What the bucket has lost and
-        this machine still holds is put back. While the bucket does not answer, a copy is enough.
+        The method asks the bucket, so that it notices a deleted object. If the bucket has lost an object of
+        which this machine has a copy, the object is put back. If the bucket does not answer, a copy is
+        enough.
         """
         if not SHA256.fullmatch(sha):
             return False
@@ -116,7 +117,7 @@ class BucketStore:
             raise
 
     def delete(self, sha: str) -> None:
-        """Remove an object and its copy on this machine, if they are there."""
+        """Delete an object and its copy on this machine if they exist."""
         require_name(sha)
         for key in (sha, DISCARDED + sha):
             self._bucket.delete(key)
@@ -126,8 +127,8 @@ class BucketStore:
     def delete_unchanged(self, seen: StoredFile) -> bool:
         """Move an object to `discarded/` unless it was put again since; delete it for good from there.
 
-        S3 cannot delete on a condition: a put between the last look and the deletion would lose its bytes.
-        They are in `discarded/` then, where readers and the next sweep find them, so nothing is lost.
+        S3 cannot delete conditionally: a put between the last check and the deletion would lose its bytes. In
+        `discarded/` readers and the next sweep still find them, so nothing is lost.
         """
         key = DISCARDED + seen.sha if seen.is_discarded else seen.sha
         if not _is_same(self._bucket.head(key), seen):
@@ -142,35 +143,35 @@ class BucketStore:
         return True
 
     def list(self) -> Iterator[StoredFile]:
-        """Yield every object, verified or not, and the discarded ones, without those that were set aside."""
+        """Yield every object, verified or not, and the discarded ones, except those that were set aside."""
         for key, entry in self._bucket.list():
             sha = key.removeprefix(DISCARDED)
             if SHA256.fullmatch(sha):
                 yield StoredFile(sha, entry.size, entry.modified, is_discarded=sha != key)
 
     def claim(self, owner: str) -> str:
-        """Claim the bucket for an owner, if it has none; return its owner."""
+        """Claim the bucket for an owner if it has none; return its owner."""
         while self._bucket.create(OWNER, owner.encode()) is None:
-            if answer := self._bucket.get(OWNER):  # nobody has deleted it meanwhile
+            if answer := self._bucket.get(OWNER):  # it still exists
                 return answer[0].decode(errors="replace").strip()
         return owner
 
     def read_note(self, name: str) -> str | None:
-        """Read the note of a name; None if there is none."""
+        """Return the note with a name; None if there is none."""
         answer = self._bucket.get(name)
         return None if answer is None else answer[0].decode(errors="replace")
 
     def write_note(self, name: str, text: str) -> None:
-        """Write a note of the bucket under a name."""
+        """Write a note under a name in the bucket."""
         self._bucket.replace(name, text.encode())
 
     def probe(self) -> None:
-        """Check that the bucket answers; raises ArtifactsUnreachable."""
+        """Check that the bucket answers; raise ArtifactsUnreachable if not."""
         self._bucket.probe()
 
     def _download(self, sha: str) -> bytes:
-        """Return the bytes in the bucket, verified; raises as `open` does."""
-        for _ in range(_TRIES):  # the second time because a connection may have broken off unnoticed
+        """Return the verified bytes from the bucket; raise the same errors as `open`."""
+        for _ in range(_TRIES):  # a second attempt, because a connection may break off unnoticed
             answer = self._bucket.get(sha) or self._brought_back(sha)
             if answer is None:
                 self._tags.forget(sha)
@@ -180,16 +181,16 @@ class BucketStore:
                 self._note(sha, entry.tag)
                 return data
         self._tags.forget(sha)
-        logger.error("object %s in the bucket has other bytes than its name says; it is set aside", sha)
+        logger.error("object %s in the bucket has bytes that do not match its name; it is set aside", sha)
         self._bucket.copy(sha, f"{QUARANTINE}/{sha}.{(entry.tag or '').strip(chr(34))}")
         raise ArtifactDamaged(sha, f"its {len(data)} bytes in the bucket have another hash")
 
     def _brought_back(self, sha: str) -> tuple[bytes, Entry] | None:
-        """Return an object that a sweep has discarded, in its place again."""
+        """Restore an object that a sweep has discarded, and return it; None if there is none."""
         return self._bucket.get(sha) if self._bucket.copy(DISCARDED + sha, sha) else None
 
     def _is_good(self, sha: str) -> bool:
-        """Return whether the object has the tag that it had when its bytes were right, or right bytes now."""
+        """Return whether the object has the tag of verified bytes, or is right when downloaded."""
         entry = self._bucket.head(sha)
         if self._is_known_good(sha, entry):
             return True
@@ -200,14 +201,11 @@ class BucketStore:
         return True
 
     def _is_put_back(self, sha: str) -> bool:
-        """Put back an object that the bucket has lost, from a good copy here.
-
-        Return whether this was possible.
-        """
+        """Put back an object that the bucket has lost, from a good local copy; return whether it worked."""
         data = self._copies.read(sha)
         if data is None:
             return False
-        logger.warning("object %s was lost or damaged; the copy of this machine is put in its place", sha)
+        logger.warning("object %s was lost or damaged; it is replaced by the copy on this machine", sha)
         self._note(sha, self._bucket.replace(sha, data))
         return True
 
@@ -216,11 +214,11 @@ class BucketStore:
         return entry is not None and self._is_known_good(sha, entry) and time.time() - entry.modified < YOUNG
 
     def _is_known_good(self, sha: str, entry: Entry | None) -> bool:
-        """Return whether an object has the tag that it had when its bytes were right."""
+        """Return whether an object still has the tag that it had when its bytes were verified."""
         return entry is not None and entry.tag is not None and self._tags.has(sha, entry.tag)
 
     def _note(self, sha: str, tag: str | None) -> None:
-        """Remember the tag of an object whose bytes are right; a server that gives none is asked again."""
+        """Remember the tag of an object whose bytes are right; without a tag, remember nothing."""
         if tag:
             self._tags.add(sha, tag)
 
@@ -231,7 +229,7 @@ class BucketStore:
         return opened is not None
 
     def _keep(self, data: bytes) -> None:
-        """Keep a copy if the disk has room; the bucket has the bytes in any case."""
+        """Keep a copy if the disk has room for it; the bucket has the bytes in any case."""
         try:
             self._copies.put(data)
         except OSError as error:

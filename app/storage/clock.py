@@ -5,11 +5,11 @@ PostgreSQL identities come from a sequence: if every unit updated a counter row,
 time.
 
 The clock of operation counts the seconds for which the service has run, over all its starts. The age of a
-stored thing is the difference of two readings. So nothing ages while no server runs or when a machine's clock
-jumps.
+stored object is the difference of two readings. So nothing ages while no server runs or when a machine's
+clock jumps.
 
-SQLite has one server, whose writer advances the counter by the monotonic clock of its process. A killed
-server loses the time since its last write.
+SQLite has one server, whose writer advances the counter by the monotonic clock of its process. If a server is
+killed, the time since its last write is lost.
 
 PostgreSQL may have several servers. Each advances the counter every few seconds under the lock of a row, and
 stores the time in `TICKED`, by the clock of the database. A reader adds the time since then, at most
@@ -38,17 +38,17 @@ logger = logging.getLogger(__name__)
 
 NAME, TICKED = "operation", "ticked"
 DAY = 86_400  # s
-TICK = 5.0  # between two times that a server moves the counter forward [s]
-LONGEST = 15  # that a time without any such move counts [s]
+TICK = 5.0  # interval at which a server advances the counter [s]
+LONGEST = 15  # largest time that counts if no server advances the counter [s]
 
 
 _ADVANCED = "UPDATE counter SET value = value + ? WHERE name = ?"
 
 
 class present(GenericFunction[float]):  # noqa: N801 - it is written as a function
-    """The present time by the clock of the database [s since 1970]: clocks of servers differ.
+    """Return an SQL expression for the present time by the clock of the database [s since 1970].
 
-    It goes on within a transaction.
+    The clocks of servers may differ. The time advances within a transaction.
     """
 
     type = Double()
@@ -66,36 +66,36 @@ def _on_sqlite(element: present, compiler: SQLCompiler, **options: object) -> st
 
 
 class OperationClock:
-    """Raises the counter by the whole seconds that have passed; belongs to the writer thread of SQLite."""
+    """Raises the counter by the whole seconds that have passed; the writer thread of SQLite uses it."""
 
     def __init__(self) -> None:
-        self._counted = time.monotonic()  # up to this moment the counter holds all
+        self._counted = time.monotonic()  # the counter includes all time up to this moment
 
     @property
     def elapsed(self) -> int:
-        """Return whole seconds that the counter does not hold yet."""
+        """Return the whole seconds that the counter does not include yet."""
         return int(time.monotonic() - self._counted)
 
     def advance(self, connection: Connection) -> int:
-        """Raise the counter in the caller's transaction and return by how many seconds."""
+        """Raise the counter in the caller's transaction, and return the number of seconds added."""
         seconds = self.elapsed
         if seconds:
             connection.exec_driver_sql(_ADVANCED, (seconds, NAME))
         return seconds
 
     def commit(self, seconds: int) -> None:
-        """Record that the increase is durable; if its transaction is lost, the next one makes up for it."""
+        """Record that the increase is durable; if its transaction is lost, the next one includes it."""
         self._counted += seconds
 
     def close(self) -> None:
-        """Do nothing: the writer stores the remaining rows when it is closed."""
+        """Do nothing, because the writer stores the remaining seconds when it is closed."""
 
 
 class SharedClock:
-    """Moves the counter of a shared database forward now and then, in a thread of its own."""
+    """Advances the counter of a shared database periodically in its own thread."""
 
     elapsed = 0
-    """Whole seconds that `operated` leaves out: none."""
+    """Whole seconds that `operated` does not include: none."""
 
     def __init__(self, writer: Writer) -> None:
         self._writer = writer
@@ -104,7 +104,7 @@ class SharedClock:
         self._thread.start()
 
     def close(self) -> None:
-        """Move the counter a last time, and end the thread. A second call does nothing."""
+        """Advance the counter a last time, and end the thread. A second call does nothing."""
         self._stopping.set()
         self._thread.join()
 
@@ -115,11 +115,11 @@ class SharedClock:
             try:
                 self._writer.write(tick)
             except Exception as error:
-                logger.warning("The clock of operation could not be moved; trying again: %s", error)
+                logger.warning("The clock of operation could not be advanced; trying again: %s", error)
 
 
 def tick(session: Session) -> None:
-    """Move the counter of a shared database to the present, in a unit of work."""
+    """Advance the counter of a shared database to the present, in a unit of work."""
     query = select(CounterRow.value, func.floor(present())).where(CounterRow.name == TICKED)
     then, now = session.execute(query.with_for_update()).one()
     seconds = min(max(int(now) - then, 0), LONGEST)
@@ -128,9 +128,10 @@ def tick(session: Session) -> None:
 
 
 def operated(session: Session) -> int:
-    """Return the time of operation [s]: exact to a second in a unit of work, else that of the last write.
+    """Return the time of operation [s].
 
-    On PostgreSQL it is exact everywhere.
+    On SQLite it is exact to a second in a unit of work, else it is the time of the last write. On PostgreSQL
+    it is always exact.
     """
     if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
         counted = _COUNTED.run(session)
@@ -158,7 +159,7 @@ _NEXT = select(func.nextval(IDENTITY))
 def new_id(session: Session) -> str:
     """Return a new identity of 24 hexadecimal digits; later ones sort after earlier ones.
 
-    It is counted up in the unit of work that uses it.
+    The counter increases in the unit of work that uses the identity.
     """
     if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
         ((number,),) = _RAISED.run(session)  # a migrated database has its counters
@@ -173,5 +174,5 @@ def now() -> str:
 
 
 def as_text(moment: datetime) -> str:
-    """Return a moment in UTC as ISO 8601 text of constant length: text order is time order."""
+    """Return a moment in UTC as ISO 8601 text of constant length, so that text order is time order."""
     return f"{moment.replace(tzinfo=None).isoformat(timespec='microseconds')}Z"

@@ -1,4 +1,4 @@
-"""Open the database that the settings name: check it, and migrate it to the schema of this program."""
+"""Open the database of the settings: check it, and migrate it to the schema of this program."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ BACKENDS = ("sqlite", "postgresql", "postgres")
 def opened_database(
     settings: Settings, folder: DataFolder, on_commit: Callable[[int, float, bool], object]
 ) -> Database:
-    """Return the database, migrated; a damaged one is refused before anything is written to it.
+    """Return the migrated database; a damaged database is refused before anything is written to it.
 
     Raises
     ------
     NotForTeams
-        The settings do not fit together; the text names the remedy.
+        If the settings do not fit together; the text names the remedy.
     DatabaseDamaged, DatabaseBeforeRelease, DatabaseNewer, DatabaseUnavailable
-        It cannot be used.
+        If the database cannot be used.
     """
     require_answer(settings)
     url = settings.database_url or folder.database_url
@@ -39,14 +39,14 @@ def opened_database(
 
 
 def require_answer(settings: Settings) -> None:
-    """Check that the settings fit together and a shared database takes connections; a file needs neither.
+    """Check that the settings fit together and that a shared database accepts connections.
 
     Raises
     ------
     NotForTeams
-        The settings do not fit together.
+        If the settings do not fit together.
     DatabaseUnavailable
-        The database server does not answer, or refuses this user.
+        If the database server does not answer, or refuses this user.
     """
     url = settings.database_url
     if url is None:
@@ -61,14 +61,14 @@ def require_answer(settings: Settings) -> None:
 
 
 def require_connection(url: str) -> None:
-    """Check that a URL names a file, or a database that takes connections.
+    """Check that a URL names a file, or a database that accepts connections.
 
     Raises
     ------
     NotForTeams
-        It names an unknown kind of database.
+        If it names an unknown kind of database.
     DatabaseUnavailable
-        The database server does not answer, or refuses this user.
+        If the database server does not answer, or refuses this user.
     """
     require_database(url)
     if is_sqlite(url):
@@ -87,10 +87,14 @@ def require_connection(url: str) -> None:
 
 
 def require_database(url: str) -> None:
-    """Check that a URL names a supported kind of database; raises NotForTeams."""
+    """Check that a URL names a supported kind of database; raise NotForTeams if not."""
     try:
         backend = make_url(url).drivername.partition("+")[0]
-    except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted
+    except (
+        ArgumentError,
+        NoSuchModuleError,
+        ValueError,
+    ):  # the message does not quote the URL, which may contain a password
         backend = ""
     if backend not in BACKENDS:
         raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names an unsupported kind of database; write {FORMS}.")

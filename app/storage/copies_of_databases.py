@@ -1,8 +1,8 @@
-"""Detect a copy of the database that shares the file store: neither may delete the other's files.
+"""Detect a copy of the database that shares the file store, because each would delete files of the other.
 
-A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so the
-identity does not distinguish copies. A random number does, which each collection writes to the database and
-to the store. If a database finds a foreign number there, a copy of it collects files too.
+A backup and a clone have the same identity, by which a store knows its database (`app.storage.ownership`), so
+the identity does not distinguish copies. A random number does: each collection writes one to the database and
+to the store. If a database finds an unknown number there, a copy of it collects files too.
 """
 
 from __future__ import annotations
@@ -21,12 +21,15 @@ from app.storage.errors import StorageError
 from app.storage.tables import CounterRow
 from app.storage.units import upsert
 
-NOTE = "sweeps"  # in the store: the number of the last collection, and whether there are copies
-LAST, NEXT = "sweep", "sweep_next"  # rows of `counter`; the store has one of the two, wherever a server died
+NOTE = "sweeps"  # note in the store: the number of the last collection, and whether there are copies
+LAST, NEXT = (
+    "sweep",
+    "sweep_next",
+)  # rows of `counter`; the store has one of the two numbers, even after a crash
 
 
 class DatabaseCopied(StorageError):
-    """Another copy of this database uses the same store, or did."""
+    """Another copy of this database uses, or has used, the same store."""
 
     def __init__(self, since: str) -> None:
         super().__init__(since)
@@ -34,7 +37,7 @@ class DatabaseCopied(StorageError):
 
     def __str__(self) -> str:
         return (
-            "Files that nobody wants any more are kept: a copy of this database, such as a restored "
+            "Unused files are kept: a copy of this database, such as a restored "
             f"backup or a clone, has used the same file store (noticed {self.since}), and each would delete "
             "files of the other. Give one of them a bucket, prefix or folder of its own with a copy of the "
             f"files (CRANKWRIGHT_ARTIFACTS_URL). Once it is the only one again, delete `{NOTE}` in the store."
@@ -43,22 +46,22 @@ class DatabaseCopied(StorageError):
 
 @dataclass(frozen=True)
 class _Mark:
-    """The mark in the store: the number of the last collection, and since when it is known to have copies."""
+    """The mark in the store: the number of the last collection, and when copies were first noticed."""
 
     number: int
     copied: str | None = None
 
 
 def require_only_copy(database: Database, store: Artifacts) -> None:
-    """Return if this database may collect files now, with a number for this collection; one server at a time.
+    """Check that this database may collect files now, and mark the collection; one server at a time.
 
     Raises
     ------
     DatabaseCopied
-        Another copy has collected files since this one did, or has noticed this one. The store says so from
-        now on, so the other one stops as well.
+        If another copy has collected files since this one did, or has noticed this one. The mark then
+        records it, so that the other copy stops as well.
     ArtifactsUnreachable
-        The store does not answer.
+        If the store does not answer.
     """
     mark = _mark(store)
     if mark is not None and mark.copied:
@@ -72,7 +75,7 @@ def require_only_copy(database: Database, store: Artifacts) -> None:
 
 
 def _chosen(session: Session, mark: _Mark | None, number: int) -> bool:
-    """Keep the store's number and the next one, if the store's is one that this database has chosen."""
+    """Record the number for the next collection; return False if the mark is not from this database."""
     if mark is not None:
         query = select(CounterRow.value).where(CounterRow.name.in_((LAST, NEXT)))
         if mark.number not in set(session.scalars(query)):
@@ -83,7 +86,7 @@ def _chosen(session: Session, mark: _Mark | None, number: int) -> bool:
 
 
 def _mark(store: Artifacts) -> _Mark | None:
-    """Return the mark in the store, if it has one; an unreadable mark counts as that of a copy."""
+    """Return the mark in the store, or None; an unreadable mark counts as the mark of a copy."""
     text = store.read_note(NOTE)
     if text is None:
         return None

@@ -1,6 +1,6 @@
 """The database of the process: reads in snapshots, and writes by units of work.
 
-How units are written depends on the kind of database: `app.storage.group_writer` (SQLite) and
+The way to write units depends on the kind of database: `app.storage.group_writer` (SQLite) and
 `app.storage.pool_writer` (PostgreSQL).
 """
 
@@ -17,17 +17,18 @@ from app.storage.units import READS, T, Unit, Writer, after_commit, repeatable
 
 __all__ = ["Database", "Unit", "after_commit", "repeatable"]
 
-POOL = 16  # connections to PostgreSQL for writing, and as many for reading
+POOL = 16  # number of connections to PostgreSQL for writing, and the same number for reading
 
 
 class Database:
-    """Reads in snapshots, writes by units of work; once damage has shown, it only reads.
+    """Reads in snapshots, writes by units of work; once damage is found, it only reads.
 
     `on_commit` is called with each transaction's number of units, its time [s], and whether it failed. A unit
-    runs in the context (`contextvars`) of its caller. On PostgreSQL it may run several times, so it changes
-    nothing but what its session writes; whatever is to follow it goes through `after_commit`.
+    runs in the context (`contextvars`) of its caller. On PostgreSQL it may run several times, so it must have
+    no other effect than the writes of its session; actions that follow it are registered with `after_commit`.
 
-    Rows stay readable after their session has ended; what was not loaded by then cannot be loaded later.
+    Rows stay readable after their session has ended; attributes that were not loaded by then cannot be loaded
+    later.
     """
 
     def __init__(
@@ -54,14 +55,14 @@ class Database:
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """Open a session on a snapshot of the database; it cannot write.
+        """Open a session on a read-only snapshot of the database.
 
         Raises
         ------
         DatabaseDamaged
-            What was to be read cannot be read.
+            If the requested rows cannot be read.
         DatabaseUnavailable
-            The database server cannot be reached.
+            If the database server cannot be reached.
         """
         self.watch.require_file()
         try:
@@ -74,38 +75,38 @@ class Database:
             raise
 
     def write(self, unit: Unit[T]) -> T:
-        """Run a unit of work and return its result once that is durable.
+        """Run a unit of work and return its result once it is durable.
 
         Raises
         ------
         CommitFailed
-            The unit ran, but could not be committed; nothing of it is stored.
+            If the unit ran, but could not be committed; nothing of it is stored.
         CommitUnknown
-            The connection was lost during the commit: it may be stored or not.
+            If the connection was lost during the commit: the unit may be stored or not.
         DatabaseUnavailable
-            The database server cannot be reached; nothing is stored.
+            If the database server cannot be reached; nothing is stored.
         DatabaseClosed
-            The database has been closed.
+            If the database has been closed.
         DatabaseDamaged
-            The database is damaged; nothing is stored.
+            If the database is damaged; nothing is stored.
         Exception
-            Whatever the unit raises; its changes, and no others, are undone.
+            The error that the unit raises; only its own changes are undone.
         """
         return self._writer.write(unit)
 
     def submit(self, unit: Unit[T]) -> "Future[T]":
-        """Queue a unit of work for writing; its future raises as `write` does."""
+        """Queue a unit of work for writing; its future raises the same errors as `write`."""
         return self._writer.submit(unit)
 
     def write_through(self, around: Callable[[Writer], Writer]) -> None:
-        """Send all further units of work through a wrapper around the writer."""
+        """Send all further units of work through a wrapper of the writer."""
         self._writer = around(self._writer)
 
     def close(self) -> None:
-        """Commit what waits, then close all connections. A second call does nothing.
+        """Commit the waiting units, then close all connections. A second call does nothing.
 
-        Once damage has shown, the connections stay open until the process ends: SQLite copies its log into
-        the file when the last one is closed, and a damaged log would overwrite pages that are whole.
+        Once damage is found, the connections stay open until the process ends: SQLite copies its log into the
+        file when the last one is closed, and a damaged log would overwrite intact pages.
         """
         self.clock.close()
         self._writer.close()

@@ -1,4 +1,4 @@
-"""Differences between SQLite and PostgreSQL: their engines for reading and for writing."""
+"""SQLAlchemy engines for SQLite and PostgreSQL: for reading, writing and migrating."""
 
 import sqlite3
 from pathlib import Path
@@ -13,17 +13,17 @@ _SHARED = ("busy_timeout = 10000", "foreign_keys = on")
 _WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")
 _READER = (*_SHARED, "query_only = on")
 _CONNECTING = {"connect_timeout": 5, "keepalives_idle": 10, "keepalives_interval": 5, "keepalives_count": 3}
-"""Time for PostgreSQL to take a connection, and times of the checks that it still answers [s]."""
-_PATIENCE = 10.0  # for a free connection to PostgreSQL [s]
-# Batch migrations drop and rename tables, which enforced foreign keys would take for deletions.
+"""Time limits for a connection to PostgreSQL, and for the checks that the server still answers [s]."""
+_PATIENCE = 10.0  # longest wait for a free connection to PostgreSQL [s]
+# Batch migrations drop and rename tables; enforced foreign keys would treat that as deletions.
 _MIGRATOR = ("busy_timeout = 10000", "journal_mode = wal")
 
 
 def writing_engine(url: str, pool: int = 1) -> Engine:
     """Return the engine of the writer.
 
-    On SQLite transactions take the write lock first and are synced at commit. PostgreSQL has so many
-    connections, in whose transactions every statement sees what others have committed before it.
+    On SQLite, transactions take the write lock first and are synced at commit. On PostgreSQL the engine has
+    `pool` connections, in whose transactions every statement sees what others have committed before it.
     """
     if is_sqlite(url):
         return _sqlite_engine(url, _WRITER, "BEGIN IMMEDIATE")
@@ -31,7 +31,7 @@ def writing_engine(url: str, pool: int = 1) -> Engine:
 
 
 def migrating_engine(url: str) -> Engine:
-    """Return the engine on which the schema may be changed."""
+    """Return the engine with which the schema may be changed."""
     if is_sqlite(url):
         return _sqlite_engine(url, _MIGRATOR, "BEGIN IMMEDIATE")
     return _postgres_engine(url, 1, isolation_level="READ COMMITTED")
@@ -57,12 +57,12 @@ def is_sqlite(url: str) -> bool:
 
 
 def _postgres_engine(url: str, pool: int, **options: str | bool) -> Engine:
-    """Return an engine of PostgreSQL that says soon when it cannot be reached.
+    """Return an engine of PostgreSQL that soon reports a server that cannot be reached.
 
     Raises
     ------
     NotForTeams
-        The driver is not installed.
+        If the driver is not installed.
     """
     chosen = make_url(url)
     if chosen.drivername in ("postgresql", "postgres"):
@@ -85,7 +85,7 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
 
     @event.listens_for(engine, "connect")
     def configure(connection: sqlite3.Connection, record: object) -> None:
-        connection.isolation_level = None  # the driver shall not begin transactions by itself
+        connection.isolation_level = None  # the driver must not begin transactions by itself
         for pragma in pragmas:
             connection.execute(f"PRAGMA {pragma}")
         connection.create_function("lower", 1, _lower, deterministic=True)
@@ -105,15 +105,15 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
 
 
 def _lower(value: str | float | None) -> str | float | None:
-    """Return a text in lower case, for SQLite, whose own function knows A to Z only.
+    """Return a text in lower case for SQLite, whose own function only converts A to Z.
 
-    `Ä` would not match `ä`.
+    With that function, `Ä` would not match `ä`.
     """
     return value.lower() if isinstance(value, str) else value
 
 
 def _expect_transaction(connection: Connection, name: str | None = None) -> None:
-    """Refuse to go on in a transaction that SQLite has rolled back; see `rolled_back`."""
+    """Refuse to continue in a transaction that SQLite has rolled back; see `rolled_back`."""
     driver = connection.connection.driver_connection
     if isinstance(driver, sqlite3.Connection) and not driver.in_transaction:
         raise rolled_back()
@@ -122,7 +122,7 @@ def _expect_transaction(connection: Connection, name: str | None = None) -> None
 def rolled_back() -> OperationalError:
     """Return the error of a transaction that SQLite has rolled back by itself, as it does on a full disk.
 
-    What follows would be committed alone, and the driver would take the final commit for a success.
+    Later statements would be committed alone, and the driver would report the final commit as a success.
     """
     error = sqlite3.OperationalError("SQLite has rolled the transaction back")
     return OperationalError("COMMIT", None, error)

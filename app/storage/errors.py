@@ -21,7 +21,7 @@ from pathlib import Path
 
 
 class StorageError(Exception):
-    """An error of storage."""
+    """Base class of the errors of storage."""
 
 
 class DataFolderInUse(StorageError):
@@ -35,12 +35,12 @@ class DataFolderInUse(StorageError):
     def __str__(self) -> str:
         return (
             f"The data folder {self.folder} is in use by process {self.owner or 'unknown'}. "
-            "Stop that server, or give this one a folder of its own by CRANKWRIGHT_DATA."
+            "Stop that server, or set another folder in CRANKWRIGHT_DATA."
         )
 
 
 class DatabaseBeforeRelease(StorageError):
-    """The database has a schema from before the first release, which this program does not read."""
+    """The database has a schema from before the first release, which this program cannot read."""
 
     def __init__(self, version: str) -> None:
         super().__init__(version)
@@ -71,11 +71,11 @@ class DatabaseClosed(StorageError):
 
 
 class CommitFailed(StorageError):
-    """A unit of work could not be committed: nothing of it is stored. Raised from the cause."""
+    """A unit of work could not be committed; nothing of it is stored. `__cause__` is the original error."""
 
 
 class CommitUnknown(CommitFailed):
-    """The connection was lost during the commit, and the unit has no Idempotency-Key that would decide."""
+    """The connection was lost during the commit, and the unit has no Idempotency-Key to decide."""
 
     def __str__(self) -> str:
         return (
@@ -85,7 +85,7 @@ class CommitUnknown(CommitFailed):
 
 
 class DatabaseUnavailable(StorageError):
-    """The database server cannot be reached, or does no work at present; nothing was stored."""
+    """The database server cannot be reached, or refuses work at present; nothing was stored."""
 
     retry_after = 5  # s
 
@@ -119,11 +119,11 @@ class DatabaseDamaged(StorageError):
 
 
 class NotFound(StorageError):
-    """No row of this name or number, such as a design, a revision or a build."""
+    """There is no row with this name or number, such as a design, a revision or a build."""
 
 
 class KeyReused(StorageError):
-    """An Idempotency-Key came again with another request."""
+    """An Idempotency-Key was used again for another request."""
 
     def __init__(self, key: str) -> None:
         super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; take a new one")
@@ -153,9 +153,9 @@ class ArtifactDamaged(StorageError):
 
 
 class ArtifactsUnreachable(StorageError):
-    """The store of the artifacts does not answer: nobody knows now whether a file is there.
+    """The store of the artifacts does not answer, so it is unknown whether a file exists.
 
-    A try is worthwhile after `retry_after` [s].
+    A client may try again after `retry_after` [s].
     """
 
     retry_after = 2
@@ -173,7 +173,7 @@ class StoreRefused(StorageError):
 
 
 class CannotRebuild(Exception):
-    """A file that is damaged or gone cannot be made again under its hash; links lead to what there is.
+    """A damaged or missing file cannot be made again with its hash; the response links to what exists.
 
     Its code is one of:
 

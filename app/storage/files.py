@@ -1,4 +1,4 @@
-"""Write files whole and durably: no reader sees half of one, and a crash of the machine loses none.
+"""Write files whole and durably: no reader sees a partial file, and no file is lost if the machine crashes.
 
 Two locks separate the removal of a file from its creation, within one process and among several.
 """
@@ -15,7 +15,7 @@ from pathlib import Path
 
 
 class OwnLock:
-    """For the threads of one process, which does everything in turn."""
+    """A lock for the threads of one process; only one thread holds it at a time."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -30,10 +30,10 @@ class OwnLock:
 
 
 class SharedLock:
-    """For the processes of several servers: many may put at the same time, or one removes.
+    """A lock for the processes of several servers: many may put files at the same time, or one removes files.
 
-    The file lies in the folder that they share. A lock belongs to an open file, so it also keeps threads
-    apart, and a process that is killed leaves none.
+    The lock file is in the shared folder. A lock belongs to an open file, so it also separates threads, and
+    it ends when its process is killed.
     """
 
     def __init__(self, path: Path) -> None:
@@ -62,15 +62,15 @@ class SharedLock:
 
 
 TEMPORARY = ".tmp-"
-"""Beginning of the name of a file that is still being written."""
+"""Prefix of the name of a file that is still being written."""
 
 
 def write_whole(
     target: Path, parts: Iterable[bytes | memoryview], clear: Callable[[Path], None], *, is_durable: bool
 ) -> None:
-    """Write beside the target, sync, then rename, so that the target never shows half its bytes.
+    """Write a temporary file, sync it, then rename it, so that the target is never partial.
 
-    To sync takes long: `clear` removes what cannot be replaced from the target's place only after that.
+    Syncing takes long. So `clear` removes an object that a rename cannot replace only after that.
     """
     descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=TEMPORARY)
     try:
@@ -87,7 +87,7 @@ def write_whole(
 
 
 def sync_folder(folder: Path) -> None:
-    """Make the names in a folder durable."""
+    """Sync a folder, so that the names in it are durable."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -10,15 +10,15 @@ LOCK = "crankwright.lock"
 
 
 class DataFolder:
-    """A folder that this process alone may use until it ends or calls `release`.
+    """A folder that only this process may use until it ends or calls `release`.
 
-    The lock belongs to the process, so a killed server leaves nothing to clean up. Because of it whatever the
-    database calls running at the start has died.
+    The lock belongs to the process, so a killed server leaves nothing to clean up. At the start, work that
+    the database marks as running must therefore have been interrupted.
 
     Raises
     ------
     DataFolderInUse
-        Another process holds the folder.
+        If another process holds the folder.
     """
 
     def __init__(self, path: Path) -> None:
@@ -38,7 +38,7 @@ class DataFolder:
         return self.path / "artifacts"
 
     def release(self) -> None:
-        """Release the folder for another process."""
+        """Release the folder, so that another process can use it."""
         os.close(self._lock)
 
     def _acquire(self) -> None:

@@ -1,7 +1,7 @@
 """The writer of SQLite: one thread commits all waiting units of work in one transaction.
 
-SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
-in one transaction needs one sync for all of them, and no writer ever finds the database locked.
+SQLite accepts one writer at a time and syncs the disk at every commit. A single thread that runs all waiting
+units in one transaction needs one sync for all of them, and never finds the database locked.
 
 The writer watches for damage to the file, and stops writing once it has found any.
 """
@@ -33,9 +33,9 @@ logger = logging.getLogger(__name__)
 
 
 class Watch:
-    """Turns SQLite's errors about damage into DatabaseDamaged, and remembers the first.
+    """Turns SQLite's errors about damage into DatabaseDamaged, and remembers the first one.
 
-    It leaves a note of it beside the file: what is lost with SQLite's log shows at no later start.
+    It writes a note beside the file, because damage in SQLite's log may not be visible after a restart.
     """
 
     def __init__(self, url: str) -> None:
@@ -45,13 +45,19 @@ class Watch:
         self.damage: DatabaseDamaged | None = None
 
     def refuse(self) -> None:
-        """Check that no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
+        """Check that no damage is known and the file is the one opened at the start.
+
+        Raises
+        ------
+        DatabaseDamaged
+            If damage is known, or the file was deleted or replaced.
+        """
         if self.damage is not None:
             raise self._again(self.damage)
         self.require_file()
 
     def require_file(self) -> None:
-        """Check that the file is still that of the start: SQLite would make an empty one in its place."""
+        """Check that the file is the one opened at the start; SQLite would silently create a new one."""
         if self._path is None or self._file is None:
             return
         with suppress(OSError):
@@ -61,12 +67,12 @@ class Watch:
         raise self._named(DatabaseDamaged(str(self._path), [lost]))
 
     def raise_if_damage(self, error: BaseException | None) -> None:
-        """Raise DatabaseDamaged if an error says that the database is damaged."""
+        """Raise DatabaseDamaged if an error means that the database is damaged."""
         if error is not None and is_damage(error):
             raise self._named(error) from error
 
     def translated(self, error: Exception) -> Exception:
-        """Return DatabaseDamaged in place of an error that says so; any other error as it is."""
+        """Return DatabaseDamaged for an error that means damage; return any other error unchanged."""
         try:
             self.raise_if_damage(error)
         except DatabaseDamaged as damage:
@@ -82,7 +88,7 @@ class Watch:
             return self._again(self.damage)
 
     def _diagnosed(self, error: BaseException) -> DatabaseDamaged:
-        """Read the whole file once more, because the error names no page."""
+        """Read the whole file to find the damaged pages, because the error does not name them."""
         path = self._path
         try:
             damage = faults(path) if path else []
@@ -92,20 +98,20 @@ class Watch:
 
     def _note(self, damage: DatabaseDamaged) -> None:
         if self._path is not None:
-            with suppress(OSError):  # the disk may be the reason
+            with suppress(OSError):  # the disk may be faulty
                 marker_of(self._path).write_text("; ".join(damage.faults), encoding="utf-8")
 
     @staticmethod
     def _again(damage: DatabaseDamaged) -> DatabaseDamaged:
-        """Return a fresh exception: one that is raised in several threads would collect their tracebacks."""
+        """Return a new exception, because one that several threads raise would collect their tracebacks."""
         return DatabaseDamaged(damage.database, damage.faults)
 
 
-GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
+GROUP = 256  # largest number of units in one transaction, to limit the wait of the first unit
 
 
 class GroupWriter:
-    """Commits units of work in groups; `on_commit` is that of `Database`."""
+    """Commits units of work in groups; `on_commit` is described in `Database`."""
 
     def __init__(
         self,
@@ -119,29 +125,29 @@ class GroupWriter:
         self._waiting: queue.SimpleQueue[_PendingUnit | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
-        self._connection: Connection | None = None  # of the thread
+        self._connection: Connection | None = None  # connection of the writer thread
         self._thread = threading.Thread(target=self._serve, name="database-writer", daemon=True)
         self._thread.start()
 
     def write(self, unit: Unit[T]) -> T:
-        """Run a unit of work in the writer thread and return its result once that is durable."""
+        """Run a unit of work in the writer thread and return its result once it is durable."""
         if threading.current_thread() is self._thread:
             raise RuntimeError("A unit of work may not wait for another: use its session.")
         return self.submit(unit).result()
 
     def submit(self, unit: Unit[T]) -> Future[T]:
-        """Queue a unit of work; its future raises as `write` does."""
-        if self._watch.damage is not None:  # whether the file is still there shows when the group begins
+        """Queue a unit of work; its future raises the same errors as `write`."""
+        if self._watch.damage is not None:  # the group checks later whether the file still exists
             self._watch.refuse()
         pending = _PendingUnit(unit)
-        with self._closing:  # nothing may enter the queue behind its end
+        with self._closing:  # no unit may enter the queue after its end
             if self._closed:
                 raise DatabaseClosed("The database is closed.")
             self._waiting.put(pending)
         return pending.future
 
     def close(self) -> None:
-        """Commit what waits, then end the thread. A second call does nothing."""
+        """Commit the waiting units, then end the thread. A second call does nothing."""
         with self._closing:
             if not self._closed:
                 self._waiting.put(None)
@@ -159,13 +165,13 @@ class GroupWriter:
         self._disconnect()
 
     def _disconnect(self) -> None:
-        """Give the connection back to the pool; the next group takes one again."""
+        """Return the connection to the pool; the next group opens one again."""
         connection, self._connection = self._connection, None
         if connection is not None:
             connection.close()
 
     def _next_group(self) -> tuple[list[_PendingUnit], bool]:
-        """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
+        """Wait for a unit, then return it with all others that wait, and whether more may come."""
         group: list[_PendingUnit] = []
         while not group or (len(group) < GROUP and not self._waiting.empty()):
             pending = self._waiting.get()
@@ -180,13 +186,13 @@ class GroupWriter:
         try:
             connection = self._connection = self._connection or self.engine.connect()
             with connection.begin():
-                self._watch.refuse()  # damage may have shown while the group was waiting
+                self._watch.refuse()  # damage may have been found while the group was waiting
                 seconds = self._clock.advance(connection)
                 for pending in group:
                     pending.run(connection)
                     if pending.error is not None:
                         self._watch.raise_if_damage(pending.error)
-            self._watch.refuse()  # a file that was deleted meanwhile has taken the commit along
+            self._watch.refuse()  # if the file was deleted in the meantime, the commit is lost
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
             cause = self._watch.translated(error)
@@ -202,7 +208,7 @@ class GroupWriter:
 
 @contextmanager
 def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
-    """Open a savepoint within the transaction of a group; an exception undoes what was written in it."""
+    """Open a savepoint within the transaction of a group; an exception undoes the writes in it."""
     driver: sqlite3.Connection = connection.connection.driver_connection  # type: ignore[assignment]
     if not driver.in_transaction:
         raise rolled_back()
@@ -210,7 +216,7 @@ def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
     try:
         yield driver
     except BaseException:
-        if driver.in_transaction:  # SQLite may have rolled all of it back, see `rolled_back`
+        if driver.in_transaction:  # SQLite may have rolled back the transaction, see `rolled_back`
             driver.execute("ROLLBACK TO unit")
             driver.execute("RELEASE unit")
         raise
@@ -218,9 +224,9 @@ def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
 
 
 class _PendingUnit:
-    """A unit of work on its way through the writer thread."""
+    """A unit of work that waits for the writer thread, or runs in it."""
 
-    # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.
+    # `Any`: the queue has units of every type; `submit` returns the future with the type of its unit.
     def __init__(self, unit: Unit[Any]) -> None:
         self.future: Future[Any] = Future()
         self._unit = unit
@@ -230,10 +236,10 @@ class _PendingUnit:
         self.error: BaseException | None = None
 
     def run(self, connection: Connection) -> None:
-        """Run the unit in a savepoint of its own; what it raises is kept for its caller.
+        """Run the unit in its own savepoint, and keep its result or its error for its caller.
 
-        The savepoint is the driver's: SQLAlchemy's costs more than all statements of a small unit. A session
-        that uses the ORM makes one of its own within it.
+        The savepoint is made by the driver, because SQLAlchemy's costs more than all statements of a small
+        unit. A session that uses the ORM makes its own savepoint within it.
         """
         try:
             with _savepoint(connection) as driver:
@@ -249,18 +255,18 @@ class _PendingUnit:
             self.error = error
 
     def _run(self, session: Session) -> None:
-        """Run the unit in its session. Closing an unused session costs as much as two statements."""
+        """Run the unit in its session. An unused session is not closed, which would cost two statements."""
         try:
             self._result = self._context.run(self._unit, session)
             if session.in_transaction():  # the ORM was used
-                session.commit()  # writes what is new; raises if the unit hid a failed statement
+                session.commit()  # writes pending rows; raises if the unit has hidden a failed statement
                 session.close()
         except BaseException:
             session.close()
             raise
 
     def settle(self) -> None:
-        """Hand the outcome to the caller: the group is durable."""
+        """Deliver the outcome to the caller after the group is durable."""
         if self._following:
             self._context.run(follow, self._following)
         if self.error is None:
@@ -269,7 +275,7 @@ class _PendingUnit:
             self.future.set_exception(self.error)
 
     def refuse(self, cause: Exception) -> None:
-        """Tell the caller that the group is lost."""
+        """Deliver an error to the caller, because the group is lost."""
         if isinstance(cause, DatabaseDamaged):
             self.future.set_exception(cause)
             return

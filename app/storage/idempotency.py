@@ -1,8 +1,8 @@
 """Idempotent requests: a repeated Idempotency-Key makes one change only.
 
-The key is kept in the transaction of the change itself, so that after a crash a repeated request finds either
-the change or nothing. Where several servers share a database it is inserted before anything else: the second
-of two simultaneous requests waits there for the first.
+The key is stored in the transaction of the change itself, so that after a crash a repeated request finds
+either the change or nothing. If several servers share a database, the key is inserted before anything else:
+the second of two simultaneous requests then waits for the first.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from app.plain import JsonObject
 from app.storage.clock import now, operated
+from app.storage.database import Database
 from app.storage.errors import KeyReused
 from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import DRIVER, Statement, Values, insert_new_values, repeatable, upsert_values
@@ -33,7 +34,7 @@ _KEPT = Statement(
 
 @dataclass(frozen=True)
 class Once:
-    """A request that is to be carried out once; without a key every request is a new one."""
+    """A request that must be carried out once; without a key every request is a new one."""
 
     key: str | None
     scope: str  # method and path
@@ -54,12 +55,18 @@ class Once:
         kept = next(iter(_KEPT.run(session, asked)), None)
         return self._answer(*kept) if kept else None
 
+    def find_in(self, database: Database) -> JsonObject | None:
+        """Return what `find` does, in a transaction of its own, before a request causes any work."""
+        if not self.key:
+            return None
+        with database.read() as session:
+            return self.find(session)
+
     def begin(self, session: Session) -> JsonObject | None:
-        """Return the stored answer of an equal earlier request.
+        """Return the stored answer of an equal earlier request; else reserve the key and return None.
 
-        Else let `keep` follow, for which a key is reserved.
-
-        It comes first in a unit of work: while another server carries out the same request, this waits.
+        Call this first in a unit of work, and `keep` later. While another server carries out the same
+        request, the call waits.
 
         Raises
         ------
@@ -68,7 +75,9 @@ class Once:
         """
         if not self.key:
             return None
-        if DRIVER in session.info:  # SQLite runs one unit after another: nobody else carries it out meanwhile
+        if (
+            DRIVER in session.info
+        ):  # SQLite runs units one after the other, so no other unit carries it out meanwhile
             return self.find(session)
         repeatable(session)
         mine = self._new(operated(session), status=0, location={})

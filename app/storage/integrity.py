@@ -1,4 +1,4 @@
-"""Check that a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
+"""Check that a SQLite file is intact: its pages, its indexes, and the JSON in its rows.
 
 SQLite keeps no checksums. An overwritten page appears as a broken tree, an index that disagrees with its
 table, or a text that is not JSON. A changed digit inside a text cannot be detected.
@@ -19,22 +19,24 @@ from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
 from app.storage.tables import Base, JsonText, NotWritten
 
-MOST = 5  # faults that a message names
+MOST = 5  # largest number of faults in a message
 _CORRUPT = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
-_sound: dict[Path, tuple[tuple[int, int, int], ...]] = {}  # what this process has examined without faults
+_sound: dict[
+    Path, tuple[tuple[int, int, int], ...]
+] = {}  # files that this process has examined without faults
 _one_at_a_time = threading.Lock()
 
 
 def refuse_damage(url: str) -> None:
-    """Check that a database is whole, or new, or none of SQLite's.
+    """Check that a database is intact, new, or not a SQLite file.
 
     The time is proportional to its size, some seconds for a gigabyte; an unchanged file is read once.
 
     Raises
     ------
     DatabaseDamaged
-        With the pages and tables that are not.
+        With the damaged pages and tables.
     """
     path = sqlite_file(url)
     if path is not None and (marker := marker_of(path)).exists():
@@ -51,16 +53,18 @@ def refuse_damage(url: str) -> None:
 
 
 def marker_of(path: Path) -> Path:
-    """Return the path of the note beside a SQLite file that records damage found in use."""
+    """Return the path of the note beside a SQLite file that records damage found during use."""
     return path.with_name(f"{path.name}.damaged")
 
 
 def _faults_now(path: Path) -> list[str]:
-    """Return the faults of a file of which damage is noted already; its own state names the pages."""
+    """Return the present faults of a file whose damage is already noted."""
     if not path.is_file():
         return [f"{path.name} is missing"]
     try:
-        return faults(path, mode="ro")  # the folder stays as it is, for whoever saves what can be saved
+        return faults(
+            path, mode="ro"
+        )  # the folder stays unchanged, so that data can still be recovered from it
     except sqlite3.Error as error:
         return [f"{path.name} cannot be examined ({error})"]
 
@@ -68,16 +72,16 @@ def _faults_now(path: Path) -> list[str]:
 def _noted(marker: Path) -> str:
     text = marker.read_text(encoding="utf-8", errors="replace")[:1000]
     return (
-        f"{text}. This showed while the service ran, so rows may be lost even if the file looks whole now; "
-        f"whoever has made sure of the contents deletes {marker.name}"
+        f"{text}. This was found while the service ran, so rows may be lost even if the file looks intact "
+        f"now; check the contents, then delete {marker.name}"
     )
 
 
 def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
-    """Return the faults of a SQLite file, at most this many lines; `ro` leaves its log as it is."""
+    """Return at most `most` faults of a SQLite file, one per line; with mode `ro` its log is not changed."""
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", uri=True)) as connection:
         connection.execute("PRAGMA busy_timeout = 10000")
-        # A page on which SQLite stops takes the lines before it along, unless only one was wanted.
+        # If SQLite stops at a page, it drops the earlier lines, unless only one was requested.
         one = _collected(_of_pages(connection, 1), path)
         if one and most > 1:
             more = _collected(_of_pages(connection, most), path)
@@ -102,7 +106,7 @@ def _seen(path: Path) -> tuple[tuple[int, int, int], ...]:
 
 
 def _collected(lines: Iterator[str], path: Path) -> list[str]:
-    """Return the lines, or the error in place of the first."""
+    """Return the lines; if SQLite stops at the first one, return its error."""
     collected: list[str] = []
     try:
         collected.extend(lines)
@@ -114,7 +118,7 @@ def _collected(lines: Iterator[str], path: Path) -> list[str]:
 
 
 def _unreadable_schema(path: Path) -> str:
-    """Name the page that keeps SQLite from reading the schema: the first one, or one that it refers to.
+    """Return the page that prevents SQLite from reading the schema: the first one, or one to which it refers.
 
     The layout is that of SQLite's file format: a tree of tables has pages of type 5 (inner) and 13 (leaf).
     """
@@ -135,14 +139,14 @@ def _unreadable_schema(path: Path) -> str:
 
 
 def _of_pages(connection: sqlite3.Connection, most: int) -> Iterator[str]:
-    """Yield faults of trees, free pages and indexes, as SQLite words them."""
+    """Yield faults of trees, free pages and indexes in SQLite's words."""
     for (text,) in connection.execute(f"PRAGMA integrity_check({most})"):
         lines = (line.strip() for line in text.splitlines())
         yield from (line for line in lines if line not in ("", "ok", "*** in database main ***"))
 
 
 def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield the rows with texts that should be JSON but are not.
+    """Yield the rows that contain texts which should be JSON but are not.
 
     A database of an older program may lack columns.
     """

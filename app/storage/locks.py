@@ -14,7 +14,7 @@ from app.storage.database import Database
 def lock(session: Session, name: str) -> None:
     """Serialise units of work that lock the same name, on all servers.
 
-    It holds until the end of the transaction. SQLite runs one unit at a time anyway.
+    The lock lasts until the end of the transaction. SQLite runs one unit at a time anyway.
     """
     if session.get_bind().dialect.name != "sqlite":
         session.execute(select(func.pg_advisory_xact_lock(func.hashtextextended(name, 0))))
@@ -22,7 +22,7 @@ def lock(session: Session, name: str) -> None:
 
 @contextmanager
 def alone(database: Database, work: str) -> Iterator[bool]:
-    """Yield whether no other server does this work while the block runs; a server's death ends its turn."""
+    """Yield whether this server alone does some work while the block runs; the lock dies with the server."""
     if not database.is_shared:
         yield True
         return

@@ -1,4 +1,4 @@
-"""Classify errors of PostgreSQL: a conflict with others, a lost connection, or a fault of ours."""
+"""Classify errors of PostgreSQL: a conflict of transactions, a lost connection, or a program error."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def is_conflict(error: DBAPIError) -> bool:
 
 
 def is_loss(error: DBAPIError) -> bool:
-    """Return whether the connection was lost, or there could be none."""
+    """Return whether the connection was lost, or could not be established."""
     state = state_of(error)
     if error.connection_invalidated or state in _LOSSES or (state or "").startswith(_CONNECTION):
         return True
@@ -26,13 +26,13 @@ def is_loss(error: DBAPIError) -> bool:
 
 
 def translated(error: Exception) -> Exception:
-    """Return DatabaseUnavailable in place of an error that says so; any other error as it is."""
+    """Return DatabaseUnavailable for an error that means this; return any other error unchanged."""
     if isinstance(error, PoolExhausted):
         return DatabaseUnavailable("all its connections are in use")
     if not isinstance(error, DBAPIError):
         return error
     if is_conflict(error):
-        return DatabaseUnavailable("others kept changing the same rows at the same time")
+        return DatabaseUnavailable("other transactions kept changing the same rows at the same time")
     if is_loss(error):
         return DatabaseUnavailable("it cannot be reached")
     if (state_of(error) or "")[:2] in (_RESOURCES, _INTERVENTION, _SYSTEM):
@@ -41,6 +41,6 @@ def translated(error: Exception) -> Exception:
 
 
 def state_of(error: DBAPIError) -> str | None:
-    """Return the SQLSTATE of an error of PostgreSQL; None if it came from no answer of the server."""
+    """Return the SQLSTATE of an error of PostgreSQL; None if the server did not report the error."""
     state: str | None = getattr(error.orig, "sqlstate", None)
     return state

@@ -21,23 +21,23 @@ from sqlalchemy import make_url
 logger = logging.getLogger(__name__)
 
 CHANNEL = "crankwright"
-MOST_BYTES = 7900  # of one notification; PostgreSQL refuses 8000
-SHORTEST, LONGEST = 0.1, 2.0  # pause before a lost connection is opened again [s]
-GLANCE = 0.2  # between two times that a thread sees whether it is to end [s]
+MOST_BYTES = 7900  # largest size of a notification; PostgreSQL refuses 8000
+SHORTEST, LONGEST = 0.1, 2.0  # pauses before a lost connection is opened again [s]
+GLANCE = 0.2  # interval at which a thread checks whether it must end [s]
 PATIENCE = {
     "connect_timeout": "5", "keepalives_idle": "10", "keepalives_interval": "5", "keepalives_count": "3"
 }  # fmt: skip
-"""So a database server that no longer answers is noticed [s]."""
+"""Time limits that detect a database server which no longer answers [s]."""
 
 Hear = Callable[[list[str] | None], object]
-"""Is called with the hints of other servers, or with None: anything may have happened."""
+"""Called with the hints of other servers, or with None if hints may have been lost."""
 
 
 class Notices:
-    """Sends hints of this server, and hears those of others on a connection of its own.
+    """Sends hints of this server, and receives those of others on its own connection.
 
     `hear` is called in one thread, with None after every connection and every `poll_seconds`. The connection
-    must lead to PostgreSQL itself: a pool of connections in between forgets who listens.
+    must lead directly to PostgreSQL, because a connection pooler in between does not keep subscriptions.
     """
 
     def __init__(self, url: str, poll_seconds: float, hear: Hear) -> None:
@@ -47,19 +47,19 @@ class Notices:
         self._hear = hear
         self._waiting: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._stopping = threading.Event()
-        self._sender_pid: int | None = None  # of the server process behind the connection that sends
+        self._sender_pid: int | None = None  # process id of the database server behind the sending connection
         self._threads = [
             threading.Thread(target=work, name=f"notices-{work.__name__.strip('_')}", daemon=True)
             for work in (self._send, self._listen)
         ]
 
     def start(self) -> None:
-        """Begin to send and to listen."""
+        """Start to send and to listen."""
         for thread in self._threads:
             thread.start()
 
     def stop(self) -> None:
-        """Send the waiting hints, and end; a second call does nothing."""
+        """Send the waiting hints, and stop; a second call does nothing."""
         self._stopping.set()
         self._waiting.put(None)
         for thread in self._threads:
@@ -67,7 +67,7 @@ class Notices:
                 thread.join(LONGEST)
 
     def send(self, hints: Iterable[str]) -> None:
-        """Send hints to the other servers soon; never blocks."""
+        """Queue hints for the other servers; never blocks."""
         for hint in hints:
             self._waiting.put(hint)
 
@@ -79,24 +79,24 @@ class Notices:
             except Exception:  # most likely the connection was lost since the last hint
                 try:
                     connection = self._sent(None, hints)
-                except Exception as error:  # whatever it is, the next hints are sent again
+                except Exception as error:  # after any error, the next hints are sent on a new connection
                     connection = None
-                    logger.warning("hints to other servers are lost; they will look: %s", error)
+                    logger.warning("hints to other servers are lost; they will poll the database: %s", error)
         if connection is not None:
             connection.close()
 
     def _next_hints(self) -> list[str] | None:
-        """Return the hints that wait, each once; wait for one. None at the end."""
+        """Wait for a hint; return all waiting hints without duplicates. None at the end."""
         hints = {self._waiting.get(): None}
         while not self._waiting.empty():
             hints[self._waiting.get()] = None
         texts = [hint for hint in hints if hint is not None]
         if len(texts) < len(hints):
-            self._waiting.put(None)  # the end: seen again once these are sent
+            self._waiting.put(None)  # the end mark is read again after these are sent
         return texts or None
 
     def _sent(self, connection: psycopg.Connection | None, hints: list[str]) -> psycopg.Connection:
-        """Send hints and return the connection by which they went."""
+        """Send hints and return the connection that was used."""
         if connection is None:
             connection = self._connected()
             self._sender_pid = connection.info.backend_pid
@@ -111,16 +111,16 @@ class Notices:
                     connection.execute(f"LISTEN {CHANNEL}")
                     pause = SHORTEST
                     self._attend(connection)
-            except Exception as error:  # whatever it is, this thread listens again
-                logger.warning("the connection on which other servers are heard is lost: %s", error)
-            if time.monotonic() - looked >= self._poll:  # even if nobody can be heard
+            except Exception as error:  # after any error, this thread listens again
+                logger.warning("the connection that receives hints of other servers is lost: %s", error)
+            if time.monotonic() - looked >= self._poll:  # even if no notification arrives
                 looked = time.monotonic()
                 self._look()
             self._stopping.wait(pause)
             pause = min(2 * pause, LONGEST)
 
     def _attend(self, connection: psycopg.Connection) -> None:
-        """Receive notices until the connection is lost."""
+        """Receive notifications until the connection is lost."""
         looked = -self._poll
         while not self._stopping.is_set():
             if time.monotonic() - looked >= self._poll:
@@ -136,15 +136,15 @@ class Notices:
     def _look(self, hints: list[str] | None = None) -> None:
         try:
             self._hear(hints)
-        except Exception as error:  # such as a database that starts again
-            logger.warning("what other servers have done cannot be read; trying again: %s", error)
+        except Exception as error:  # for example, the database is restarting
+            logger.warning("the changes of other servers cannot be read; trying again: %s", error)
 
     def _connected(self) -> psycopg.Connection:
         return psycopg.connect(self._address, autocommit=True)
 
 
 def payloads(hints: Iterable[str]) -> Iterator[str]:
-    """Yield hints as JSON lists, each of which has room in one notification."""
+    """Yield hints as JSON lists, each short enough for one notification."""
     part, size = list[str](), 2
     for hint in hints:
         length = len(json.dumps(hint)) + 2  # ASCII only: characters are bytes
@@ -158,7 +158,7 @@ def payloads(hints: Iterable[str]) -> Iterator[str]:
 
 
 def hints_of(payload: str) -> list[str]:
-    """Return the hints of a notification; none for a notification of another program."""
+    """Return the hints of a notification; empty for a notification of another program."""
     try:
         hints = json.loads(payload)
     except ValueError:

@@ -1,6 +1,6 @@
 """Ownership of a file store by one database: another database's sweep would delete unknown files.
 
-A database that several servers, or a bucket, use has an identity; the store holds it under the name `OWNER`.
+A database that several servers or a bucket use has an identity; the store contains it under the name `OWNER`.
 """
 
 from __future__ import annotations
@@ -20,35 +20,35 @@ from app.storage.stores import opened_store
 from app.storage.tables import CounterRow
 from app.storage.units import insert_new, repeatable
 
-NAME = "database"  # of the row that holds the identity
+NAME = "database"  # name of the row with the identity
 
 
 def claim(database: Database, store: Artifacts) -> None:
-    """Claim a store for a database, if it belongs to none.
+    """Claim a store for a database if it belongs to none.
 
     Raises
     ------
     StoreRefused
-        It belongs to another database.
+        If it belongs to another database.
     ArtifactsUnreachable
-        It does not answer.
+        If it does not answer.
     """
     own = database.write(_identity)
     if (owner := store.claim(own)) != own:
         raise StoreRefused(
             f"CRANKWRIGHT_ARTIFACTS_URL: these files belong to another database ({owner[:40]}; this one is "
             f"{own}). Each would delete the other's files. Name another bucket, prefix or folder. If that "
-            f"database no longer exists, delete `{OWNER}` there, and the files belong to this one."
+            f"database no longer exists, delete `{OWNER}` there; the files then belong to this one."
         )
 
 
 def require_own_store(settings: Settings, folder: DataFolder) -> None:
-    """Check that the store of the settings answers and belongs to their database, which is migrated for that.
+    """Check that the store of the settings answers and belongs to their database, which is migrated first.
 
     Raises
     ------
     StorageError
-        Either cannot be used, or the store belongs to another database; the text names the remedy.
+        If either cannot be used, or the store belongs to another database; the text names the remedy.
     """
     store = opened_store(settings, folder)
     database = opened_database(settings, folder, lambda units, seconds, failed: None)
@@ -59,7 +59,7 @@ def require_own_store(settings: Settings, folder: DataFolder) -> None:
 
 
 def _identity(session: Session) -> str:
-    """Return the identity of a database, chosen at random at the first request; a backup keeps it."""
+    """Return the identity of a database, created at random at the first request; backups share it."""
     repeatable(session)
     insert_new(session, CounterRow(name=NAME, value=secrets.randbits(63)))
     number = session.scalars(select(CounterRow.value).where(CounterRow.name == NAME)).one()

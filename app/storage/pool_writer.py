@@ -1,4 +1,4 @@
-"""The writer of PostgreSQL: every unit of work in a transaction and on a connection of its own.
+"""The writer of PostgreSQL: every unit of work has its own transaction and connection.
 
 PostgreSQL groups the syncs of simultaneous commits by itself. Grouped commits were 2.4 times slower there,
 and the groups of several servers could deadlock (docs/decisions/049-two-writers.md).
@@ -22,26 +22,29 @@ from app.storage.losses import is_conflict, is_loss, translated
 from app.storage.units import AFTER, REPEATABLE, T, Unit, follow
 
 RETRIES = 5
-PAUSE_CONFLICT, PAUSE_LOSS = 0.01, 0.1  # before the first repetition, doubled before each further one [s]
-_IN_ERROR = 3  # PQTRANS_INERROR: what is committed now is rolled back, without an error
+PAUSE_CONFLICT, PAUSE_LOSS = (
+    0.01,
+    0.1,
+)  # pause before the first repetition, doubled before each further one [s]
+_IN_ERROR = 3  # PQTRANS_INERROR: a commit now is a rollback, without an error
 
 
 class PooledWriter:
-    """Runs units of work in the threads of their callers; `on_commit` is that of `Database`.
+    """Runs units of work in the threads of their callers; `on_commit` is described in `Database`.
 
-    A unit runs again, at most five times, after a conflict with others and after the connection was lost
-    before its commit: so it changes nothing but what its session writes.
+    A unit runs again, at most five times, after a conflict with others or a connection lost before its
+    commit. So it must have no other effect than the writes of its session.
     """
 
     def __init__(self, engine: Engine, threads: int, on_commit: Callable[[int, float, bool], object]) -> None:
         self.engine = engine
         self._on_commit = on_commit
         self._threads = ThreadPoolExecutor(threads, thread_name_prefix="database-writer")
-        self._present = threading.local()  # has an attribute while a unit runs in the thread
+        self._present = threading.local()  # has an attribute while the thread runs a unit
         self._closed = False
 
     def write(self, unit: Unit[T]) -> T:
-        """Run a unit of work in this thread and return its result once that is durable."""
+        """Run a unit of work in this thread and return its result once it is durable."""
         if hasattr(self._present, "unit"):
             raise RuntimeError("A unit of work may not wait for another: use its session.")
         if self._closed:
@@ -58,14 +61,14 @@ class PooledWriter:
         return result
 
     def submit(self, unit: Unit[T]) -> Future[T]:
-        """Run a unit of work in a thread of the writer; its future raises as `write` does."""
+        """Run a unit of work in a thread of the writer; its future raises the same errors as `write`."""
         try:
             return self._threads.submit(contextvars.copy_context().run, self.write, unit)
         except RuntimeError as error:
             raise DatabaseClosed("The database is closed.") from error
 
     def close(self) -> None:
-        """Take no more units, and wait for those that were submitted."""
+        """Accept no more units, and wait for those that were submitted."""
         self._threads.shutdown()
         self._closed = True
 
@@ -111,7 +114,7 @@ class PooledWriter:
 
 
 class _UnknownOutcome(Exception):
-    """The connection was lost during a commit."""
+    """Raised if the connection was lost during a commit."""
 
     def __init__(self, cause: DBAPIError, is_repeatable: bool) -> None:
         super().__init__(cause)
@@ -119,9 +122,9 @@ class _UnknownOutcome(Exception):
 
 
 def _require_sound(session: Session) -> None:
-    """Refuse to commit after a statement that failed and whose error the unit has hidden.
+    """Raise an error if a statement has failed and the unit has hidden its error.
 
-    PostgreSQL answers that commit by a rollback, and the driver takes it for a success.
+    PostgreSQL would answer the commit by a rollback, and the driver would report it as a success.
     """
     if not session.in_transaction():
         return

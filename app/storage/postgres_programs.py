@@ -1,4 +1,4 @@
-"""Find the programs of PostgreSQL: Debian keeps those of each version in a folder of its own."""
+"""Find the programs of PostgreSQL; Debian installs each version in its own folder."""
 
 from __future__ import annotations
 
@@ -9,10 +9,7 @@ DEBIAN = Path("/usr/lib/postgresql")
 
 
 def postgres_program(name: str) -> Path | None:
-    """Return the program of this name, such as `pg_dump`, of the newest version.
-
-    None if none is installed.
-    """
+    """Return the newest version of a program, such as `pg_dump`; None if it is not installed."""
     versions = sorted((path for path in DEBIAN.glob("[0-9]*") if path.name.isdecimal()), key=_number)
     for version in reversed(versions):
         if (program := version / "bin" / name).is_file():

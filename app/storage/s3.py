@@ -24,14 +24,16 @@ if TYPE_CHECKING:
 NO_KEYS = "there are no keys: set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY"
 NO_BUCKET = "the bucket does not exist"
 SILENT = "it does not answer"
-_PROBE = "probe"  # the name of no object
+_PROBE = "probe"  # a name that no object has
 _CODE = re.compile(r"<Code>(\w{1,60})</Code>")
 _REFUSING = {"AccessDenied", "InvalidAccessKeyId", "SignatureDoesNotMatch", "ExpiredToken", "InvalidToken"}
-_METADATA_SERVICE = "169.254.169.254"  # where the client looks for keys if the environment has none
+_METADATA_SERVICE = (
+    "169.254.169.254"  # address at which the client looks for keys if the environment has none
+)
 
-SILENCE = 5.0  # without an answer, or without more of it, until a request ends [s]
-_LONGEST = 120.0  # that a download may take, as long as bytes come [s]
-_UPLOAD = 2.0**18  # that an upload must come to in each second beyond `SILENCE` [bytes]
+SILENCE = 5.0  # time without an answer, or without a further byte, after which a request ends [s]
+_LONGEST = 120.0  # time limit of a download that keeps receiving bytes [s]
+_UPLOAD = 2.0**18  # smallest size of an upload for each second beyond `SILENCE` [bytes]
 
 Asked = Callable[[str, str, float], object]
 """Called with each request's operation, outcome (`good`, `missing`, `unreachable`) and time [s]."""
@@ -39,7 +41,7 @@ Asked = Callable[[str, str, float], object]
 
 @dataclass(frozen=True)
 class Entry:
-    """The bucket's entry of an object: its tag, its size [bytes], when it was put [s since 1970]."""
+    """The bucket's entry for an object: its tag, its size [bytes], and when it was put [s since 1970]."""
 
     tag: str | None
     size: int
@@ -49,10 +51,11 @@ class Entry:
 class Bucket:
     """A bucket, or the part of it below a prefix.
 
-    Short failures are tried again twice. A bucket that takes connections and does not answer is given up
-    after 5 s. A file that is sent has 4 to 8 s more for each MiB, as nothing can be heard meanwhile.
-    Texts of the client may quote addresses and keys: only their codes go on. After a failure it `is_silent`
-    for `retry_after` seconds: who has another source may ask that first.
+    A request that fails quickly is repeated twice. If a bucket accepts connections but does not answer, a
+    request ends after 5 s. An upload has 4 to 8 s more for each MiB, because the bucket sends nothing until
+    it is complete. Texts of the client may quote addresses and keys, so messages contain only their codes.
+    After a failure the bucket `is_silent` for `retry_after` seconds, during which a caller may prefer another
+    source.
     """
 
     def __init__(
@@ -73,15 +76,15 @@ class Bucket:
 
     @property
     def is_silent(self) -> bool:
-        """Return whether the bucket failed to answer a moment ago."""
+        """Return whether the bucket recently failed to answer."""
         return time.monotonic() < self._silent_until
 
     def head(self, key: str) -> Entry | None:
-        """Return the entry of a key; None if there is none."""
+        """Return the entry for a key; None if there is none."""
         with self._asked("head"):
             seen = obstore.head(self._questions, key)
             return Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
-        self.probe()  # to HEAD, S3 does not say whether it misses the object or the whole bucket
+        self.probe()  # the answer to HEAD does not tell a missing object from a missing bucket
         return None
 
     def get(self, key: str) -> tuple[bytes, Entry] | None:
@@ -94,22 +97,22 @@ class Bucket:
         return None
 
     def create(self, key: str, data: bytes) -> str | None:
-        """Put an object unless there is one, and return its tag; None if there is one."""
+        """Put an object unless it exists, and return its tag; None if it exists."""
         return self._put(key, data, is_new=True)
 
     def replace(self, key: str, data: bytes) -> str | None:
-        """Put an object in place of any other, and return its tag, if the server gives one."""
+        """Put an object in place of any existing one, and return its tag if the server gives one."""
         return self._put(key, data, is_new=False)
 
     def copy(self, key: str, target: str) -> bool:
-        """Copy an object within the bucket; return whether it was there."""
+        """Copy an object within the bucket; return whether it existed."""
         with self._asked("copy"):
             obstore.copy(self._questions, key, target)
             return True
         return False
 
     def delete(self, key: str) -> None:
-        """Delete an object, if it is there."""
+        """Delete an object if it exists."""
         with self._asked("delete"):
             obstore.delete(self._questions, key)
 
@@ -126,7 +129,7 @@ class Bucket:
                 yield seen["path"], Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
 
     def probe(self) -> None:
-        """Check that the bucket is there and can be read: it says that it has no object of a certain name."""
+        """Check that the bucket exists and can be read, by a request for an object that does not exist."""
         with self._asked("probe"):
             obstore.get(self._questions, _PROBE)
 
@@ -142,9 +145,12 @@ class Bucket:
 
     @contextmanager
     def _asked(self, operation: str) -> Iterator[None]:
-        """Leave the block without an error if the requested object is missing.
+        """Record a request; an error for a missing object ends the block without an exception.
 
-        Raises ArtifactsUnreachable.
+        Raises
+        ------
+        ArtifactsUnreachable
+            For any other error.
         """
         start, outcome = time.perf_counter(), "good"
         try:
@@ -156,7 +162,7 @@ class Bucket:
                 raise self._unreachable(error) from None
         except (BaseError, OSError) as error:
             outcome = "unreachable"
-            raise self._unreachable(error) from None  # its text may quote keys
+            raise self._unreachable(error) from None  # the text of the error may quote keys
         finally:
             self._on_request(operation, outcome, time.perf_counter() - start)
 
@@ -167,15 +173,15 @@ class Bucket:
 
 
 def seconds_of_upload(size: int, silence: float) -> float:
-    """Return the time limit of an upload of a size [bytes] [s].
+    """Return the time limit [s] for an upload of a size [bytes].
 
-    Few different times, each of which has a client.
+    There are few different limits, because each needs its own client.
     """
     return silence + 2.0 ** math.ceil(math.log2(max(1.0, size / _UPLOAD))) - 1
 
 
 def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConfig:
-    """Return options of requests: their time limits in all, and without a further byte [s]."""
+    """Return the time limits of requests: in total, and without a further byte [s]."""
     return {
         "allow_http": endpoint is not None and endpoint.startswith("http://"),
         "connect_timeout": timedelta(seconds=2),
@@ -185,7 +191,7 @@ def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConf
 
 
 def _retries(seconds: float) -> RetryConfig:
-    """Return retry options: a request that failed after this time [s], such as a time-out, is not retried."""
+    """Return retry options: a request that fails after this time [s], such as a time-out, is not repeated."""
     return {
         "max_retries": 2,
         "retry_timeout": timedelta(seconds=seconds),
@@ -206,5 +212,5 @@ def _reason(error: Exception) -> str:
     if _METADATA_SERVICE in text:
         return NO_KEYS
     if code in _REFUSING or isinstance(error, (PermissionDeniedError, UnauthenticatedError)):
-        return f"it refuses the keys or what they ask for ({code or type(error).__name__})"
+        return f"it refuses the keys or the operation ({code or type(error).__name__})"
     return f"it answers {code}" if code else SILENT

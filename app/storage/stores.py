@@ -1,4 +1,4 @@
-"""Open the file store that the settings name: a folder of this server, a shared folder, or a bucket."""
+"""Open the file store of the settings: a folder of this server, a shared folder, or a bucket."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ FORMS = "s3://bucket, s3://bucket/prefix, or file:///folder"
 _BUCKET = re.compile(r"[a-z0-9][a-z0-9.-]{1,61}[a-z0-9]")
 _PREFIX = re.compile(r"[A-Za-z0-9/._-]{0,500}")
 _ENDPOINT = re.compile(r"https?://([A-Za-z0-9.-]+|\[[0-9a-fA-F:.]+\])(:[0-9]{1,5})?/?")
-_NAME = "crankwright"  # of the object that says what a bucket is for
+_NAME = "crankwright"  # name of the object that marks a bucket
 _NOTE = b"Files of Crankwright, named by the SHA-256 of their bytes. One database refers to them.\n"
 
 
 @dataclass(frozen=True)
 class Figures:
-    """Called with each request to a bucket (operation, outcome, time [s]), and each look for a local copy."""
+    """Callbacks for requests to a bucket (operation, outcome, time [s]) and for searches of local copies."""
 
     on_request: Callable[[str, str, float], object] = lambda operation, outcome, seconds: None
     on_look: Callable[[bool], object] = lambda is_there: None
@@ -37,12 +37,12 @@ NO_FIGURES = Figures()
 
 
 def opened_store(settings: Settings, folder: DataFolder, figures: Figures = NO_FIGURES) -> Artifacts:
-    """Return the store of the settings, once it has answered.
+    """Return the store of the settings once it has answered.
 
     Raises
     ------
     StoreRefused
-        It cannot be used; the text names the setting and what would be right.
+        If it cannot be used; the text names the setting and how to correct it.
     """
     if settings.artifacts_url is None:
         return ArtifactStore(folder.artifacts)
@@ -57,12 +57,12 @@ def opened_store(settings: Settings, folder: DataFolder, figures: Figures = NO_F
 
 
 def is_bucket(settings: Settings) -> bool:
-    """Return whether the files are in a bucket; raises StoreRefused for a wrong URL."""
+    """Return whether the files are in a bucket; raise StoreRefused for an invalid URL."""
     return settings.artifacts_url is not None and _parsed(settings.artifacts_url).scheme == "s3"
 
 
 def shared_folder(settings: Settings) -> Path | None:
-    """Return the folder that servers share, if the files are in one; raises StoreRefused for a wrong URL."""
+    """Return the folder that servers share, or None; raise StoreRefused for an invalid URL."""
     if settings.artifacts_url is None or (place := _parsed(settings.artifacts_url)).scheme != "file":
         return None
     path = Path(unquote(place.path))
@@ -81,7 +81,7 @@ def _parsed(url: str) -> SplitResult:
         raise _refused(f"it is not a URL; write {FORMS}") from None
     if place.scheme not in ("s3", "file"):
         raise _refused(f"its scheme is {place.scheme[:20]!r}; write {FORMS}")
-    if has_more:  # perhaps keys: the text does not quote it
+    if has_more:  # it may contain keys, so the message does not quote it
         raise _refused(
             f"it contains more than a location; write {FORMS}, with keys in AWS environment variables"
         )
@@ -96,7 +96,7 @@ def _shared_store(path: Path) -> Artifacts:
 
 
 def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
-    """Return the bucket of the settings, once it has answered; raises StoreRefused."""
+    """Return the bucket of the settings once it has answered; raise StoreRefused if it cannot be used."""
     try:
         from app.storage.s3 import Bucket
     except ImportError:
@@ -114,7 +114,7 @@ def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
         bucket.create(_NAME, _NOTE)
     except ArtifactsUnreachable as error:
         raise _refused(f"{where}: {error.reason}. {_remedy(error.reason)}") from None
-    except Exception as error:  # the client refuses the name, the address or the environment
+    except Exception as error:  # the client refuses the name, the address or the environment variables
         raise _refused(
             f"{where} was refused by the S3 client ({type(error).__name__}); write {FORMS}"
         ) from None
@@ -124,7 +124,7 @@ def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
 def _endpoint(endpoint: str | None) -> str | None:
     if endpoint is None:
         return None
-    if not _ENDPOINT.fullmatch(endpoint):  # perhaps it holds keys: the text does not quote it
+    if not _ENDPOINT.fullmatch(endpoint):  # it may contain keys, so the message does not quote it
         address = "write an address such as https://s3.example.com:9000"
         raise StoreRefused(
             f"CRANKWRIGHT_S3_ENDPOINT: {address}, and set keys in the environment variables of AWS."

@@ -35,31 +35,31 @@ T = TypeVar("T")
 Unit = Callable[[Session], T]
 
 AFTER, REPEATABLE = "after commit", "repeatable"
-"""Under which a session keeps, in its `info`, what is to follow its unit, and that this may run again."""
+"""Keys in a session's `info`: the functions that follow its unit, and whether the unit may run again."""
 
 
 class Writer(Protocol):
-    """Runs units of work, each of which is stored whole or not at all; see `Database.write`."""
+    """The interface that runs units of work, each stored whole or not at all; see `Database.write`."""
 
     engine: Engine
 
     def write(self, unit: Unit[T]) -> T:
-        """Run a unit and return its result once that is durable."""
+        """Run a unit and return its result once it is durable."""
         ...
 
     def submit(self, unit: Unit[T]) -> Future[T]:
-        """Queue a unit; its future raises as `write` does."""
+        """Queue a unit; its future raises the same errors as `write`."""
         ...
 
     def close(self) -> None:
-        """Take no more units, and wait for those that were submitted."""
+        """Accept no more units, and wait for those that were submitted."""
         ...
 
 
 def after_commit(session: Session, function: Callable[[], object]) -> None:
     """Call a function once the unit of work of this session is durable; never if the unit is lost.
 
-    It is called in the thread of the writer, before the caller of the unit goes on. It may not write.
+    The thread of the writer calls it before the caller of the unit continues. The function must not write.
     """
     session.info.setdefault(AFTER, []).append(function)
 
@@ -67,40 +67,40 @@ def after_commit(session: Session, function: Callable[[], object]) -> None:
 def repeatable(session: Session) -> None:
     """Declare that this unit of work may run again, even if it has been stored already.
 
-    So it may be repeated when the connection is lost during its commit, and nobody knows if it is stored.
+    The writer may then repeat it if the connection is lost during its commit and its outcome is unknown.
     """
     session.info[REPEATABLE] = True
 
 
 def follow(functions: list[Callable[[], object]]) -> None:
-    """Call the functions that follow a unit; an error in one does not affect the others."""
+    """Call the functions registered to follow a unit; an error in one does not affect the others."""
     for function in functions:
         try:
             function()
         except Exception:
-            logger.exception("What was to follow a unit of work has failed; the unit is stored")
+            logger.exception("A function that follows a unit of work has failed; the unit is stored")
 
 
 DRIVER = "driver"
-"""Under which the session of a unit of work keeps, in its `info`, the connection of SQLite's driver."""
+"""Key in a session's `info` for the connection of SQLite's driver, in a unit of work."""
 READS = "reads by the driver"
-"""Under which the session of a snapshot of SQLite says, in its `info`, that it has such a connection."""
+"""Key in a session's `info` which states that a snapshot session has such a connection."""
 
 Values = Mapping[str, object]
-Row = Sequence[Json]  # whoever selects columns knows their types
+Row = Sequence[Json]  # the caller that selects columns knows their types
 _Convert = Callable[[object], object]
 _SQLITE: Dialect = dialect(paramstyle="qmark")
 
 
 class Statement:
-    """A statement of SQLAlchemy's Core with named values, to be executed in many units of work.
+    """A statement of SQLAlchemy Core with named values, to be executed in many units of work.
 
-    Rows that the session has not written yet do not exist for it: flush the session first.
+    The statement does not see rows that the session has not written yet: flush the session first.
 
     Parameters
     ----------
     clause
-        The statement; defaults of columns that it inserts are constants.
+        The statement; defaults of columns that it inserts must be constants.
     names
         The values that are given at every execution.
     """
@@ -109,7 +109,7 @@ class Statement:
         self.clause, self.names = clause, names
 
     def run(self, session: Session, values: Values | None = None) -> Sequence[Row]:
-        """Execute it and return all rows, if it returns any."""
+        """Execute the statement and return all rows, if it returns any."""
         driver: sqlite3.Connection | None = session.info.get(DRIVER)
         if driver is None and READS in session.info:
             driver = session.connection().connection.driver_connection
@@ -137,7 +137,7 @@ class Statement:
         return None
 
     def run_many(self, session: Session, many: Sequence[Values]) -> None:
-        """Execute it once for each of several sets of values; it returns no rows."""
+        """Execute the statement once for each of several sets of values; return no rows."""
         driver: sqlite3.Connection | None = session.info.get(DRIVER)
         if driver is None:
             session.connection().execute(self.clause, many)
@@ -175,10 +175,10 @@ class Statement:
 
 @dataclass(frozen=True)
 class _DriverStatement:
-    """A statement as SQLite's driver takes it.
+    """A statement in the form that SQLite's driver executes.
 
-    `places` has for each parameter the name of its value; `constants` are those that no caller gives.
-    `writing` converts parameters by their places, `reading` columns of rows. None is NULL in all our columns.
+    `places` names the value of each parameter; `constants` are values that callers do not give. `writing`
+    converts parameters by position, and `reading` converts columns of rows. None is NULL in all columns.
     """
 
     text: str
@@ -197,14 +197,14 @@ class _DriverStatement:
 
 
 def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
-    """Return the error in the form that SQLAlchemy raises."""
+    """Return a driver's error in the form that SQLAlchemy raises."""
     return DBAPIError.instance(text, parameters, error, sqlite3.Error, dialect=_SQLITE)  # type: ignore[call-overload,no-any-return]
 
 
 def insert_new(session: Session, row: Base) -> bool:
-    """Insert a row unless there is one of its key; return whether it was inserted.
+    """Insert a row unless its key exists; return whether it was inserted.
 
-    While another transaction is inserting it, this one waits for its end.
+    If another transaction is inserting the same key, the call waits for the end of that transaction.
     """
     values = inspect(row).dict
     statement = _insertion(row.__table__, tuple(values), _dialect(session))
@@ -212,18 +212,18 @@ def insert_new(session: Session, row: Base) -> bool:
 
 
 def insert_new_values(session: Session, table: FromClause, values: Values) -> bool:
-    """Insert a row given as the values of its columns unless its key exists; return whether it did."""
+    """Insert a row, given by values of its columns, unless its key exists; return whether it did so."""
     return bool(_insertion(table, tuple(values), _dialect(session)).run(session, values))
 
 
 def upsert(session: Session, row: Base) -> None:
-    """Insert a row, or give the one of its key its values; columns that it does not set stay."""
+    """Insert a row, or update the row with its key; columns that it does not set are not changed."""
     values = inspect(row).dict
     session.execute(_replacement(row.__table__, tuple(values), _dialect(session)).clause, values)
 
 
 def upsert_values(session: Session, table: FromClause, values: Values) -> None:
-    """Insert a row given as the values of its columns, or set these columns of the row of its key."""
+    """Insert a row, given by the values of its columns, or update these columns of the row with its key."""
     dialect = "sqlite" if DRIVER in session.info else _dialect(session)
     _replacement(table, tuple(values), dialect).run(session, values)
 
@@ -249,6 +249,6 @@ def _replacement(table: FromClause, names: tuple[str, ...], dialect: str) -> Sta
 
 
 def _insert(table: FromClause, dialect: str) -> postgresql.Insert | sqlite.Insert:
-    """Return the insertion of the database's own kind: the standard knows no conflicts."""
+    """Return the dialect's own insert statement, because standard SQL has no conflict clause."""
     assert isinstance(table, Table)
     return sqlite.insert(table) if dialect == "sqlite" else postgresql.insert(table)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import Generic, TypeVar
 
-REMEMBERED = 20_000  # files; some 200 bytes each
-_RACY = 1_000_000_000  # a change within this time of the last one may show the same times [ns]
+REMEMBERED = 20_000  # largest number of remembered files, about 200 bytes each
+_RACY = 1_000_000_000  # two changes within this time may leave the same times [ns]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class OpenFile:
     stamp: Stamp
 
     def is_unchanged(self) -> bool:
-        """Return whether the file still has that stamp."""
+        """Return whether the file still has the stamp of the verification."""
         return stamp_of(self.file) == self.stamp
 
     def __enter__(self) -> OpenFile:
@@ -54,7 +54,7 @@ T = TypeVar("T")
 
 
 class Newest(Generic[T]):
-    """The latest notes by name, for a bounded number of names."""
+    """The latest entries by name, for a bounded number of names."""
 
     def __init__(self, most: int = REMEMBERED) -> None:
         self._most = most
@@ -62,12 +62,12 @@ class Newest(Generic[T]):
         self._lock = threading.Lock()
 
     def knows(self, sha: str) -> bool:
-        """Return whether the notes have an entry for this name."""
+        """Return whether there is an entry for this name."""
         with self._lock:
             return sha in self._noted
 
     def has(self, sha: str, noted: T) -> bool:
-        """Return whether the notes have this entry for a name."""
+        """Return whether the entry for a name equals a given one."""
         with self._lock:
             if self._noted.get(sha) != noted:
                 return False
@@ -75,7 +75,7 @@ class Newest(Generic[T]):
             return True
 
     def add(self, sha: str, noted: T) -> None:
-        """Store this entry for a name in place of any other."""
+        """Store an entry for a name in place of any other."""
         with self._lock:
             self._noted[sha] = noted
             while len(self._noted) > self._most:
@@ -91,6 +91,6 @@ class VerifiedStamps(Newest[Stamp]):
     """The newest verified stamps by name."""
 
     def add(self, sha: str, noted: Stamp) -> None:
-        """Remember a verified file, unless it is so young that a further change could keep its times."""
+        """Remember a verified file, unless it is so young that a change might not change its times."""
         if abs(time.time_ns() - noted.changed) >= _RACY:
             super().add(sha, noted)

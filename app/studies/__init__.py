@@ -1,1 +1,1 @@
-"""Studies: many rows of one design, calculated in chunks that survive a crash."""
+"""Studies: many rows of one design, calculated in chunks. Stored chunks survive a crash."""

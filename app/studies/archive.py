@@ -1,4 +1,4 @@
-"""Arrays as bytes: an `.npz` file whose bytes depend only on its contents, not on the date."""
+"""Arrays as an `.npz` file whose bytes depend only on its contents, not on the date."""
 
 from __future__ import annotations
 
@@ -17,15 +17,12 @@ from app.storage.tables import canonical_json
 from app.workers.pieces import Pieces
 
 AnyArray = NDArray[np.generic]
-_DATE = (1980, 1, 1, 0, 0, 0)  # the first that a ZIP file can name
+_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a ZIP file can store
 _ABOUT = "about"
 
 
 def packed(arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = None) -> Pieces:
-    """Return the bytes of an archive of arrays, and a JSON object beside them.
-
-    Equal contents, equal bytes.
-    """
+    """Return an archive of arrays and an optional JSON object as bytes; equal contents give equal bytes."""
     stream = io.BytesIO()
     write(stream, arrays, about)
     return Pieces.of(stream.getvalue())
@@ -34,14 +31,14 @@ def packed(arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = 
 def write(
     stream: IO[bytes], arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = None
 ) -> None:
-    """Write such an archive into a file."""
+    """Write an archive of arrays and an optional JSON object to a file."""
     write_each(stream, ((name, arrays[name]) for name in sorted(arrays)), about)
 
 
 def write_each(
     stream: IO[bytes], arrays: Iterable[tuple[str, AnyArray]], about: Mapping[str, object] | None = None
 ) -> None:
-    """Write such an archive, one array after another, so that not all must be in memory."""
+    """Write an archive one array after another, so that not all arrays must be in memory."""
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays:
             _write_member(archive, name, np.ascontiguousarray(array))
@@ -57,7 +54,7 @@ def _write_member(archive: zipfile.ZipFile, name: str, array: AnyArray) -> None:
 
 
 class Archive:
-    """An archive that is read array by array: what nobody asks for is not read."""
+    """An archive that is read array by array, on request."""
 
     def __init__(self, source: IO[bytes] | bytes) -> None:
         self._source = io.BytesIO(source) if isinstance(source, bytes) else source
@@ -72,7 +69,7 @@ class Archive:
 
     @property
     def names(self) -> list[str]:
-        """Return the names of its arrays, without the JSON object."""
+        """Return the names of the arrays, without the JSON object."""
         members = (name.removesuffix(".npy") for name in self._file.namelist())
         return [name for name in members if name != _ABOUT]
 
@@ -85,7 +82,7 @@ class Archive:
         return array
 
     def about(self) -> JsonObject:
-        """Return the JSON object beside the arrays; empty if there is none."""
+        """Return the JSON object stored with the arrays; empty if there is none."""
         if _ABOUT not in self:
             return {}
         about: JsonObject = json.loads(self[_ABOUT].tobytes())

@@ -17,7 +17,7 @@ from app.studies.schemas import Method
 
 MOST_VARIED, MOST_OUTPUTS, MOST_BUILT, MOST_SEED = 20, 50, 200, 2**32 - 1
 MOST_ROWS = {"grid": 10**6, "table": 10**5, "sample": 10**6, "sensitivity": 10**5, "optimise": 10**5}
-"""Rows of a study by method."""
+"""Largest number of rows of a study, by method."""
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 _PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
@@ -28,7 +28,7 @@ Places = Annotated[list[Place], Field(max_length=MOST_OUTPUTS)]
 
 
 class Vary(Bounded):
-    """The values of one place: anything between two bounds, or one of a list."""
+    """The values of one varied place: an interval between two bounds, or a list."""
 
     model_config = _STRICT
 
@@ -42,14 +42,14 @@ class Vary(Bounded):
 
     @model_validator(mode="after")
     def one_of_both(self) -> Self:
-        """Check that either bounds or a list is given."""
+        """Check that either bounds or a list are given, not both."""
         if (self.between is None) == (self.values is None):
             raise ValueError("give either `between`, two bounds, or `values`, a list")
         return self
 
 
 class StageAccuracy(Bounded):
-    """Accuracy that a level must reach."""
+    """The accuracy that the levels of a stage must reach."""
 
     model_config = _STRICT
 
@@ -66,54 +66,67 @@ EXAMPLE: JsonDict = {
 
 
 class StudyIn(Bounded):
-    """A new study."""
+    """Request for a new study."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra={"examples": [EXAMPLE]}
     )
 
     design: str = Field(max_length=64)
-    revision: int | None = Field(None, ge=1, le=10**9, description="the newest, if not given")
+    revision: int | None = Field(
+        None, ge=1, le=10**9, description="revision of the design; by default the newest"
+    )
     variant: VariantName | None = Field(
-        None, description="which variant is studied; the design itself, if not given"
+        None, description="the variant to study; by default the design itself"
     )
     method: Method
-    seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
+    seed: int = Field(
+        1, ge=0, le=MOST_SEED, description="seed of random numbers; equal seeds give equal rows"
+    )
     vary: Annotated[dict[Place, Vary], Field(max_length=MOST_VARIED), at_most(MOST_VARIED)] = Field(
         {},
-        description="parameters, `step.input` and `model.parameter`; `set_aside` names those with a relation",
+        description="values by parameter, `step.input` or `model.parameter`; list those with a relation in "
+        "`set_aside`",
     )
     set_aside: Annotated[list[Place], Field(max_length=MOST_VARIED)] = Field(
-        [], description="varied places that a relation sets: the relation does not hold in this study"
+        [], description="varied places whose relation does not apply in this study"
     )
-    steps: int | dict[Place, int] | None = Field(None, description="of `grid`: for each interval, or by name")
+    steps: int | dict[Place, int] | None = Field(
+        None, description="for `grid`: number of steps for all intervals, or by name"
+    )
     rows: dict[Place, Given] | list[dict[Place, Given]] | None = Field(
-        None, description="of `table`: columns by name, each an array with its unit, or a list of rows"
+        None, description="for `table`: columns by name, each an array with its unit, or a list of rows"
     )
-    points: int | None = Field(None, ge=1, description="of `sample`; the base of `sensitivity`")
-    sequence: Literal["sobol", "lhs"] = Field("sobol", description="of `sample`")
-    kind: Literal["local", "morris", "sobol"] = Field("local", description="of `sensitivity`")
-    outputs: Places = Field([], description="what each row keeps, beside what is minimised or maximised")
+    points: int | None = Field(
+        None, ge=1, description="for `sample`: number of rows; for `sensitivity`: base number of points"
+    )
+    sequence: Literal["sobol", "lhs"] = Field("sobol", description="for `sample`")
+    kind: Literal["local", "morris", "sobol"] = Field("local", description="for `sensitivity`")
+    outputs: Places = Field([], description="outputs to store for each row, besides the objectives")
     minimise: Places = []
     maximise: Places = []
     hold: Annotated[list[CriterionName], Field(max_length=100)] | None = Field(
-        None, description="criteria that a row must meet; all of the design if not given"
+        None, description="criteria that a row must meet; by default all criteria of the design"
     )
-    explore: StageAccuracy | None = Field(None, description="levels of the design itself, if not given")
-    confirm: StageAccuracy | None = Field(None, description="the best rows are calculated again to this")
+    explore: StageAccuracy | None = Field(
+        None, description="accuracy of the exploration; by default at the levels of the design"
+    )
+    confirm: StageAccuracy | None = Field(
+        None, description="accuracy to which the best rows are recalculated"
+    )
     build: (
         Literal["none", "best", "front", "all"]
         | Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=MOST_BUILT)]
-    ) = Field("none", description=f"rows that become variants of a new design, at most {MOST_BUILT}")
+    ) = Field("none", description=f"rows that become variants of a new design; at most {MOST_BUILT}")
 
 
 def study_of(raw: JsonObject) -> StudyIn:
-    """Return a study from plain values.
+    """Return the request for a study from plain values.
 
     Raises
     ------
     InvalidBody
-        With all its faults.
+        With all faults.
     """
     try:
         return StudyIn.model_validate(raw)
@@ -122,7 +135,7 @@ def study_of(raw: JsonObject) -> StudyIn:
 
 
 class ChooseIn(Bounded):
-    """A row whose values become a revision."""
+    """Request to create a revision with the values of a row."""
 
     model_config = ConfigDict(strict=True, extra="forbid", json_schema_extra={"examples": [{"row": 2}]})
 

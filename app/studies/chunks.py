@@ -1,4 +1,4 @@
-"""Rows calculated in a calculation process: a chunk is a pure function of the study and its number."""
+"""Calculate rows in a calculation process: a chunk depends only on the study and the chunk's number."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ Levels = Mapping[str, str | None]
 
 @dataclass(frozen=True)
 class PendingSolids:
-    """The solids that rows wait for."""
+    """The solids that must be built before the rows can be calculated."""
 
     solids: tuple[SolidRequest, ...]
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows that were calculated: their values as bytes, their number, and how many refused, by reason."""
+    """Calculated rows: their values as bytes, their number, and the number of refused rows by reason."""
 
     content: Pieces
     rows: int
@@ -38,7 +38,7 @@ class Chunk:
 def explored(
     task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
 ) -> Chunk | PendingSolids:
-    """Return rows number `first` to `last`, the last one excluded, in the order of the method."""
+    """Return the chunk of rows `first` to `last`, excluding `last`, in the order of the method."""
     points = prepared(task).asked.points
     assert points is not None, "a table or an optimisation gives its rows itself"
     return calculated(task, points.rows(first, last), levels, criteria, solids)
@@ -47,7 +47,7 @@ def explored(
 def calculated(
     task: Task, rows: Array, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
 ) -> Chunk | PendingSolids:
-    """Return rows given by their values [SI], shape (N, d), or the solids that they wait for."""
+    """Return the chunk of rows given by their values [SI], shape (N, d), or the solids that they need."""
     ready = prepared(task)
     resolved = ready.solids.resolved(placed(ready, rows), len(rows), levels, solids)
     if resolved.wanting:
@@ -63,7 +63,7 @@ def calculated(
 
 
 def placed(ready: TaskState, rows: Array) -> dict[Reference, Array]:
-    """Return the columns of rows, shape (N, d), by their places."""
+    """Return the columns of rows, shape (N, d), by the places that they set."""
     return {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
 
 
@@ -76,23 +76,26 @@ def called(
     measures: Mapping[Reference, Array] | None = None,
     judge: bool = False,
 ) -> Table:
-    """Return the table of some rows, shape (N, d); without `measures`, with those of the design itself."""
+    """Return the engine's table for some rows, shape (N, d).
+
+    Without `measures`, the solids of all rows have the measurements of the design itself.
+    """
     values = {**placed(ready, rows), **(tried(ready, len(rows)) if measures is None else measures)}
     return ready.engine(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
 
 
 def tried(ready: TaskState, count: int) -> dict[Reference, Array]:
-    """Return the measures of the design itself for rows that are only tried; NaN where they are not known."""
+    """Return the measurements of the design itself for each row of a trial; NaN where unknown."""
     return {r: np.full(count, ready.nominal.get(r, np.nan)) for r in ready.solids.measures}
 
 
 def columns_of(names: tuple[str, ...], rows: Array) -> dict[str, AnyArray]:
-    """Return the values of the places, as a chunk keeps them."""
+    """Return the values of the varied places as named arrays of a chunk."""
     return {f"place/{name}": rows[:, column] for column, name in enumerate(names)}
 
 
 def results_of(table: Table, wanted: tuple[Reference, ...]) -> dict[str, AnyArray]:
-    """Return the values of the outputs, their errors and the verdicts, as a chunk keeps them."""
+    """Return outputs, errors and verdicts as named arrays of a chunk."""
     results: dict[str, AnyArray] = {}
     for output in wanted:
         results[f"output/{output}"] = table.columns[output]
@@ -105,9 +108,9 @@ def results_of(table: Table, wanted: tuple[Reference, ...]) -> dict[str, AnyArra
 
 
 def reasons_of(table: Table) -> tuple[list[list[str]], AnyArray]:
-    """Return distinct reasons of refused rows, and the place of each row's in that list.
+    """Return the distinct reasons of refused rows, and for each row the index of its reason.
 
-    -1 where it has values.
+    The index is -1 for a row with values.
     """
     places: dict[Refusal, int] = {}
     which = np.full(table.count, -1, dtype=np.int32)

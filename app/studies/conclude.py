@@ -1,4 +1,4 @@
-"""Conclude a study once its rows are calculated: the best row, the front, sensitivities."""
+"""Conclude a study after its rows are calculated: find the best row, the front, or sensitivities."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from templates.core.criteria.comparison import is_met
 
 
 class StudyConclusion:
-    """Calculates all that a method needs, and says what it found."""
+    """Calculates the rows of a study, evaluates them with the study's method, and returns the result."""
 
     def __init__(self, building: DesignFactory) -> None:
         self._building = building
 
     def __call__(self, run: Run) -> StudyResult:
-        """Return the result of a study; raises the errors that its design causes."""
+        """Return the result of a study; raise the errors that its design causes."""
         return self._building.built(run, read_body(run.task.body), _concluded(run))
 
 
@@ -48,7 +48,7 @@ def _sensitivity(run: Run) -> StudyResult:
 
 
 def _chosen(run: Run) -> StudyResult:
-    """Return the best rows among all; those that matter are calculated again, if the study asks for that."""
+    """Return the best rows as the result; if requested, recalculate them first at finer levels."""
     stored = run.stored(run.plan.chunks)
     worst = stored.worst(run.plan.required)
     met = _shares_met(run, stored, worst)
@@ -74,7 +74,7 @@ def _chosen(run: Run) -> StudyResult:
 
 
 def _shares_met(run: Run, stored: StoredRows, worst: AnyArray) -> dict[str, object]:
-    """Return the share of rows that meet all criteria, and each single one; nothing without criteria."""
+    """Return the share of rows that meet all criteria, and each criterion; empty without criteria."""
     if not run.plan.required:
         return {}
     shares = {name: float(np.mean(is_met(stored.codes(name)))) for name in run.plan.required}
@@ -84,7 +84,7 @@ def _shares_met(run: Run, stored: StoredRows, worst: AnyArray) -> dict[str, obje
 def _feasible(
     stored: StoredRows, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
 ) -> Integers:
-    """Return the rows that count among those calculated again, the best first."""
+    """Return the recalculated rows that meet all criteria, best first."""
     objectives = signed(stored.rows([f"{OUTPUT}{name}" for name in names], numbers), maximised)
     worst = stored.worst(run.plan.required)[numbers]
     if len(names) == 1:
@@ -101,7 +101,7 @@ def _result(
     several: bool,
 ) -> StudyResult:
     if not len(numbers):
-        return _answered(**met, notes=["no row meets all criteria that are held"])
+        return _answered(**met, notes=["no row meets all required criteria"])
     is_confirmed = run.plan.confirm is not None
     best = rows_found(run, stored, numbers if several else numbers[:1], confirmed=is_confirmed)
     result: dict[str, object] = {
@@ -112,12 +112,12 @@ def _result(
 
 
 def _answered(**fields: object) -> StudyResult:
-    """Return a result without the fields that do not apply."""
+    """Return a result without the fields that are None."""
     return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
 
 
 def _trade(run: Run, stored: StoredRows, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
-    """Return the estimate of each exploration level in some rows, and the accurate value there."""
+    """Return the exploration level's estimates for some rows, with the recalculated values."""
     pairs = zip(
         rows_found(run, stored, explored, confirmed=False),
         rows_found(run, stored, confirmed, confirmed=True),

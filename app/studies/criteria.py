@@ -13,22 +13,22 @@ from templates.core.criteria.criterion import Criterion
 
 
 def criterion_of(engine: DesignEngine, name: str) -> Criterion:
-    """Return a criterion from the design, else from the template of its step."""
+    """Return the criterion with this name, from the design or from the template of a step."""
     return subjects(engine.graph)[name].criterion
 
 
 JUDGED = "judged/"
 SIDES = ("value", "limit", "low", "high", "is_known")
-"""The values of a criterion that a search needs, in arrays `judged/<criterion>/<side>`; 1 is known."""
+"""The numbers of a criterion for a search, in arrays `judged/<criterion>/<side>`; `is_known` is 0 or 1."""
 
 
 def judged_of(engine: DesignEngine, name: str, table: Table) -> dict[str, AnyArray]:
-    """Return the value, limit and margins [SI] of a criterion over the rows; at least zero is safe."""
+    """Return value, limit and margins [SI] of a criterion for all rows; a margin of zero or more is safe."""
     column, codes = table.judged[name], np.asarray(table.verdicts[name])
     sign = 1.0 if criterion_of(engine, name).sign == ">=" else -1.0
     ends = sign * (column.low - column.limit), sign * (column.high - column.limit)
     margin = sign * (column.value - column.limit)
-    # The verdict knows the band of the limit as well: where that leaves it open, the bad end is not safe.
+    # The verdict also includes the band of the limit. If it is not "met", the bad end must be negative.
     low = np.where(~is_met(codes) & (np.minimum(*ends) >= 0), -np.abs(margin), np.minimum(*ends))
     sides = (column.value, column.limit, low, np.maximum(*ends), codes != MET_ERROR_UNKNOWN)
     pairs = zip(SIDES, sides, strict=True)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-AGAIN_SECONDS = 2  # after which rows that are calculated again may be asked for
+AGAIN_SECONDS = 2  # time after which a client may ask for recalculated rows [s]
 
 
 class RowsLost(Exception):
-    """Calculated rows are missing or damaged; a job calculates them again.
+    """Raised if calculated rows are missing or damaged; a job recalculates them.
 
     Attributes
     ----------
     job
         The id of that job.
     retry_after
-        When to ask again [s].
+        Time after which the client may ask again [s].
     """
 
     def __init__(self, study: str, job: str) -> None:

@@ -1,7 +1,7 @@
-"""Estimate the processor time of a study from a few rows, calculated before it is accepted.
+"""Estimate the processor time of a study from a few rows, which are calculated before it is accepted.
 
-The cost tables of levels include neither criteria nor a heat balance. The chunk size still comes from them,
-because a measured size would make equal studies unequal.
+The cost tables of levels include neither criteria nor a heat balance. The chunk size still comes from these
+tables, because a measured size would differ between equal studies.
 """
 
 from __future__ import annotations
@@ -17,22 +17,25 @@ from app.studies.front import MOST_CONFIRMED, MOST_FRONT
 from app.studies.task import TaskState
 from templates.core.arrays import Array
 
-FEW, MANY = 8, 1024  # rows of the two calls that are timed
-AFFORDABLE = 0.5  # for the call of many rows [s]
-SCANNED, CALLS = 4096, 100  # rows of the scan of a search, and calls of a few rows after it
-GENERATIONS, POPULATION = 500, 100  # calls of a search for several objectives, in all rounds; rows of each
-IN_CALL = 4096  # rows
+FEW, MANY = 8, 1024  # numbers of rows in the two timed calls
+AFFORDABLE = 0.5  # largest time of the call with many rows [s]
+SCANNED, CALLS = 4096, 100  # number of rows in the scan of a search, and of calls with few rows after it
+GENERATIONS, POPULATION = (
+    500,
+    100,
+)  # number of calls in all rounds of a search for several objectives; rows of each call
+IN_CALL = 4096  # largest number of rows in a call
 
 
 @dataclass(frozen=True)
 class Pace:
-    """The time of a call beside its rows, and of a row [s of processor time]."""
+    """The fixed processor time of a call, and the processor time of each row [s]."""
 
     call: float
     row: float
 
     def seconds(self, rows: int, calls: int = 0) -> float:
-        """Return the time of this number of rows in a number of calls, by default as few as possible [s]."""
+        """Return the time of some rows in a number of calls, by default as few calls as possible [s]."""
         return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
 
 
@@ -45,7 +48,7 @@ def estimated(
     confirm: Levels | None,
     chunk: int,
 ) -> float:
-    """Return the processor time of a study of this number of rows, in chunks of a given size [s]."""
+    """Return the processor time [s] of a study with this number of rows, in chunks of a given size."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace
@@ -60,9 +63,9 @@ def estimated(
 
 
 def paced(ready: TaskState, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:
-    """Return the pace at some levels, by a call of a few rows and one of as many as are affordable."""
+    """Return the pace at some levels, measured by two calls: a few rows, then as many as are affordable."""
     few, many = probe[:FEW], np.resize(probe, (MANY, probe.shape[1]))
-    timed(ready, few[:1], criteria, levels)  # what is loaded once does not count
+    timed(ready, few[:1], criteria, levels)  # warm up, so that loading of modules is not timed
     first = timed(ready, few, criteria, levels)
     if first > AFFORDABLE:
         return Pace(0.0, first / len(few))

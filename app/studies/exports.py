@@ -1,4 +1,4 @@
-"""The rows of a study as files: CSV written row by row, XLSX of some rows, and an archive of all columns."""
+"""The rows of a study as files: CSV row by row, XLSX for fewer rows, and an archive of all columns."""
 
 from __future__ import annotations
 
@@ -18,12 +18,15 @@ from app.studies.views import RowList
 from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, VERDICTS
 from templates.core.errors import Fault, InvalidInputs
 
-MOST_XLSX = 20_000  # rows of a sheet: a spreadsheet program takes a million, but not gladly
-SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sorted ones lie in all chunks
+MOST_XLSX = 20_000  # largest number of rows in a sheet; spreadsheet programs become slow far below a million
+SOME, SOME_SORTED = (
+    2000,
+    20_000,
+)  # rows that are read and written at once; more if sorted, because these come from all chunks
 
 
 def heads(listing: RowList, system: System) -> list[list[str]]:
-    """Return the two rows above the numbers: names, then units."""
+    """Return the two heading rows: names, then units."""
     criteria = listing.plan.criteria
     names = ["row", *listing.names, *criteria, "verdict", "error unknown", "level", "reason"]
     units = [shown_unit(unit, system) for unit in listing.units.values()]
@@ -31,7 +34,7 @@ def heads(listing: RowList, system: System) -> list[list[str]]:
 
 
 def lines(listing: RowList, system: System) -> Iterator[list[Value]]:
-    """Yield a line for each row, under `heads`."""
+    """Yield one line of cells for each row, in the order of `heads`."""
     numbers = listing.numbers()
     size = SOME if listing.wanted.sort is None else SOME_SORTED
     for start in range(0, len(numbers), size):
@@ -53,7 +56,7 @@ def _cell(value: object) -> float | str:
 
 
 def csv_parts(listing: RowList, system: System) -> Iterator[bytes]:
-    """Yield the rows as CSV, piece by piece."""
+    """Yield the rows as pieces of a CSV file."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerows(heads(listing, system))
@@ -67,17 +70,15 @@ def csv_parts(listing: RowList, system: System) -> Iterator[bytes]:
 
 
 def xlsx(listing: RowList, system: System) -> bytes:
-    """Return the rows as one sheet.
+    """Return the rows as an XLSX file with one sheet.
 
     Raises
     ------
     InvalidInputs
-        If there are too many for a sheet.
+        If there are too many rows for a sheet.
     """
     if listing.stored.count > MOST_XLSX and len(listing.numbers()) > MOST_XLSX:
-        detail = (
-            f"a sheet holds at most {MOST_XLSX} rows here; ask for rows.csv or rows.npz, or filter by `where`"
-        )
+        detail = f"a sheet has at most {MOST_XLSX} rows; download rows.csv or rows.npz, or filter by `where`"
         raise InvalidInputs([Fault("rows", "too_many_rows", detail)])
     from openpyxl import Workbook  # type: ignore[import-untyped]
 
@@ -91,7 +92,7 @@ def xlsx(listing: RowList, system: System) -> bytes:
 
 
 def write_npz(listing: RowList, file: IO[bytes]) -> None:
-    """Write all columns as arrays by name, in their units, the verdicts as words; equal rows, equal bytes."""
+    """Write all columns as named arrays in their units, verdicts as words; equal rows give equal bytes."""
     write_each(file, _arrays(listing), {"units": listing.units, "levels": dict(listing.plan.levels)})
 
 

@@ -1,4 +1,4 @@
-"""The best row and the Pareto front of the calculated rows."""
+"""Find the best row and the Pareto front among the calculated rows."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from app.studies.archive import AnyArray
 from templates.core.arrays import Array, Integers, Mask
 from templates.core.criteria.comparison import UNDECIDED, is_met
 
-MOST_CONFIRMED = 64  # rows that are calculated again for one objective
+MOST_CONFIRMED = 64  # largest number of rows that are recalculated for one objective
 MOST_FRONT = 200
 
 
 def ranked(objective: Array, worst: AnyArray, most: int, *, undecided: bool = False) -> Integers:
-    """Return the rows of least objective among those that meet all criteria, the best first.
+    """Return the rows with the smallest objectives among those that meet all criteria, best first.
 
-    With `undecided`, rows whose limits lie within the error of their level are among them.
+    With `undecided`, rows whose limits lie within the error of their level are included.
     """
     usable = np.isfinite(objective) & _may_be_met(worst, undecided=undecided)
     rows = np.flatnonzero(usable)
@@ -25,11 +25,10 @@ def ranked(objective: Array, worst: AnyArray, most: int, *, undecided: bool = Fa
 
 
 def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Integers:
-    """Return the rows that no other one equals or betters in all objectives, shape (N, k).
+    """Return the rows that no other row equals or betters in all objectives, shape (N, k).
 
-    At most `MOST_FRONT`.
-
-    They are in the order of the first objective; of more, those are kept that are spread evenly over it.
+    The rows are ordered by the first objective, then by the others. If there are more than `MOST_FRONT`, an
+    evenly spaced selection is returned.
     """
     usable = np.isfinite(objectives).all(axis=1) & _may_be_met(worst, undecided=undecided)
     rows = np.flatnonzero(usable)
@@ -46,9 +45,9 @@ def _may_be_met(worst: AnyArray, *, undecided: bool) -> Mask:
 
 
 def _undominated(sorted_rows: Array) -> Mask:
-    """Return a mask of the rows that no earlier row dominates; rows are sorted by their columns.
+    """Return a mask of the rows that no earlier row dominates; the rows must be sorted.
 
-    Only rows that are kept are compared with, so that the cost is that of rows times front.
+    Each row is compared with the kept rows only, so the cost is rows times front.
     """
     kept = np.zeros(len(sorted_rows), dtype=bool)
     members: Array = np.empty((0, sorted_rows.shape[1]))
@@ -60,5 +59,5 @@ def _undominated(sorted_rows: Array) -> Mask:
 
 
 def signed(columns: Array, maximised: Sequence[bool]) -> Array:
-    """Return objectives with their sign changed where they are maximised."""
+    """Return objectives with the sign changed for those that are maximised."""
     return columns * np.where(maximised, -1.0, 1.0)

@@ -1,4 +1,4 @@
-"""An optimisation in slices: each slice is stored as a chunk before the next begins."""
+"""Optimise in slices; each slice is stored as a chunk before the next one begins."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from app.workers.pieces import Pieces
 from templates.core.arrays import Array, Integers
 
 SETTLED = {
-    "settled": "promise and confirmed values agree, and all criteria that are held are met",
-    "unconfirmed": "all criteria that are held are met, but the error of the confirming levels is unknown",
+    "settled": "prediction and confirmed values agree, and all required criteria are met",
+    "unconfirmed": "all required criteria are met, but the error of the confirming levels is unknown",
     "undecided": "a limit lies within the error of the confirming levels",
-    "infeasible": "no row that was looked at meets all criteria",
-    "not_settled": "the search has not settled",
+    "infeasible": "no examined row meets all criteria",
+    "not_settled": "the search has not converged",
 }
 
 
 def optimised(run: Run) -> StudyResult:
-    """Search until the end, from what is stored; what was found."""
+    """Continue a search from its stored chunks until it ends, and return the result."""
     search = Search(
         levels=tuple(tuple(sorted(levels.items())) for levels in run.plan.searched),
         criteria=tuple(run.plan.criteria),
@@ -65,7 +65,7 @@ def _listed(best: list[Best], *, several: bool) -> dict[str, object]:
 
 
 def _numbers(run: Run, stored: StoredRows, places: tuple[Array, ...]) -> Integers:
-    """Return the rows of these places, as they were confirmed."""
+    """Return the numbers of the rows in which these points were confirmed."""
     rows = stored.rows([f"{PLACE}{name}" for name in run.plan.places], np.arange(stored.count))
     levels = stored.values("level")
     is_fine = levels == (CONFIRM if run.plan.confirm not in (None, run.plan.levels) else EXPLORE)

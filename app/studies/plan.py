@@ -25,50 +25,55 @@ from templates.core.arrays import Array
 from templates.core.criteria.comparison import NOT_CHECKED
 from templates.core.errors import Fault, InvalidInputs, unknown_names
 
-CHUNK_SECONDS = 0.5  # estimated, of the rows of a chunk: cancelling and a crash lose less than a second
+CHUNK_SECONDS = 0.5  # estimated time of a chunk: a cancellation or a crash loses less than a second
 MOST_IN_CHUNK, STEP_OF_CHUNK = 8192, 4096
 MOST_CHUNKS = 10**6
-MOST_COMPARED = 3  # levels cheaper than that of the exploration, searched once each
-TRIED = 8  # rows that are calculated before the study is accepted
-PROBED = 64  # rows by which levels are chosen
-SHARE = 0.95  # of the rows, at which a level must be within the tolerance
+MOST_COMPARED = 3  # number of levels cheaper than that of the exploration; each is searched once
+TRIED = 8  # number of rows that are calculated before the study is accepted
+PROBED = 64  # number of rows from which levels are chosen
+SHARE = 0.95  # share of the rows in which a level must be within the tolerance
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The fixed part of a study, kept in its row."""
+    """The fixed part of a study, stored in its row."""
 
     places: list[str]
     outputs: list[str]
-    criteria: list[str]  # judged
-    required: list[str]  # those that a row must meet
+    criteria: list[str]  # criteria that are judged
+    required: list[str]  # criteria that a row must meet
     units: dict[str, str]
     levels: dict[str, str | None]
     confirm: dict[str, str | None] | None
     rows: int
     chunk: int
     confirm_chunk: int
-    searched: list[dict[str, str | None]]  # levels of an optimisation: explore, confirm, others to compare
+    searched: list[
+        dict[str, str | None]
+    ]  # levels of an optimisation: explore, confirm, then those to compare
     seconds: float
-    measured: dict[str, float]  # measures of solids that are known [SI]
-    solids: int = 0  # that rows need, at most
-    solid_seconds: float = 0.0  # that each of them takes [s]; plans of older studies have neither
-    set_aside: dict[str, str] = field(default_factory=dict)  # relations that the rows replace, by place
+    measured: dict[str, float]  # known measurements of solids [SI]
+    solids: int = 0  # largest number of solids that the rows need
+    solid_seconds: float = 0.0  # time to build a solid [s]; 0 in plans of older studies
+    set_aside: dict[str, str] = field(default_factory=dict)  # replaced relations, by place
 
     def share(self, rows: int, solids: int) -> float:
-        """Return the progress, 0 to 1, at so many rows and solids, by the seconds that each takes."""
+        """Return the progress, from 0 to 1, after some rows and solids, weighted by their estimated times."""
         building = min(1.0, self.solids * self.solid_seconds / self.seconds) if self.solids else 0.0
         done = building * min(1.0, solids / self.solids) if self.solids else 0.0
         return min(1.0, done + (1.0 - building) * rows / max(1, self.rows))
 
     @property
     def estimate(self) -> float | None:
-        """Return the estimated time of all rows [s]; None of a search, and where solids have to be built."""
+        """Return the estimated time of all rows [s]; None for a search, and if solids have to be built."""
         return None if self.searched or self.solids else self.seconds
 
     @property
     def chunks(self) -> int:
-        """Number of chunks that explore; those that confirm follow. An optimisation has no such number."""
+        """Return the number of chunks of the exploration; chunks of the confirmation follow them.
+
+        An optimisation has no such number.
+        """
         return MOST_CHUNKS if self.searched else -(-self.rows // self.chunk)
 
     def plain(self) -> JsonObject:
@@ -77,19 +82,19 @@ class Plan:
 
     @classmethod
     def of(cls, plain: JsonObject) -> Self:
-        """Return the plan that a JSON object holds."""
+        """Return the plan from its JSON form."""
         return cls(**plain)
 
 
 def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, Array | None]:
     """Return the plan of a study, and the values [SI] of the given rows if the method is `table`.
 
-    `solid_seconds` is how long it takes to build a solid [s], for rows that wait for solids.
+    `solid_seconds` is the time to build one solid [s], for rows that need solids.
 
     Raises
     ------
     InvalidInputs
-        With what is wrong: unknown places, units, bounds, too many rows, too many solids.
+        With all faults: unknown places, units, bounds, too many rows, too many solids.
     """
     ready = prepared(task)
     body, given = ready.asked.body, None
@@ -143,7 +148,7 @@ def _count(asked: StudyQuestion, given: Array | None) -> int:
 
 
 def _probe(asked: StudyQuestion, count: int, given: Array | None) -> Array:
-    """Return some rows, spread over all of them."""
+    """Return a sample of the study's rows."""
     if asked.points is None and given is None:
         return asked.space.at(_lattice(len(asked.space)))
     numbers = np.unique(np.linspace(0, count - 1, min(count, PROBED)).astype(int)).tolist()
@@ -155,7 +160,7 @@ def _probe(asked: StudyQuestion, count: int, given: Array | None) -> Array:
 
 
 def _lattice(dimensions: int) -> Array:
-    """Return places in the unit cube, evenly spread (Kronecker's lattice): the middle first."""
+    """Return evenly spread points of the unit cube (Kronecker's lattice), beginning with the middle."""
     steps = np.sqrt(np.arange(2, 2 + dimensions))
     return np.asarray((0.5 + np.outer(np.arange(PROBED), steps)) % 1.0)
 
@@ -168,8 +173,8 @@ def _levels(
 
 
 def _chunk(ready: TaskState, criteria: Collection[str], levels: Levels) -> int:
-    """Return rows of a chunk: as many as take half a second, and a multiple of what an array call takes."""
-    wanted = ready.asked.wanted  # by tables, so that equal studies have equal chunks
+    """Return the number of rows in a chunk: half a second of calculation, in multiples of `STEP_OF_CHUNK`."""
+    wanted = ready.asked.wanted  # from cost tables, so that equal studies have equal chunks
     seconds = ready.engine.seconds(STEP_OF_CHUNK, wanted, levels, criteria=criteria, by_tables=True)
     per_row = seconds / STEP_OF_CHUNK
     fitting = max(1, min(MOST_IN_CHUNK, int(CHUNK_SECONDS / max(per_row, 1e-9))))
@@ -191,7 +196,7 @@ def _searched(
 
 
 def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
-    """Return the criteria that are judged: those named, else all of the design."""
+    """Return the criteria to judge: the named ones, else all of the design."""
     if hold is None:
         return sorted(names)
     if unknown := [name for name in hold if name not in names]:
@@ -200,9 +205,9 @@ def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
 
 
 def _checked(criteria: Sequence[str], tried: Table, task: Task) -> list[str]:
-    """Return the criteria that count: not waived, and checked in any row that was tried.
+    """Return the criteria that count: not waived, and checked in at least one trial row.
 
-    Nobody has given the limits of the others, so that no row could meet them.
+    The other criteria have no limits, so that no row could meet them.
     """
     waived = {n for n, c in Document.model_validate_json(task.design.document).criteria.items() if c.waived}
     there = np.isin(np.arange(tried.count), list(tried.refusals), invert=True)
@@ -214,14 +219,14 @@ def _checked(criteria: Sequence[str], tried: Table, task: Task) -> list[str]:
 def _refuse_curves(columns: dict[Reference, Array], wanted: Sequence[Reference]) -> None:
     curves = [output for output in wanted if columns[output].ndim > 1]
     if curves:
-        detail = "is a curve; a study keeps one number for each row, such as its least or greatest value"
+        detail = "is a curve; a study stores one number for each row, such as its least or greatest value"
         raise InvalidInputs(Fault(f"outputs.{curve}", "shape", f"{curve} {detail}") for curve in curves)
 
 
 def _check_built(asked: StudyQuestion, count: int) -> None:
     build = asked.body.build
     if build in ("best", "front") and not asked.objectives:
-        raise InvalidInputs([Fault("build", "missing", "say what to minimise or maximise")])
+        raise InvalidInputs([Fault("build", "missing", "name an output to minimise or maximise")])
     if build == "all" and count > MOST_BUILT:
         detail = f"at most {MOST_BUILT} rows become variants, not {count}; name some by their numbers"
         raise InvalidInputs([Fault("build", "too_many_rows", detail)])

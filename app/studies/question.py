@@ -1,4 +1,4 @@
-"""Validate the request of a study against its design: places with units, rows, objectives."""
+"""Validate a request for a study against its design: places with units, rows, objectives."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ from app.studies.methods.space import Interval, Space, Values, Variable
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.units.quantity import read
 
-_STEP = 1e-3  # of the interval: how far slopes look to either side
+_STEP = 1e-3  # step of slopes to either side, as a share of the interval
 
 
 @dataclass(frozen=True)
 class StudyQuestion:
-    """A study that can be calculated: its rows, and which places and outputs they have."""
+    """A valid request for a study: its rows, its varied places and its outputs."""
 
     body: StudyIn
     space: Space
     places: tuple[Reference, ...]
     wanted: tuple[Reference, ...]
-    points: Points | None  # None: its user gave the rows, or an optimisation finds them
+    points: Points | None  # None if the user gives the rows, or an optimisation finds them
 
     @property
     def objectives(self) -> list[str]:
-        """Return the outputs that are minimised, then those that are maximised."""
+        """Return the outputs to minimise, then those to maximise."""
         return directions(self.body)[0]
 
 
 def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> StudyQuestion:
-    """Return a body read against the network of its design.
+    """Return a request, checked against the network of its design.
 
     Raises
     ------
     InvalidInputs
-        With everything that is wrong.
+        With all faults.
     """
     _refuse(list(_contradictions(body, varied)))
     space = Space(tuple(_variables(body, varied, engine)))
@@ -57,7 +57,7 @@ def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Stud
 
 
 def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
-    """Yield a fault for what the method lacks, and for what means nothing with it."""
+    """Yield a fault for each member that the method needs but lacks, or does not use."""
     if not varied and body.method == "table":
         yield Fault("rows", "missing", "give `rows`: columns by name, or a list of rows")
     elif not varied:
@@ -71,7 +71,9 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")
     elif not (body.outputs or has_goal):
         yield Fault(
-            "outputs", "missing", "name the outputs that each row keeps, such as film.minimum_film_thickness"
+            "outputs",
+            "missing",
+            "name the outputs to store for each row, such as film.minimum_film_thickness",
         )
     if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
         yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
@@ -93,7 +95,7 @@ _WITHOUT_POINTS = {
 
 
 def _variables(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Iterator[Variable]:
-    """Yield the variables in the order of the columns; the keys of a stored body have another."""
+    """Yield the variables in the order of the columns, which a stored body need not keep."""
     faults: list[Fault] = []
     for name in varied if body.vary else ():
         vary = body.vary[name]
@@ -114,7 +116,13 @@ def _variable(name: str, vary: Vary, unit: str) -> Variable:
 
 
 def single(raw: Raw, unit: str, name: str) -> float:
-    """Return one value [SI] as typed."""
+    """Return one typed value [SI].
+
+    Raises
+    ------
+    FaultyText
+        If it is not a single value.
+    """
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -125,7 +133,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
 
 
 def points_of(body: StudyIn, space: Space, engine: DesignEngine) -> Points | None:
-    """Return the rows of a method by number; None if the method finds them by itself."""
+    """Return the rows of a method by number; None if the user gives the rows or the method finds them."""
     match body.method:
         case "grid":
             return Grid(space, _steps(body, space))
@@ -157,7 +165,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
 
 
 def _around(space: Space, engine: DesignEngine) -> Local:
-    """Return the design's own values, or the middle of an interval that leaves them out."""
+    """Return the design's own values; the middle of an interval if the design's value is outside it."""
     at, steps, faults = [], [], []
     for variable in space.variables:
         if not isinstance(variable, Interval):
@@ -173,7 +181,7 @@ def _around(space: Space, engine: DesignEngine) -> Local:
 
 
 def _too_many(body: StudyIn, space: Space) -> list[Fault]:
-    """Return a fault if the method would make more rows than it takes, counted before any row is made."""
+    """Return a fault if the method would create too many rows; they are counted before any is created."""
     count = 0
     match body.method:
         case "grid":
@@ -188,15 +196,15 @@ def _too_many(body: StudyIn, space: Space) -> list[Fault]:
         case "optimise":
             count, least = body.points or 0, scanned(space)
             if body.points is not None and body.points < least:
-                detail = f"optimise looks at {least} rows before it searches; give more, up to"
+                detail = f"optimise calculates {least} rows before it searches; give more, up to"
                 return [Fault("points", "out_of_range", f"{detail} {MOST_ROWS['optimise']}")]
     return [too_long(body.method, count)] if count > MOST_ROWS[body.method] else []
 
 
 def too_long(method: str, count: int) -> Fault:
-    """Return the fault of a study with more rows than its method takes."""
+    """Return the fault of a study with more rows than its method allows."""
     place = {"grid": "steps", "table": "rows"}.get(method, "points")
-    given = str(count) if count < 10**15 else "as many as these"  # its digits may be thousands
+    given = str(count) if count < 10**15 else "as many as these"  # it may have thousands of digits
     return Fault(place, "too_many_rows", f"{method} takes at most {MOST_ROWS[method]} rows, not {given}")
 
 
@@ -206,6 +214,6 @@ def _refuse(faults: Sequence[Fault]) -> None:
 
 
 def directions(body: StudyIn) -> tuple[list[str], list[bool]]:
-    """Return the objectives of a study, and for each whether it is maximised."""
+    """Return the objectives of a study, and whether each is maximised."""
     names = [*body.minimise, *body.maximise]
     return names, [name in body.maximise for name in names]

@@ -1,4 +1,4 @@
-"""Relations that a study overrides, and that a chosen row replaces."""
+"""Relations that a study sets aside, and that a chosen row replaces."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from templates.core.units.relation import is_relation
 
 
 def relations_at(document: Document, places: Iterable[str]) -> dict[str, str]:
-    """Return the relations, as typed, that set some of the places; a list of relations in one line."""
+    """Return the typed relations that set some of the places; a list of relations becomes one line."""
     raw = {place: _raw(document, Reference.parse(place)) for place in places}
     return {place: text for place, value in raw.items() if (text := _relation(value))}
 
 
 def words(relations: Mapping[str, str]) -> str:
-    """Return relations in words: `film.bearing_width (= ratio * 48 mm)`."""
+    """Return relations as a text: `film.bearing_width (= ratio * 48 mm)`."""
     return ", ".join(f"{place} ({text})" for place, text in relations.items())
 
 

@@ -1,9 +1,9 @@
-"""Repair chunks whose artifacts are lost or damaged: a job calculates them again, to the same bytes.
+"""Repair chunks whose artifacts are lost or damaged: a job recalculates them to the same bytes.
 
-A separate job does this for rows that a client reads; a running study repairs its own rows within its job.
+A separate job does this if a client reads the rows; a running study repairs its own rows within its job.
 
-The repair repeats the study from the chunks that are left until all recorded chunks exist again, and then
-stops: a cancelled study gets no new rows, and nothing is evaluated or built twice.
+The repair repeats the study from the remaining chunks until all recorded chunks exist again, and then stops:
+a cancelled study gets no new rows, and nothing is evaluated or built twice.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from app.studies.errors import RowsLost
 from app.studies.run import FAILURES, STUDY, Conclude, Run, StudyServices, run_of
 
 AGAIN = "study-again"
-"""The kind of the jobs that calculate lost chunks again; they wait in the lane of studies."""
-REMEMBERED = 1000  # studies whose rows cannot be calculated again
+"""The kind of the jobs that recalculate lost chunks; they wait in the lane of studies."""
+REMEMBERED = 1000  # number of remembered studies whose rows cannot be restored
 
 
 class _Whole(Exception):
-    """All recorded chunks are there."""
+    """Raised once all recorded chunks exist."""
 
 
 class _Repetition(Run):
-    """A study that is repeated for the chunks that it has lost."""
+    """A repeated run of a study that restores its lost chunks."""
 
     def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
-        """Return the chunks that are there; of a search those before the first that is lost."""
+        """Return the chunks that exist; for a search, only those before the first lost one."""
         kept = []
         for chunk in super().chunks(until):
             if self.services.store.exists(chunk.sha256):
@@ -43,19 +43,19 @@ class _Repetition(Run):
         return kept
 
     def keep(self, number: int, chunk: Chunk) -> None:
-        """Store a chunk again.
+        """Store a recalculated chunk.
 
         Raises
         ------
         CannotRebuild
-            It has other bytes now.
+            If its bytes differ from the recorded ones.
         _Whole
-            It was the last that was lost.
+            If it was the last lost chunk.
         """
         recorded = {row.number: row for row in super().chunks()}
         if number in recorded and self.services.store.put(*chunk.content) != recorded[number].sha256:
             detail = (
-                f"rows of study {self.row.id} are lost. They have other values now, because libraries or "
+                f"rows of study {self.row.id} are lost. Their values have changed, because libraries or "
                 "templates have changed since: start the study again with the same body and seed"
             )
             raise CannotRebuild("other_bytes", detail)
@@ -68,7 +68,7 @@ class _Repetition(Run):
 
 
 class ChunkRepair:
-    """The handler of the jobs that calculate lost chunks again."""
+    """Handles the jobs that recalculate lost chunks."""
 
     def __init__(self, services: StudyServices, conclude: Conclude) -> None:
         self._services, self._conclude = services, conclude
@@ -77,7 +77,7 @@ class ChunkRepair:
         services.jobs.register(AGAIN, self, lane=STUDY)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Repeat a study until all its recorded chunks are there."""
+        """Repeat a study until all its recorded chunks exist."""
         id: str = job.payload["study"]
         try:
             self.heal(id, job, context)
@@ -87,7 +87,7 @@ class ChunkRepair:
         return lambda session: f"/api/v1/studies/{id}"
 
     def heal(self, id: str, job: Job, context: JobContext) -> None:
-        """Repeat a study until all its recorded chunks are there; raises what its design brings about."""
+        """Repeat a study until all its recorded chunks exist; raise the errors that its design causes."""
         run = run_of(self._services, id, job, context, _Repetition)
         try:
             run.finish_if_whole()
@@ -96,9 +96,9 @@ class ChunkRepair:
             pass
 
     def lost(self, id: str) -> Exception:
-        """Return the error to raise when rows of a study are lost.
+        """Return the error to raise if rows of a study are lost.
 
-        Where they are calculated again, or why not.
+        It names the job that recalculates them, or the reason why they cannot be restored.
         """
         with self._lock:
             if refused := self._refused.get(id):
@@ -108,7 +108,7 @@ class ChunkRepair:
         return RowsLost(id, jobs.commit(lambda session: jobs.request(session, AGAIN, payload), AGAIN))
 
     def _refuse(self, id: str, error: Exception) -> None:
-        """Remember why rows cannot be calculated again: nothing but a new start of the service helps."""
+        """Remember until the next start of the service that rows cannot be restored, and why."""
         if not isinstance(error, CannotRebuild):
             return
         with self._lock:

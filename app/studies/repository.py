@@ -1,4 +1,4 @@
-"""All SQL of studies. Every function runs in the transaction of its caller."""
+"""All SQL statements for studies. Every function runs in the transaction of its caller."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.storage.tables import StudyChunkRow, StudyRow
 
 @dataclass(frozen=True)
 class New:
-    """A study as it is written first."""
+    """The content of a new study."""
 
     design: str
     revision: int
@@ -41,7 +41,7 @@ class Progress:
 
 
 def add(session: Session, new: New) -> StudyRow:
-    """Write a study that is queued."""
+    """Add a new study in the state `queued`, and return it."""
     row = StudyRow(
         id=new_id(session), design_id=new.design, revision=new.revision, method=new.method, state="queued",
         body=new.body, plan=new.plan, seed=new.seed, chunk=new.chunk, rows=new.rows, table_sha256=new.table,
@@ -67,7 +67,7 @@ def get(session: Session, id: str) -> StudyRow:
 
 
 def page(session: Session, limit: int, before: str | None, design: str | None) -> list[StudyRow]:
-    """Return one page of studies, newest first, and one more if there are more."""
+    """Return one page of studies, newest first, plus one study if there are more."""
     query = select(StudyRow).order_by(StudyRow.id.desc()).limit(limit + 1)
     if design is not None:
         query = query.where(StudyRow.design_id == design)
@@ -75,13 +75,13 @@ def page(session: Session, limit: int, before: str | None, design: str | None) -
 
 
 def chunks(session: Session, id: str) -> list[StudyChunkRow]:
-    """Return the chunks of a study that were calculated, in their order."""
+    """Return the calculated chunks of a study, in order."""
     query = select(StudyChunkRow).where(StudyChunkRow.study_id == id).order_by(StudyChunkRow.number)
     return list(session.scalars(query))
 
 
 def done(session: Session, id: str, until: int | None = None) -> Progress:
-    """Return the progress of a study, counting chunks with a number below `until`."""
+    """Return the progress of a study, counting only chunks with numbers below `until`."""
     which = [StudyChunkRow.study_id == id]
     if until is not None:
         which.append(StudyChunkRow.number < until)
@@ -93,7 +93,7 @@ def done(session: Session, id: str, until: int | None = None) -> Progress:
 
 
 def begin(session: Session, id: str) -> bool:
-    """Mark a study as running; whether it still is to run."""
+    """Mark a study as running; return whether it still has to run."""
     row = _locked(session, id)
     if row is None or row.state not in UNFINISHED:
         return False
@@ -102,9 +102,9 @@ def begin(session: Session, id: str) -> bool:
 
 
 def keep_chunk(session: Session, chunk: StudyChunkRow, size: int) -> bool:
-    """Record a chunk of a study that still runs, of so many bytes; whether it did.
+    """Record a chunk of a running study and its size in bytes; return whether the study still runs.
 
-    A second record changes nothing.
+    Recording the same chunk again changes nothing.
     """
     row = _locked(session, chunk.study_id)
     if row is None or row.state != "running":
@@ -118,19 +118,19 @@ def keep_chunk(session: Session, chunk: StudyChunkRow, size: int) -> bool:
 
 
 def end(session: Session, id: str, state: str, result: JsonObject | None, problem: JsonObject | None) -> None:
-    """Give a study its final state; one that has ended already keeps its own."""
+    """Set the final state of a study, unless it has ended already."""
     row = _locked(session, id)
     if row is not None and row.state in UNFINISHED:
         row.state, row.result, row.problem, row.updated = state, result, problem, now()
 
 
 def remove(session: Session, id: str) -> None:
-    """Delete a study and its chunks; their files stay in the store, where nothing refers to them."""
+    """Delete a study and its chunks; their files stay in the store without a reference."""
     _locked(session, id)
     session.execute(delete(StudyChunkRow).where(StudyChunkRow.study_id == id))
     session.execute(delete(StudyRow).where(StudyRow.id == id))
 
 
 def _locked(session: Session, id: str) -> StudyRow | None:
-    """Return a study as it is now; no other unit changes it before the end of this one."""
+    """Return the present state of a study, locked until the end of the transaction."""
     return session.get(StudyRow, id, with_for_update=True, populate_existing=True)

@@ -17,12 +17,12 @@ from templates.core.criteria.comparison import MET, NOT_CHECKED
 PLACE, OUTPUT, ERROR, VERDICT = "place/", "output/", "error/", "verdict/"
 """Prefixes of the names of the arrays of a chunk."""
 EXPLORE, CONFIRM = 0, 1
-"""Places in the list of levels of a search; those of its trade follow."""
+"""Indices into the levels of a search; the levels that are only compared follow."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A chunk: the number of its first row, and how many it has."""
+    """A chunk: the number of its first row, and its number of rows."""
 
     first: int
     count: int
@@ -30,7 +30,7 @@ class Part:
 
 
 class StoredRows:
-    """The rows of a study in the order of its chunks; a column is read when it is asked for."""
+    """The rows of a study in the order of its chunks; a column is read on request."""
 
     def __init__(self, store: Artifacts, chunks: Sequence[StudyChunkRow]) -> None:
         self._store = store
@@ -41,26 +41,26 @@ class StoredRows:
         self.count: int = starts[-1]
 
     def archive(self, part: Part) -> Archive:
-        """Return the arrays of a chunk; raises ArtifactMissing, ArtifactDamaged."""
+        """Return the arrays of a chunk; raise ArtifactMissing or ArtifactDamaged if it cannot be read."""
         return Archive(self._store.open(part.sha).file)
 
     def verify(self) -> None:
-        """Look at every chunk; raises ArtifactMissing, ArtifactDamaged."""
+        """Check every chunk; raise ArtifactMissing or ArtifactDamaged for an invalid one."""
         for part in self.parts:
             self._store.open(part.sha).file.close()
 
     def values(self, name: str) -> Array:
-        """Return a column of numbers [SI], NaN where a chunk has none."""
+        """Return a column of numbers [SI], with NaN for chunks that lack it."""
         return np.concatenate([np.empty(0), *self._each(name, np.nan)]).astype(np.float64)
 
     def codes(self, criterion: str) -> AnyArray:
-        """Return the verdicts on a criterion, as places in `VERDICTS`."""
+        """Return the verdict on a criterion in each row, as an index into `VERDICTS`."""
         return np.concatenate([np.empty(0, np.int8), *self._each(f"{VERDICT}{criterion}", NOT_CHECKED)])
 
     def worst(self, criteria: Sequence[str]) -> AnyArray:
         """Return the worst verdict of each row on these criteria.
 
-        Met, if there are none and the row has values.
+        Without criteria the verdict is "met" for every row that has values.
         """
         worst = np.where(self.is_refused, NOT_CHECKED, MET).astype(np.int8)
         for criterion in criteria:
@@ -69,7 +69,7 @@ class StoredRows:
 
     @cached_property
     def is_refused(self) -> Mask:
-        """Return a mask of the rows that have a reason instead of values."""
+        """Return a mask of the refused rows, which have a reason instead of values."""
         reasons = [reason.astype(np.int32) for reason in self._each("reason", -1)]
         return np.concatenate([np.empty(0, np.int32), *reasons]) >= 0
 

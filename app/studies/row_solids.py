@@ -1,7 +1,7 @@
-"""Find the solid of each row of a study and put its measures into columns, in a calculation process.
+"""Find the solid of each row of a study and put its measurements into columns, in a calculation process.
 
 A row waits for its solids: until all are known, a chunk reports the missing ones. A model may use a
-measurement of another model, so its parameters are known only once that model is built.
+measurement of another model, so its parameters are known only after that model is built.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.spec import Choice
 
 Texts = tuple[tuple[str, str], ...]
-"""All parameters of a model as `as_text` writes them, by name: what makes a solid another one."""
+"""All parameters of a model by name, as `as_text` writes them; they identify a solid."""
 
 
 @dataclass(frozen=True)
 class SolidRequest:
-    """A solid that is not known, and what is to be measured on it."""
+    """A solid that is not built yet, and the measurements that it needs."""
 
     model: str
     texts: Texts
@@ -42,7 +42,7 @@ class SolidRequest:
 
 @dataclass(frozen=True)
 class SolidMeasures:
-    """The measures of a solid [SI], by their names in relations, or why it has none."""
+    """The measurements of a solid [SI], by their names in relations, or why it has none."""
 
     model: str
     texts: Texts
@@ -57,20 +57,20 @@ NO_VALUE = "a parameter of the solid has no finite value here"
 
 @dataclass
 class RowsWithSolids:
-    """Rows with what is known of their solids.
+    """Rows with the known measurements of their solids.
 
     Attributes
     ----------
     columns
-        The measures [SI], NaN where a row has none.
+        The measurements [SI]; NaN where a row has none.
     wanting
-        Solids that are not known.
+        Solids that are not known yet.
     waiting
-        The rows that have any of them.
+        Mask of the rows that use any of these solids.
     refusals
-        By row, why it has no solid.
+        For each refused row, why it has no solid.
     levels
-        Of the steps from which parameters of models follow.
+        The levels of the steps on which parameters of models depend.
     """
 
     columns: dict[Reference, Array]
@@ -83,9 +83,9 @@ class RowsWithSolids:
 def measures_of_rows(
     engine: DesignEngine, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
 ) -> list[Reference]:
-    """Return the measures that a study needs and that differ from row to row, or are not `known`.
+    """Return the measurements that a study needs and that differ from row to row or are not yet `measured`.
 
-    Only what the study names counts: its outputs and objectives, and the criteria of `hold`.
+    Only the outputs, the objectives and the criteria of `hold` count as needed.
     """
     held = [subject for name, subject in subjects(engine.graph).items() if name in (body.hold or ())]
     wanted = Targets.of(outputs, held)
@@ -97,7 +97,7 @@ def measures_of_rows(
 
 
 def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Fault]:
-    """Yield a fault if a design iterates: each row would need several solids, one after another."""
+    """Yield a fault if a design iterates, because each row would need several solids in succession."""
     if document.iterations and measures:
         through = document.iterations[0].through
         detail = f"the design iterates through {through}; a study builds no solid for a row of such a design"
@@ -105,21 +105,16 @@ def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Faul
 
 
 def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
-    """Yield a fault for each table of an analysis on which a study depends.
-
-    A row has single values of solids.
-    """
+    """Yield a fault for each table or list among the measurements, because rows have single values."""
     for reference in filter(is_table, measures):
         what = {1: "list", 2: "table"}[axes_of(reference)]
-        detail = (
-            f"is a {what} of an analysis; a study takes single values of solids: write the {what} as values"
-        )
+        detail = f"is a {what} of an analysis, but a study needs single values; type the {what} as values"
         yield Fault(str(reference), "needs_solids", f"{reference} {detail}")
 
 
 @dataclass(frozen=True)
 class RowSolids:
-    """The solids of rows: of which models, and what is measured on them."""
+    """The solids of rows: the models that must be built, and the measurements of each."""
 
     engine: DesignEngine
     measures: tuple[Reference, ...]
@@ -131,21 +126,21 @@ class RowSolids:
         return [node for node in self.engine.graph.order if isinstance(node, Block) and node.name in names]
 
     def measures_of(self, model: str) -> list[Reference]:
-        """Return the references to measures of a model."""
+        """Return the references to measurements of a model."""
         return [reference for reference in self.measures if reference.block == model]
 
     def drivers(self, model: Block) -> list[Reference]:
-        """Return the places that rows vary and from which the parameters of a model follow."""
+        """Return the varied places on which the parameters of a model depend."""
         places = self.engine.varied - set(self.measures)
         return sorted((p for p in places if model in varying(self.engine.graph, [p])), key=str)
 
     @property
     def analysed(self) -> set[str]:
-        """Return the models of which analyses by finite elements are needed."""
+        """Return the models that need finite-element analyses."""
         return {reference.block for reference in self.measures if reference.analysis is not None}
 
     def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> RowsWithSolids:
-        """Return the measures of rows, as far as their solids are known."""
+        """Return the measurements of rows, as far as their solids are known."""
         empty = {reference: np.full(count, np.nan) for reference in self.measures}
         result = RowsWithSolids(empty, np.zeros(count, dtype=bool))
         by_texts = {(solid.model, solid.texts): solid for solid in solids}
@@ -161,7 +156,7 @@ class RowSolids:
         by_texts: Mapping[tuple[str, Texts], SolidMeasures],
         result: RowsWithSolids,
     ) -> None:
-        """Fill in the columns of one model."""
+        """Fill in the columns of one model's measurements."""
         names = [name for name, cell in model.cells.items() if not isinstance(cell.declared, Choice)]
         references = [model.cells[name].reference for name in names]
         table = self.engine({**rows, **result.columns}, references, levels=levels)
@@ -188,7 +183,7 @@ class RowSolids:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
 
     def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
-        """Return the parameters of a solid as text, or their faults."""
+        """Return the parameters of a solid as text, or a refusal with their faults."""
         words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
         try:
             shape = model.cls.from_si({**words, **values})
@@ -205,7 +200,7 @@ def _side_by_side(columns: Sequence[Array], count: int) -> Array:
 
 
 def _apart(values: Array, columns: Sequence[Array]) -> list[float | list[float]]:
-    """Return one row of numbers as the values of its columns again: numbers and lists."""
+    """Return a row of numbers split into the values of the original columns: numbers and lists."""
     ends = np.cumsum([column[0].size for column in columns])
     parts = np.split(values, ends[:-1]) if columns else []
     return [
@@ -219,12 +214,12 @@ def _word(raw: object) -> str:
 
 
 def _refuse(result: RowsWithSolids, numbers: Sequence[int], refusal: Refusal) -> None:
-    """Note why rows have no solid; the first reason is the cause of the others."""
+    """Record why rows have no solid; earlier reasons are kept, because they cause the later ones."""
     result.refusals = dict.fromkeys(map(int, numbers), refusal) | result.refusals
 
 
 def _distinct(matrix: Array, among: Mask) -> Iterator[tuple[Array, list[int]]]:
-    """Yield the distinct rows of a matrix, each with the numbers of the rows equal to it."""
+    """Yield the distinct rows of a matrix, each with the numbers of all rows equal to it."""
     numbers = np.flatnonzero(among)
     if not len(numbers):
         return

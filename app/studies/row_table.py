@@ -1,4 +1,4 @@
-"""The rows of a table that a user gave: columns by name or a list of rows, in any suitable unit."""
+"""The rows of a table that a user gives: columns by name, or a list of rows, in any suitable unit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Rows = Mapping[str, Raw] | Sequence[Mapping[str, Raw]]
 
 
 def columns_named(rows: Rows | None) -> list[str]:
-    """Return the places that the rows set, in their order.
+    """Return the places that the rows set, in order.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def columns_named(rows: Rows | None) -> list[str]:
 
 def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fault:
     differing = ", ".join(sorted(first.keys() ^ row.keys())[:MOST_VARIED])
-    detail = f"row {number} has other columns than row 0: {differing}; give every row the same places"
+    detail = f"row {number} sets other places than row 0: {differing}; give every row the same places"
     return Fault(f"rows.{number}", "uneven", detail)
 
 
@@ -55,7 +55,7 @@ def given_rows(rows: Rows, engine: DesignEngine) -> Array:
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong, up to `MOST_FAULTS`: its column, and its row where it has one.
+        With up to `MOST_FAULTS` faulty cells, each named by its column and, if it has one, its row.
     """
     units = {name: engine.unit(Reference.parse(name)) for name in columns_named(rows)}
     faults: list[Fault] = []
@@ -73,7 +73,7 @@ def given_rows(rows: Rows, engine: DesignEngine) -> Array:
 
 
 def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
-    """Return a column [SI]; add its faults to the list, and return an empty column then."""
+    """Return a column [SI]; if it has faults, add them to the list and return an empty column."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -87,7 +87,7 @@ def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
 
 
 def _cells(name: str, rows: Sequence[Mapping[str, Raw]], unit: str, faults: list[Fault]) -> Array:
-    """Return the cells of a column [SI]; add their faults to the list."""
+    """Return the cells of a column [SI], and add their faults to the list."""
     column = np.full(len(rows), np.nan)
     for number, row in enumerate(rows):
         try:

@@ -1,4 +1,4 @@
-"""Rows of a study as its result shows them."""
+"""Rows of a study for the response with its result."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from templates.core.units.units import unit
 
 
 def rows_found(run: Run, stored: StoredRows, numbers: Integers, *, confirmed: bool) -> list[Best]:
-    """Return rows as a result shows them.
+    """Return rows as members of a result.
 
-    `confirmed` says whether they were calculated again at finer levels.
+    `confirmed` states whether they were recalculated at finer levels.
     """
     plan = run.plan
     places = stored.rows([f"{PLACE}{name}" for name in plan.places], numbers)
@@ -54,7 +54,7 @@ def verdict_fields(codes: Mapping[str, int], required: Sequence[str]) -> dict[st
 def quantities(
     units: Mapping[str, str], names: Sequence[str], values: Sequence[float]
 ) -> dict[str, Quantity]:
-    """Return values [SI] as quantities in their units; those that do not exist are left out."""
+    """Return values [SI] as quantities in their units; missing values are left out."""
     pairs = ((name, value) for name, value in zip(names, values, strict=True) if np.isfinite(value))
     return {
         name: Quantity(value=float(unit(units[name]).from_si(value)), unit=units[name])

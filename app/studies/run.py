@@ -1,7 +1,7 @@
 """The job of a study: calculate its chunks in the pool, store and record them, then conclude the method.
 
-A chunk's bytes are in the store before its row is written, in one transaction. So after a crash the rows show
-which chunks are missing, and these are calculated to the same bytes.
+A chunk's bytes are stored before its database row is written, in one transaction. So after a crash the rows
+show which chunks are missing, and these are recalculated to the same bytes.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ logger = logging.getLogger(__name__)
 STUDY = "study"
 """The kind of the jobs of studies, and their lane."""
 LANES = {STUDY: 4}
-"""Threads that wait for the chunks of studies: so many studies take turns in the pool."""
-GLANCE = 0.05  # how often a thread looks whether its study was cancelled [s]
-SHIFT = 5.0  # after which a study lets those that wait for its thread go first [s]
-MOST_HEALED = 3  # times that a study calculates rows again that it has lost while it runs
+"""Number of threads that wait for chunks, which is the number of studies that take turns in the pool."""
+GLANCE = 0.05  # interval at which a thread checks whether its study was cancelled [s]
+SHIFT = 5.0  # time slice after which a study lets waiting studies go first [s]
+MOST_HEALED = 3  # largest number of times that a running study recalculates lost rows
 FAILURES = (
     TemplateError,
     DeadlineExceeded,
@@ -60,10 +60,10 @@ FAILURES = (
     ArtifactMissing,
     ArtifactDamaged,
 )
-"""Errors that a study itself causes, and rows that were lost while it ran."""
+"""Errors that the study itself causes, and rows that were lost while it ran."""
 
 Started = Callable[[int], Calculation]
-"""Submits the chunk of a number."""
+"""Submits the chunk with a given number."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class StudyServices:
 
 
 class Run:
-    """A study while a job works on it."""
+    """A study that a job is calculating."""
 
     def __init__(
         self,
@@ -98,25 +98,25 @@ class Run:
 
     @property
     def criteria(self) -> tuple[str, ...]:
-        """Return the criteria that are judged."""
+        """Return the criteria to judge."""
         return tuple(self.plan.criteria)
 
     def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
-        """Return the chunks that were calculated, with numbers below `until`."""
+        """Return the calculated chunks with numbers below `until`."""
         with self.services.database.read() as session:
             chunks = repository.chunks(session, self.row.id)
         return chunks if until is None else [chunk for chunk in chunks if chunk.number < until]
 
     def stored(self, until: int | None = None) -> StoredRows:
-        """Return the rows of these chunks."""
+        """Return the rows of the chunks with numbers below `until`."""
         return StoredRows(self.services.store, self.chunks(until))
 
     def submit(self, function: Callable[..., object], *args: object) -> Calculation:
-        """Have something calculated for this study when its turn comes."""
+        """Submit a calculation for this study to the pool."""
         return self.services.pool.submit(f"study:{self.row.id}", function, *args, lane="jobs")
 
     def result_of(self, calculation: Calculation) -> object:
-        """Return the result of a calculation; raises JobCancelled once the study is cancelled."""
+        """Return the result of a calculation; raise JobCancelled if the study is cancelled."""
         while not wait([calculation.future], GLANCE).done:
             if self.context.is_cancelled:
                 self.services.pool.cancel(calculation)
@@ -124,7 +124,7 @@ class Run:
         return result
 
     def explore(self) -> None:
-        """Calculate all rows that the method knows beforehand."""
+        """Calculate all rows that the method fixes in advance."""
         given = self._given()
 
         def started(number: int) -> Calculation:
@@ -138,7 +138,7 @@ class Run:
         self._all(range(self.plan.chunks), started)
 
     def confirm(self, rows: Array) -> None:
-        """Calculate rows again at the levels of `confirm`, as chunks that follow those of the exploration."""
+        """Recalculate rows at the levels of `confirm`, in chunks that follow those of the exploration."""
         levels, size = self.plan.confirm or self.plan.levels, self.plan.confirm_chunk
 
         def started(number: int) -> Calculation:
@@ -149,7 +149,7 @@ class Run:
         self._all(range(self.plan.chunks, self.plan.chunks - (-len(rows) // size)), started)
 
     def _all(self, numbers: Iterable[int], started: Started) -> None:
-        """Have missing chunks calculated, some at a time, and store each as it arrives."""
+        """Calculate missing chunks, several at a time, and store each when it is finished."""
         there = {chunk.number for chunk in self.chunks()}
         waiting: deque[tuple[int, Calculation]] = deque()
         try:
@@ -167,7 +167,7 @@ class Run:
                 self.services.pool.cancel(calculation)
 
     def _keep_first(self, waiting: deque[tuple[int, Calculation]], started: Started) -> None:
-        """Keep the first chunk, once its rows have their solids."""
+        """Store the first chunk, after building the solids of its rows."""
         number, calculation = waiting[0]
         while isinstance(answer := self.result_of(calculation), PendingSolids):
             self._build(answer)
@@ -178,18 +178,18 @@ class Run:
         self.keep(number, answer)
 
     def _build(self, lacking: PendingSolids) -> None:
-        """Make the solids that rows wait for, one by one.
+        """Build the solids that rows need, one by one.
 
         Raises
         ------
         InvalidInputs
-            There are more of them than were counted: confirmed at finer levels, rows have other solids.
+            If there are more than were counted, because rows confirmed at finer levels have other solids.
         """
         for wanting in lacking.solids:
             if self.solids.is_known(wanting):
                 continue
             if len(self.solids.measured) >= MOST_SOLIDS + MOST_FRONT:
-                detail = f"confirmed rows need other solids than explored ones, more than {MOST_FRONT}"
+                detail = f"confirmed rows need further solids, in total more than {MOST_FRONT}"
                 raise InvalidInputs([Fault("confirm", NEEDS_SOLIDS, detail)])
             self._report()
             self.rest_if_due()
@@ -202,7 +202,7 @@ class Run:
         Raises
         ------
         JobCancelled
-            The study no longer runs.
+            If the study no longer runs.
         """
         row = StudyChunkRow(
             study_id=self.row.id,
@@ -226,14 +226,14 @@ class Run:
         self.context.progress(self.plan.share(done, solids), f"{words}{done} rows are calculated")
 
     def _rest(self, waiting: deque[tuple[int, Calculation]], started: Started) -> None:
-        """Keep what is being calculated, then let others go first, if it is time."""
+        """Store the running calculations, then let other studies go first if the time slice is over."""
         if self._is_due():
             while waiting:
                 self._keep_first(waiting, started)
             raise JobRests
 
     def rest_if_due(self) -> None:
-        """Let the studies of others go first; raises JobRests if any waits and it is time."""
+        """Raise JobRests if the time slice is over and another study waits."""
         if self._is_due():
             raise JobRests
 
@@ -241,7 +241,7 @@ class Run:
         return time.monotonic() - self._since > SHIFT and self.services.jobs.others_wait(STUDY)
 
     def _given(self) -> Array | None:
-        """Return the rows that the user of a table gave [SI]."""
+        """Return the rows [SI] of a table that the user gave, else None."""
         if self.row.table_sha256 is None:
             return None
         try:
@@ -254,26 +254,26 @@ class Run:
 
 R = TypeVar("R", bound=Run)
 Conclude = Callable[[Run], StudyResult]
-"""Calculates what a method needs, and says what it found."""
+"""Calculates the rows of a study and returns the result of its method."""
 Heal = Callable[[str, Job, JobContext], None]
-"""Calculates the recorded chunks of a study again that are lost."""
+"""Recalculates the lost chunks of a study."""
 
 
 class StudyRunner:
-    """The handler of the jobs of studies."""
+    """Handles the jobs of studies."""
 
     def __init__(self, services: StudyServices, conclude: Conclude, heal: Heal) -> None:
         self.services, self._conclude, self._heal = services, conclude, heal
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Calculate what is left of a study, and conclude.
+        """Calculate the remaining rows of a study, and conclude it.
 
         Raises
         ------
         JobFailed
-            With the problem, for anything that the study itself brings about.
+            With the problem, for any error that the study itself causes.
         JobRests
-            Another study waits for the thread.
+            If another study waits for the thread.
         """
         id: str = job.payload["study"]
         if not self.services.database.write(lambda session: repository.begin(session, id)):
@@ -290,7 +290,7 @@ class StudyRunner:
         return completion
 
     def _concluded(self, id: str, job: Job, context: JobContext) -> StudyResult:
-        """Return the result; chunks that are found lost or damaged meanwhile are calculated again first."""
+        """Return the result; if chunks turn out to be lost or damaged, recalculate them first."""
         for _ in range(MOST_HEALED):
             try:
                 return self._conclude(run_of(self.services, id, job, context, Run))
@@ -300,14 +300,14 @@ class StudyRunner:
         return self._conclude(run_of(self.services, id, job, context, Run))
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Record why a study failed, or that it was cancelled; in the transaction that ends its job."""
+        """Record why a study failed, or that it was cancelled, in the transaction that ends its job."""
         cancelled = str(problem.get("type", "")).endswith("/cancelled")
         state = "cancelled" if cancelled else "failed"
         repository.end(session, job.payload["study"], state, None, problem)
 
 
 def run_of(services: StudyServices, id: str, job: Job, context: JobContext, kind: type[R]) -> R:
-    """Return a study from its row, for a job to work on."""
+    """Return the run of a stored study for a job."""
     with services.database.read() as session:
         row = repository.get(session, id)
         whole = designs.document(session, row.design_id, row.revision)

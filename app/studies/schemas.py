@@ -1,4 +1,4 @@
-"""Studies and their rows as the interface shows them."""
+"""Response models of studies and their rows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ StudyState = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
 SetAside = Annotated[
-    dict[str, str], Field(description="relations that do not hold in this study, by the place they set")
+    dict[str, str], Field(description="relations that do not apply in this study, by the place that they set")
 ]
 
 
@@ -24,52 +24,54 @@ class Estimate(Answer):
     """The estimated cost of a study before it begins."""
 
     seconds: float | None = Field(
-        description="processor time of one calculation process; null of a search, which ends as it settles, "
-        "and where solids have to be built"
+        description="processor time of one calculation process; null for a search, whose length is unknown, "
+        "and if solids have to be built"
     )
-    solids: int = Field(0, description="that have to be built")
+    solids: int = Field(0, description="number of solids to build")
 
 
 class StudyEstimate(Answer):
-    """The estimate of a study, if it began now."""
+    """The estimate of a study that has not begun."""
 
-    rows: int = Field(description="planned; of a search the most that it may ask for")
-    criteria: list[str] = Field(description="that a row must meet")
-    levels: dict[str, str] = Field(description="at which rows are explored, by step")
-    confirm: dict[str, str] = Field({}, description="at which the best rows are calculated again, by step")
+    rows: int = Field(description="planned number of rows; for a search the upper limit")
+    criteria: list[str] = Field(description="criteria that a row must meet")
+    levels: dict[str, str] = Field(description="levels of the exploration, by step")
+    confirm: dict[str, str] = Field({}, description="levels at which the best rows are recalculated, by step")
     set_aside: SetAside = {}
     estimate: Estimate
 
 
 class RefusedRows(Answer):
-    """Rows without values."""
+    """The number of rows without values, and the reasons."""
 
     count: int
-    reasons: dict[str, int] = Field(description="how many rows, by `place: code`; the most frequent ones")
+    reasons: dict[str, int] = Field(
+        description="number of rows by `place: code`, for the most frequent reasons"
+    )
 
 
 class StudyRow(Answer):
-    """One row: the values of its places and its outputs, in the units that the page names."""
+    """One row: the values of its places and outputs, in the units of the page."""
 
-    row: int = Field(description="its number, from 0")
-    values: dict[str, float | None] = Field(description="places and outputs; null where there is no value")
-    errors: dict[str, float] = Field({}, description="relative, of outputs whose level states one")
-    verdicts: dict[str, Word] = Field({}, description="by criterion")
-    verdict: Word | None = Field(None, description="the worst of them")
-    error_unknown: list[str] = Field([], description="criteria that are met, with an unknown error")
-    level: dict[str, str] = Field({}, description="of fidelity, by step")
+    row: int = Field(description="number of the row, from 0")
+    values: dict[str, float | None] = Field(description="values of places and outputs; null if missing")
+    errors: dict[str, float] = Field({}, description="relative errors of outputs whose level states one")
+    verdicts: dict[str, Word] = Field({}, description="verdicts by criterion")
+    verdict: Word | None = Field(None, description="the worst verdict")
+    error_unknown: list[str] = Field([], description="criteria that are met with an unknown error")
+    level: dict[str, str] = Field({}, description="levels by step")
     confirmed: bool = Field(
         False,
-        description="whether it was calculated again at finer levels; not if a criterion that must be met "
+        description="whether it was recalculated at finer levels; false if a required criterion "
         "is met with an unknown error",
     )
-    reason: str | None = Field(None, description="why it has no values")
+    reason: str | None = Field(None, description="why the row has no values")
 
 
 class Units(Answer):
-    """Numbers by name, each with a unit that the system of units replaces."""
+    """Numbers by name, with units that depend on the requested system of units."""
 
-    units: dict[str, str] = Field(description="of every place and output")
+    units: dict[str, str] = Field(description="unit of every place and output")
 
     def _converted(self, row: StudyRow, system: System) -> StudyRow:
         values = {n: shown_value(v, self.units[n], system) for n, v in row.values.items()}
@@ -82,7 +84,7 @@ class Units(Answer):
 class StudyRows(Units, Page[StudyRow]):
     """A page of rows."""
 
-    count: int | None = Field(None, description="of all rows that fit the filter, where it was counted")
+    count: int | None = Field(None, description="number of all rows that match the filter, if counted")
 
     def in_units(self, system: System) -> Self:
         """Return the rows in a system of units."""
@@ -93,91 +95,92 @@ class StudyRows(Units, Page[StudyRow]):
 
 
 class TradePlace(Answer):
-    """A place that a level promises, and what is true of it."""
+    """A point as predicted by a level, and its confirmed values."""
 
-    at: dict[str, Quantity] = Field({}, description="where it lies")
+    at: dict[str, Quantity] = Field({}, description="values of the varied places")
     promise: dict[str, Quantity] = {}
-    confirmed: dict[str, Quantity] = Field({}, description="at the levels of `confirm`")
-    verdicts: dict[str, Word] = Field({}, description="as confirmed")
+    confirmed: dict[str, Quantity] = Field({}, description="values at the levels of `confirm`")
+    verdicts: dict[str, Word] = Field({}, description="verdicts at the levels of `confirm`")
 
 
 class Trade(TradePlace):
-    """The promise of one level of fidelity: its optimum, or along `front` if there are several objectives."""
+    """The prediction of one level: its optimum, or its `front` if there are several objectives."""
 
-    level: dict[str, str] = Field(description="by step")
+    level: dict[str, str] = Field(description="levels by step")
     front: list[TradePlace] | None = Field(
-        None, description="its front, by the first objective as promised; of several objectives"
+        None,
+        description="the front, ordered by the first predicted objective, if there are several objectives",
     )
-    rows: int = Field(description="that were calculated")
-    seconds: float = Field(description="estimated")
+    rows: int = Field(description="number of calculated rows")
+    seconds: float = Field(description="estimated time, in s")
 
 
 class Best(Answer):
-    """A row that was found to be the best, or one of the front."""
+    """The best row, or one row of the front."""
 
     row: int
     at: dict[str, Quantity]
     outputs: dict[str, Quantity]
     verdicts: dict[str, Word] = {}
     verdict: Word | None = None
-    error_unknown: list[str] = Field([], description="criteria that are met, with an unknown error")
+    error_unknown: list[str] = Field([], description="criteria that are met with an unknown error")
     confirmed: bool = False
 
 
 class Index(Answer):
-    """The influence of a place on an output; an index that the kind does not give is absent."""
+    """The influence of a varied place on an output; only the indices of the chosen kind are present."""
 
-    slope: Quantity | None = Field(None, description="change of the output by that of the place")
-    elasticity: float | None = Field(None, description="relative change by relative change")
-    mu_star: Quantity | None = Field(None, description="Morris: mean size of the effect of its whole range")
-    sigma: Quantity | None = Field(None, description="Morris: how much that differs from place to place")
-    first: float | None = Field(None, description="Sobol': share of the variance by itself")
+    slope: Quantity | None = Field(None, description="change of the output per change of the varied value")
+    elasticity: float | None = Field(None, description="relative change per relative change")
+    mu_star: Quantity | None = Field(None, description="Morris: mean absolute effect over the whole range")
+    sigma: Quantity | None = Field(None, description="Morris: standard deviation of the effect over the box")
+    first: float | None = Field(None, description="Sobol': share of the variance without interactions")
     first_error: float | None = None
-    total: float | None = Field(None, description="Sobol': share with all interactions")
+    total: float | None = Field(None, description="Sobol': share of the variance with all interactions")
     total_error: float | None = None
 
 
 class StudyResult(Answer):
-    """The result of the method."""
+    """The result of a study's method."""
 
     best: Best | None = None
-    front: list[Best] | None = Field(None, description="none is better in all objectives")
-    indices: dict[str, dict[str, Index]] | None = Field(None, description="by output, by place")
+    front: list[Best] | None = Field(None, description="rows that no other row betters in all objectives")
+    indices: dict[str, dict[str, Index]] | None = Field(None, description="indices by output, then by place")
     trade: list[Trade] | None = None
     settled: bool | None = Field(
-        None, description="whether promise and confirmed value agree, and all criteria are met"
+        None, description="whether prediction and confirmed value agree, and all criteria are met"
     )
-    global_: str | None = Field(None, alias="global", description="`not proven`: of every search")
-    share: float | None = Field(None, description="of the rows that meet all criteria")
-    shares: dict[str, float] | None = Field(None, description="of the rows that meet each criterion")
-    design: str | None = Field(None, description="the new design, whose variants are the rows to build")
+    global_: str | None = Field(None, alias="global", description="`not proven` for every search")
+    share: float | None = Field(None, description="share of the rows that meet all criteria")
+    shares: dict[str, float] | None = Field(None, description="share of the rows that meet each criterion")
+    design: str | None = Field(None, description="the new design whose variants are the rows to build")
     notes: list[str] = []
 
 
 class Study(Units):
-    """A study."""
+    """A study with its progress and result."""
 
     id: str
     design: str
     revision: int
-    variant: str | None = Field(None, description="of the design, if the study is of one")
+    variant: str | None = Field(None, description="the studied variant of the design, if any")
     method: Method
     state: StudyState
     seed: int
     progress: float = Field(ge=0, le=1)
-    rows: int = Field(description="planned")
-    done: int = Field(description="rows that were calculated")
+    rows: int = Field(description="planned number of rows")
+    done: int = Field(description="number of calculated rows")
     refused: RefusedRows
     varied: list[str]
     outputs: list[str]
     criteria: list[str]
-    levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    levels: dict[str, str] = Field(description="levels of the exploration, by step")
     set_aside: SetAside = {}
-    objectives: dict[str, Literal["minimise", "maximise"]] = Field({}, description="by output")
+    objectives: dict[str, Literal["minimise", "maximise"]] = Field({}, description="objectives by output")
     estimate: Estimate
     result: StudyResult | None = None
     problem: Problem | None = None
-    job: str | None = Field(None, description="path of the job that works on it")
+    job: str | None = Field(None, description="path of its job")
     created: str
     changed: str
 

@@ -1,8 +1,8 @@
-"""A slice of a search in a calculation process: it repeats the search from the seed with the stored answers.
+"""A slice of a search in a calculation process: it repeats the search from the seed with the stored results.
 
-An optimiser asks for the same rows in the same order whenever it begins with the same seed. So an interrupted
-search begins again and receives the stored answers, keyed by the bytes of the rows, until it asks for a new
-one. Generations of NSGA-II are stored as well: finished ones are not repeated. A slice ends after a number of
+An optimiser requests the same rows in the same order whenever it starts with the same seed. So an interrupted
+search starts again and receives the stored results, keyed by the bytes of the rows, until it requests new
+rows. Finished generations of NSGA-II are stored as well and not repeated. A slice ends after a number of
 estimated seconds, not of measured ones, so that equal studies have equal chunks.
 """
 
@@ -29,19 +29,19 @@ from app.workers.pieces import Pieces
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 
-SLICE_SECONDS = 0.5  # of new rows, estimated
+SLICE_SECONDS = 0.5  # estimated time of the new rows of a slice
 ALONE = Effort(generations=50, rounds=1)
-"""Of the front that a level finds by itself: no more rows than a comparison is worth."""
-ACTIVE = 2e-3  # of a limit: an optimum nearer to it sits on it
-AT_BOUND = 1e-6  # of the width between two bounds
-CALL_SECONDS = 0.03  # that a call takes beside its rows
+"""Effort for the front of a single level: enough for a comparison."""
+ACTIVE = 2e-3  # relative distance below which an optimum counts as lying on a limit
+AT_BOUND = 1e-6  # relative distance, by the width of the interval, that counts as lying on a bound
+CALL_SECONDS = 0.03  # fixed time of a call
 
 
 @dataclass(frozen=True)
 class Search:
-    """A search to do: at which levels, holding which criteria, for how many rows at most.
+    """The parameters of a search: its levels, its criteria, and the largest number of rows.
 
-    `trade` are further levels, each of which is searched alone once.
+    `levels` holds the levels for exploring and confirming, then levels that are each searched alone once.
     """
 
     levels: tuple[tuple[tuple[str, str | None], ...], ...]
@@ -52,7 +52,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Prediction:
-    """The promise of a level at its best place, or along its front [SI], and the true values there."""
+    """The best point of a level, or its front, with predicted and confirmed values [SI]."""
 
     level: int
     places: tuple[Round, ...]
@@ -62,7 +62,7 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The result of a search: places that were confirmed, best first or along a front."""
+    """The result of a search: confirmed points, either the best one or those of a front."""
 
     state: str
     places: tuple[Array, ...]
@@ -72,22 +72,22 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Slice:
-    """New answers of a search, and its outcome once it has come to its end."""
+    """The new results of a search, and its outcome if it has ended."""
 
     chunk: Chunk | None
     outcome: Outcome | None
 
 
 class SearchPause(Exception):
-    """A slice has calculated as much as it may."""
+    """Raised if a slice has used its estimated time."""
 
 
 class TooManyRows(InvalidInputs):
-    """A search needs more rows than it may calculate."""
+    """Raised if a search needs more rows than it may calculate."""
 
 
 def searched(task: Task, search: Search, stored: tuple[Pieces, ...]) -> Slice:
-    """Repeat a search as far as its answers are stored, and go on for one slice.
+    """Repeat a search with its stored results, and continue it for one slice.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
 
 
 def _differences(optimum: Optimum) -> tuple[str, ...]:
-    """Return why a search did not settle, in a sentence; nothing of one that did."""
+    """Return a sentence on why a search did not converge; empty if it did."""
     last = optimum.rounds[-1]
     if optimum.state != "not_settled":
         return ()
@@ -138,11 +138,11 @@ def _differences(optimum: Optimum) -> tuple[str, ...]:
     with np.errstate(divide="ignore", invalid="ignore"):
         apart = np.abs(last.promise - last.confirmed) / np.abs(last.confirmed)
     largest = np.max(apart[np.isfinite(apart)], initial=0.0)
-    return (f"promise and confirmed value differ by {largest:.2g} of the value",)
+    return (f"predicted and confirmed value differ by {100 * largest:.2g} %",)
 
 
 def _active(problem: Problem, best: Round) -> tuple[str, ...]:
-    """Return the limits and the bounds on which an optimum sits, as sentences."""
+    """Return the limits and bounds at which an optimum lies, as sentences."""
     count, held = len(problem.objectives), len(problem.held)
     limits = best.confirmed[count + held :]
     near = np.abs(best.worst) <= ACTIVE * np.abs(limits)
@@ -162,7 +162,7 @@ def _active(problem: Problem, best: Round) -> tuple[str, ...]:
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Prediction, notes: tuple[str, ...]
 ) -> tuple[tuple[Prediction, ...], tuple[str, ...]]:
-    """Return the promise of each level, and the notes; a level without enough rows adds a note."""
+    """Return the predictions of all levels, and the notes; a note names an incomplete comparison."""
     others: list[Prediction] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):
@@ -174,7 +174,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Prediction]:
-    """Return the result of one level alone, confirmed once; an empty list without a result."""
+    """Return the prediction of one level searched alone and confirmed once; empty if it has no result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -190,7 +190,7 @@ def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Predict
 
 @dataclass(frozen=True)
 class _Call:
-    """One call of a search: its level, its rows, and its results, as a chunk keeps it."""
+    """One call of a search, as stored in a chunk: its level, its rows, and their results."""
 
     level: int
     arrays: Mapping[str, AnyArray]
@@ -204,14 +204,14 @@ class _Call:
 
 @dataclass(frozen=True)
 class _Journal:
-    """The stages of one level, among those of all."""
+    """The stages of one level, stored with those of all levels."""
 
     level: int
     stages: dict[str, Stage]
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """Return the latest stored stage of a name."""
+        """Return the latest stored state of the stage with this name, or None."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -221,7 +221,7 @@ class _Journal:
 
 
 class _Book:
-    """All answers of a search, by level and by the bytes of the rows; and its stages."""
+    """All results of a search by level and by the bytes of the rows, and all stages."""
 
     def __init__(
         self, ready: TaskState, task: Task, search: Search, problem: Problem, stored: Sequence[Pieces]
@@ -243,7 +243,7 @@ class _Book:
         return _Journal(level, self._stages, self._changed)
 
     def answer(self, level: int) -> Answer:
-        """Return the results at a level, from what is stored or by calculating."""
+        """Return a function that returns results at a level, stored or newly calculated."""
         same = next(n for n, levels in enumerate(self._levels) if levels == self._levels[level])
 
         def answered(rows: Array) -> Columns:
@@ -256,7 +256,7 @@ class _Book:
         return answered
 
     def chunk(self) -> Chunk | None:
-        """Return the new answers as a chunk; None if there are none."""
+        """Return the new results as a chunk; None if there are none."""
         if not self._new:
             return None
         names = sorted({name for call in self._new for name in call.arrays})
@@ -278,12 +278,14 @@ class _Book:
         return Chunk(packed(arrays, about), len(arrays["reason"]), refused)
 
     def _calculated(self, level: int, rows: Array) -> _Call:
-        """Return new rows at a level.
+        """Calculate new rows at a level.
 
         Raises
         ------
-        Paused
-            The slice has calculated enough.
+        SearchPause
+            If the slice has used its estimated time.
+        TooManyRows
+            If the search would exceed its number of rows.
         """
         if self._spent >= SLICE_SECONDS:
             raise SearchPause
@@ -294,7 +296,7 @@ class _Book:
             raise TooManyRows([Fault("points", "too_many_rows", detail)])
         engine, asked = self._ready.engine, self._ready.asked
         levels = self._levels[level]
-        criteria = self._search.criteria  # by tables: what was measured would differ from run to run
+        criteria = self._search.criteria  # from cost tables, because measured times differ from run to run
         seconds = engine.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
         self._spent += seconds + CALL_SECONDS
         table = called(self._ready, rows, levels, criteria, judge=True)
@@ -328,12 +330,12 @@ class _Book:
 
 
 def _array(call: _Call, name: str) -> AnyArray:
-    """Return an array of a call; NaN where it has none, such as an error that its level does not state."""
+    """Return an array of a call; NaN if the call lacks it, such as an error that its level does not state."""
     return call.arrays[name] if name in call.arrays else np.full(call.count, np.nan)
 
 
 def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
-    """Return the calls whose answers a chunk holds, in their order, and the stages at its end."""
+    """Return the calls stored in a chunk, in order, and the stages at its end."""
     with Archive(pieces.joined()) as archive:
         arrays, about = {name: archive[name] for name in archive.names}, archive.about()
     calls, start = [], 0
@@ -345,7 +347,7 @@ def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
 
 
 def _plain(stage: Stage) -> JsonObject:
-    """Return a stage as JSON, whose numbers keep all their digits."""
+    """Return a stage as JSON; numbers keep all their digits."""
     return {**vars(stage), "arrays": [array.tolist() for array in stage.arrays]}
 
 

@@ -26,7 +26,7 @@ from templates.core.units.units import difference_of, unit
 
 @dataclass(frozen=True)
 class Shares:
-    """Indices by output and place, and why an output has none."""
+    """Indices by output and place, and notes on outputs that have none."""
 
     indices: dict[str, dict[str, Index]]
     notes: list[str]
@@ -38,7 +38,7 @@ def sensitivities(task: Task, columns: Mapping[str, Array]) -> Shares:
     Raises
     ------
     InvalidInputs
-        If rows are refused: their share, and that the bounds are to be narrowed.
+        If rows are refused; the message gives their share and advises narrower bounds.
     """
     ready = prepared(task)
     points = ready.asked.points
@@ -88,13 +88,13 @@ def _indices(
 
 
 def _difference(declared: str) -> Callable[[float], Quantity]:
-    """Return a change [SI] of something declared in a unit."""
+    """Return a change [SI] of a value as a quantity in its declared unit."""
     factor, name = unit(declared).factor, difference_of(declared)
     return lambda change: Quantity(value=change / factor, unit=name)
 
 
 def _present(**values: Quantity | float | None) -> Index:
-    """Return an index without the numbers that do not exist."""
+    """Return an index without its missing numbers."""
     there = {n: v for n, v in values.items() if v is not None}
     finite = {n: v for n, v in there.items() if not isinstance(v, float) or math.isfinite(v)}
     return Index.model_validate(finite)

@@ -47,24 +47,24 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.units.units import unit
 
 Lost = Callable[[str], Exception]
-"""Returns the error to raise for a study, by its id, whose rows cannot be read."""
+"""Returns the error to raise if the rows of a study, given by its id, cannot be read."""
 ENDED: tuple[State, ...] = ("done", "failed", "cancelled")
 
 
 @dataclass(frozen=True)
 class Draft:
-    """A study that was asked for, before its plan is made."""
+    """A request for a study, before its plan is made."""
 
     design: str
     revision: int
     body: JsonObject
     rows: Rows | None
     task: Task
-    solid_seconds: float  # that a solid takes, as jobs have taken lately [s]
+    solid_seconds: float  # recent time of jobs that build a solid [s]
 
 
 class Studies:
-    """Studies of designs."""
+    """Operations on studies."""
 
     def __init__(
         self,
@@ -80,7 +80,7 @@ class Studies:
         self._lost = lost
 
     def begun_before(self, once: Once) -> str | None:
-        """Return the study that this very request has begun before."""
+        """Return the study that the same request began before, or None."""
         if not once.key:
             return None
         with self.database.read() as session:
@@ -88,14 +88,14 @@ class Studies:
         return _study(before) if before else None
 
     def draft(self, body: StudyIn) -> Draft:
-        """Return a study of a revision, as a process can plan it.
+        """Return a study of a revision in the form that a process needs to plan it.
 
         Raises
         ------
         NotFound
-            There is no such design or revision.
+            If there is no such design or revision.
         InvalidInputs
-            The rows of a table do not fit together, or there is no such variant.
+            If the rows of a table do not fit together, or there is no such variant.
         """
         number, document = self._revision(body.design, body.revision)
         document = document_of(document, body.variant)
@@ -109,24 +109,36 @@ class Studies:
         return Draft(body.design, number, plain, body.rows, task, seconds)
 
     def places(self, design: str, revision: int | None) -> Units:
-        """Return every place that the rows of a study may set, with its unit; raises NotFound."""
+        """Return every place that the rows of a study may set, with its unit.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design or revision.
+        """
         _, document = self._revision(design, revision)
         graph, _ = build_graph(Document.model_validate(document), self.catalogues)
         return units_of(graph)
 
     def _revision(self, design: str, revision: int | None) -> tuple[int, JsonObject]:
-        """Return the number and the document of a revision, the newest if none is named; raises NotFound."""
+        """Return the number and the document of a revision, by default the newest.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design or revision.
+        """
         with self.database.read() as session:
             number = designs.design(session, design).head if revision is None else revision
             return number, designs.document(session, design, number)
 
     def begin(self, draft: Draft, plan: Plan, given: Array | None, once: Once) -> str:
-        """Write a study and queue its job.
+        """Store a study, queue its job, and return its id.
 
         Raises
         ------
         QueueFull
-            Too many jobs are waiting.
+            If too many jobs are waiting.
         """
         content = () if given is None else packed({"rows": given})
         table = self.store.put(*content) if content else None
@@ -149,16 +161,16 @@ class Studies:
         return self.jobs.commit(unit_of_work, STUDY)
 
     def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
-        """Return a new revision of the design with the values of a row.
+        """Create a revision of the design with the values of a row, and return it.
 
         The revision's note lists the relations that these values replace.
 
         Raises
         ------
         InvalidInputs
-            The row has not been calculated, or the newest revision lacks the variant that was studied.
+            If the row has not been calculated, or the newest revision lacks the studied variant.
         StaleRevision
-            `expected` (an If-Match) is not the newest revision.
+            If `expected` (an If-Match) is not the newest revision.
         """
         with self.database.read() as session:
             study = repository.get(session, id)
@@ -173,7 +185,13 @@ class Studies:
         return self.designs.change(study.design_id, patch, said, expected, once)
 
     def values(self, study: StudyRow, number: int) -> dict[str, float]:
-        """Return the values [SI] of the places in a row that was calculated; raises InvalidInputs."""
+        """Return the values [SI] of the places in a calculated row.
+
+        Raises
+        ------
+        InvalidInputs
+            If the row has not been calculated.
+        """
         with self.database.read() as session:
             stored = StoredRows(self.store, repository.chunks(session, study.id))
         part = next((p for p in stored.parts if p.first <= number < p.first + p.count), None)
@@ -186,14 +204,14 @@ class Studies:
 
     @contextmanager
     def reading(self, id: str) -> Iterator[None]:
-        """Guard the reading of a study's rows.
+        """Guard a block that reads a study's rows.
 
         Raises
         ------
         RowsLost
-            Some are missing or damaged, and are calculated again.
+            If rows are missing or damaged, and are being recalculated.
         CannotRebuild
-            They cannot be.
+            If they cannot be restored.
         """
         try:
             yield
@@ -201,16 +219,16 @@ class Studies:
             raise self._lost(id) from error
 
     def end(self, id: str, client: str | None = None) -> StudyRow | None:
-        """Cancel a study that waits or runs, and return it; remove one that has ended, and return None.
+        """Cancel a study that waits or runs, and return it; delete an ended one, and return None.
 
-        A client may cancel only its own studies, an administrator any; ended ones belong to the team.
+        A client may cancel only its own studies, an administrator any. Every client may delete ended studies.
 
         Raises
         ------
         NotFound
-            There is no such study.
+            If there is no such study.
         NotOwn
-            It waits or runs, for another principal.
+            If it waits or runs for another principal.
         """
         with self.database.read() as session:
             row = repository.get(session, id)
@@ -219,7 +237,7 @@ class Studies:
             return None
         try:
             self.jobs.cancel(row.job or "", client)
-        except (JobFinished, JobNotFound):  # it has just ended, or its job was deleted
+        except (JobFinished, JobNotFound):  # the study has just ended, or its job was deleted
             problem = {"type": "/problems/cancelled", "title": "The work was cancelled", "status": 409,
                        "detail": "The study was cancelled."}  # fmt: skip
             self.database.write(lambda session: repository.end(session, id, "cancelled", None, problem))
@@ -233,7 +251,7 @@ def _remove(session: Session, id: str) -> None:
 
 
 def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str, float]) -> JsonObject:
-    """Return a merge patch that gives places of a document their values [SI], in these units."""
+    """Return a merge patch that sets places of a document to these values [SI], in these units."""
     patch: JsonObject = {}
     for name, value in values.items():
         quantity = {"value": float(unit(units[name]).from_si(value)), "unit": units[name]}
@@ -252,7 +270,7 @@ def _study(location: JsonObject) -> str:
 
 
 def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
-    """Return the measures [SI] that relations of a document use, as far as they are known."""
+    """Return the known measurements [SI] that relations of a document use."""
     if not document.get("models"):
         return {}
     calculation = designs.prepare(document)[1]
@@ -261,7 +279,7 @@ def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
 
 
 def _used(calculation: Calculation) -> set[Reference]:
-    """Return the measures and results of analyses that relations name, but for tables."""
+    """Return the measurements and analysis outputs that relations name, without tables."""
     blocks = calculation.graph.blocks
     used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
     models = {
@@ -274,5 +292,5 @@ def _used(calculation: Calculation) -> set[Reference]:
 def _value(calculation: Calculation, reference: Reference) -> float | None:
     try:
         return float(calculation.measure(reference))
-    except (FaultyText, KeyError):  # not built, or not analysed
+    except (FaultyText, KeyError):  # the solid is not built or not analysed
         return None

@@ -1,4 +1,4 @@
-"""Count the solids of a study before it begins; refuse too many solids."""
+"""Count the solids of a study before it begins, and refuse too many."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from templates.core.errors import Fault, InvalidInputs
 
 NEEDS_SOLIDS = "needs_solids"
 MOST_SOLIDS, MOST_ANALYSED = 500, 100
-"""Solids that are built for a study; solids that are analysed by finite elements for it."""
-AT_ONCE = 65_536  # rows that are compared with those before
-MOST_COMPARED = 20_000  # distinct sets of values; if there are more, all rows are said to differ
-MOST_TRIED = 4096  # distinct sets of values from which solids are counted exactly
-AFFORDABLE = 1.0  # estimated, for the parameters of these solids [s]
-SEARCHES = "a search asks for its rows one after another; sample these places first"
+"""Largest number of solids that a study builds, and that it analyses by finite elements."""
+AT_ONCE = 65_536  # number of rows that are compared at a time
+MOST_COMPARED = 20_000  # distinct sets of values; if there are more, all rows count as different
+MOST_TRIED = 4096  # largest number of distinct sets of values for an exact count of solids
+AFFORDABLE = 1.0  # largest estimated time for the parameters of these solids [s]
+SEARCHES = "a search finds its rows one after another; sample these places first"
 
 
 @dataclass(frozen=True)
 class SolidCount:
-    """Number of solids that a study needs at most, and of those that finite elements analyse."""
+    """The largest number of solids that a study needs, and of those that it analyses."""
 
     solids: int = 0
     analysed: int = 0
 
 
 def counted(ready: TaskState, count: int, given: Array | None, levels: Levels) -> SolidCount:
-    """Return the solids that the rows of a study need.
+    """Return the number of solids that the rows of a study need.
 
     Raises
     ------
     InvalidInputs
-        With code `needs_solids`, if there are too many, or if a search would ask for them.
+        With code `needs_solids`, if there are too many, or if a search would need solids.
     """
     solids, points = ready.solids, ready.asked.points
     if not solids.measures:
@@ -57,14 +57,14 @@ def counted(ready: TaskState, count: int, given: Array | None, levels: Levels) -
 
 
 def _refused(ready: TaskState, rows: int, solids: int, why: str) -> Iterator[Fault]:
-    """Yield a fault for each measure, which names the chain from what varies."""
+    """Yield a fault for each measurement, with the chain of names from the varied places."""
     graph, measures = ready.engine.graph, ready.solids.measures
     for fault in solids_in_the_way(graph, measures, ready.engine.design.moving):
-        yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids; {why}")
+        yield replace(fault, detail=f"{fault.detail}: {rows} rows need up to {solids} solids; {why}")
 
 
 def _of_model(ready: TaskState, model: Block, count: int, given: Array | None, levels: Levels) -> int:
-    """Number of solids of a model; at most, if it is not known before other solids are built."""
+    """Return the number of solids of a model; an upper limit if it depends on solids that are not built."""
     places = [ready.asked.places.index(place) for place in ready.solids.drivers(model)]
     chosen = _distinct(ready, places, count, given)
     if len(chosen) > MOST_COMPARED:
@@ -73,7 +73,9 @@ def _of_model(ready: TaskState, model: Block, count: int, given: Array | None, l
         return len(chosen)
     wanting = ready.solids.resolved(placed(ready, chosen), len(chosen), levels, ()).wanting
     own = {solid.texts for solid in wanting if solid.model == model.name}
-    return len(own) if own or not wanting else len(chosen)  # else it follows from solids that are not built
+    return (
+        len(own) if own or not wanting else len(chosen)
+    )  # otherwise the parameters depend on solids that are not built
 
 
 def _is_affordable(ready: TaskState, model: Block, count: int, levels: Levels) -> bool:
@@ -82,7 +84,10 @@ def _is_affordable(ready: TaskState, model: Block, count: int, levels: Levels) -
 
 
 def _distinct(ready: TaskState, places: Sequence[int], count: int, given: Array | None) -> Array:
-    """Return the first row of each distinct set of values of some places; not all, if there are too many."""
+    """Return the first row of each distinct set of values of some places.
+
+    If there are more than `MOST_COMPARED`, the list is incomplete.
+    """
     chosen: Array = np.empty((0, len(ready.asked.places)))
     for first in range(0, count, AT_ONCE):
         last = min(first + AT_ONCE, count)

@@ -1,4 +1,4 @@
-"""Build, analyse and measure the solids for which rows of a study wait, one by one, in the study's job.
+"""Build, analyse and measure the solids that rows of a study need, one by one, in the study's job.
 
 All solids of a study share a process (`JobContext`). A recorded build is not built twice, so a killed study
 reuses its builds. If a solid fails, only the rows that use it fail.
@@ -46,13 +46,13 @@ CODES: dict[type[Exception], str] = {
     JobCrashed: "crashed",
     CannotRebuild: "lost",
 }
-"""Codes of refused rows, of failures that have none."""
-MOST_CRASHES = 2  # of the process that builds one solid
-GLANCE = 0.05  # how often a study that waits for its turn looks whether it was cancelled [s]
+"""Codes of refused rows for failures without a code."""
+MOST_CRASHES = 2  # largest number of crashes of the process that builds one solid
+GLANCE = 0.05  # interval at which a waiting study checks whether it was cancelled [s]
 
 
 class SolidPool:
-    """Makes solids for studies, no more at a time than the service has job threads."""
+    """Makes solids for studies; at most as many at a time as the service has job threads."""
 
     def __init__(self, database: Database, builds: Builds, analysing: AnalysisRunner, most: int) -> None:
         self.database, self.builds, self.analysing = database, builds, analysing
@@ -64,12 +64,12 @@ class SolidPool:
 
     @contextmanager
     def turn(self, context: JobContext) -> Iterator[None]:
-        """Wait until a solid may be made.
+        """Wait until a solid may be made, and occupy one place of the pool in the block.
 
         Raises
         ------
         JobCancelled
-            The study is cancelled meanwhile.
+            If the study is cancelled while it waits.
         """
         while not self._turns.acquire(timeout=GLANCE):
             if context.is_cancelled:
@@ -82,7 +82,7 @@ class SolidPool:
 
 @dataclass
 class StudySolids:
-    """The solids of one study while a job works on it."""
+    """The solids of one study while a job calculates it."""
 
     making: SolidPool
     document: Document
@@ -93,7 +93,7 @@ class StudySolids:
 
     @property
     def measured(self) -> Solids:
-        """Return the measures so far."""
+        """Return the solids that are known so far."""
         return tuple(self._measures.values())
 
     def is_known(self, wanting: SolidRequest) -> bool:
@@ -101,7 +101,13 @@ class StudySolids:
         return (wanting.model, wanting.texts) in self._measures
 
     def make(self, wanting: SolidRequest) -> None:
-        """Build a solid and measure it, or note why it has no measures; raises JobCancelled."""
+        """Build and measure a solid, or record why it has no measurements.
+
+        Raises
+        ------
+        JobCancelled
+            If the study is cancelled.
+        """
         with self.making.turn(self.context):
             self._measures[wanting.model, wanting.texts] = self._measured_solid(wanting)
 
@@ -113,7 +119,7 @@ class StudySolids:
         return SolidMeasures(wanting.model, wanting.texts, measures)
 
     def _measured(self, wanting: SolidRequest) -> dict[str, float]:
-        """Return the measures of a solid [SI], by their names within its model."""
+        """Return the measurements of a solid [SI], by their names within its model."""
         model = self.document.models[wanting.model]
         assert isinstance(model.version, int), "a revision pins every version"
         shape = self.catalogues.models.get(model.id, model.version).from_quantities(dict(wanting.texts))
@@ -141,7 +147,7 @@ class StudySolids:
                 return
 
     def _analysed(self, wanting: SolidRequest, shape: CadModel, runner: Runner) -> dict[str, float]:
-        """Return the results of finite elements on a solid [SI]."""
+        """Return the results of finite-element analyses of a solid [SI]."""
         references = [Reference.parse(f"{wanting.model}.{name}") for name in wanting.measures]
         values: dict[str, float] = {}
         for kind in dict.fromkeys(r.analysis for r in references if r.analysis is not None):
@@ -160,7 +166,7 @@ class StudySolids:
         return values
 
     def _questions(self) -> Graph:
-        """Return the network of the design, which knows how its models are analysed."""
+        """Return the network of the design, which has the analyses of its models."""
         if self._graph is None:
             self._graph, faults = build_graph(self.document, self.catalogues)
             raise_if(faults)
@@ -168,7 +174,7 @@ class StudySolids:
 
 
 def _refusal(model: str, error: Exception) -> Refusal:
-    """Return why the rows that have a solid are refused."""
+    """Return the refusal of the rows whose solid failed."""
     if isinstance(error, InvalidInputs):
         return refusal_of([fault.within(model) for fault in error.faults])
     code = CODES.get(type(error)) or getattr(error, "code", "failed")

@@ -24,12 +24,12 @@ from templates.core.errors import Fault, InvalidInputs
 
 @dataclass(frozen=True)
 class Task:
-    """A study as it is sent to a process; equal tasks calculate equal rows."""
+    """A study as sent to a process; equal tasks calculate equal rows."""
 
     design: DesignTask
     body: str  # without the rows of a table
-    varied: tuple[str, ...]  # places, in the order of the columns of the rows
-    measured: tuple[tuple[str, float], ...] = ()  # of solids, known [SI]: one value for all rows
+    varied: tuple[str, ...]  # varied places, in the order of the columns
+    measured: tuple[tuple[str, float], ...] = ()  # known measurements of solids [SI], equal for all rows
 
     @classmethod
     def of(
@@ -40,12 +40,12 @@ class Task:
         measured: Mapping[str, float],
         catalogues: Catalogues,
     ) -> Task:
-        """Return the task of a body, without the rows of a table, and a revision's document.
+        """Return the task for a body, without the rows of a table, and for a revision's document.
 
         Raises
         ------
         UnknownTemplate
-            The catalogue has no longer what a step or model of the design needs.
+            If the catalogue no longer has a version that the design needs.
         """
         return cls(
             DesignTask.of(document, catalogues),
@@ -57,14 +57,14 @@ class Task:
 
 @dataclass(frozen=True)
 class TaskState:
-    """A task in the process that calculates it: read, checked, built once.
+    """A task in the process that calculates it, read, checked and built once.
 
     Attributes
     ----------
     solids
-        What differs from row to row and is measured on solids.
+        The measurements of solids that differ from row to row.
     nominal
-        These measures of the design itself, as far as they are known [SI]: for rows that are only tried.
+        These measurements [SI] for the design itself, as far as known; trial rows use them.
     """
 
     engine: DesignEngine
@@ -74,18 +74,18 @@ class TaskState:
 
 
 def prepared(task: Task) -> TaskState:
-    """Return the design of a task as a function of rows, and the requested outputs.
+    """Return a task read and checked: its design as a function of rows, and the requested outputs.
 
     Raises
     ------
     InvalidInputs
-        With everything that is wrong with the study.
+        With all faults of the study.
     """
     return _prepared(task)
 
 
 def read_body(body: str) -> StudyIn:
-    """Return a body that was checked when it came."""
+    """Return a stored body, which was checked when it arrived."""
     return StudyIn.model_validate(from_json(body))
 
 
@@ -117,9 +117,9 @@ def _engine(
     measured: Mapping[Reference, float],
     aside: Sequence[Reference],
 ) -> DesignEngine:
-    """Return the design with rows.
+    """Return the engine for the design and the varied places.
 
-    Where a relation is refused, the refusal names the remedy of a study too.
+    If a relation sets a varied place, the error also names the remedy `set_aside`.
     """
     try:
         return DesignEngine.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)

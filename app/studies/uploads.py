@@ -1,6 +1,6 @@
 """Read the rows of a study from a CSV file or the first sheet of an XLSX file, in a calculation process.
 
-A cell that is not a number, or that holds a formula, is refused with its row and column.
+A cell that is not a number, or contains a formula, is refused with its row and column.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from templates.core.units.units import require_same_kind
 
 FileKind = Literal["csv", "xlsx"]
 Places = Mapping[str, str | None]
-"""Every place of a design that rows may set, with its declared unit; None where it has none of its own."""
+"""Every place of a design that rows may set, with its declared unit, or None."""
 
 MOST_CHARACTERS = 16_000_000
 MOST_UNPACKED = 200_000_000
-"""Of an XLSX file [bytes]."""
+"""Largest size of an XLSX file [bytes]."""
 
 
 def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, Raw]:
@@ -32,7 +32,7 @@ def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, R
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong, headings included, up to `MOST_FAULTS`.
+        With up to `MOST_FAULTS` faulty cells, headings included.
     """
     body = content.joined()
     is_sheet = kind == "xlsx"
@@ -51,20 +51,20 @@ def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, R
 
 
 class _Headings:
-    """The headings of a file, judged one after the other against the places of a design."""
+    """The headings of a file, checked one after the other against the places of a design."""
 
     def __init__(self, places: Places) -> None:
         self._places, self._seen = places, set[str]()
 
     def fault(self, name: str, given: str) -> Fault | None:
-        """Return the fault of a column: of its name, or of its unit, which is empty where it has none."""
+        """Return the fault in the name or the unit of a column, if any; the unit is empty if it has none."""
         if name in self._seen:
             return Fault(name, "twice", f"{excerpt(name)} names two columns; keep one of them")
         self._seen.add(name)
         if name not in self._places:
             return unknown_name(name, list(self._places), "parameter or input")
         if (declared := self._places[name]) is None:
-            return None  # a parameter that a relation sets, or a choice: the study says what it takes
+            return None  # a parameter that a relation sets, or a choice; both are checked later
         if not given and declared != "1":
             detail = f"the column has no unit; write one of the kind of {declared} below the heading"
             return Fault(name, "missing_unit", detail)

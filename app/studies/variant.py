@@ -1,4 +1,4 @@
-"""The variant of a design that a study uses: its document, and the revision that a chosen row creates."""
+"""The variant of a design that a study uses: its document, and the patch that a chosen row makes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from templates.core.errors import Fault, InvalidInputs, excerpt, listed
 
 
 def document_of(document: JsonObject, variant: str | None) -> JsonObject:
-    """Return the document as a variant has it, without variants of its own; itself for the design.
+    """Return the document with a variant applied, and without variants; unchanged for the design itself.
 
     Raises
     ------
     InvalidInputs
-        The revision has no variant of this name.
+        If the revision has no variant with this name.
     """
     if variant is None or variant == BASE:
         return document
@@ -33,7 +33,7 @@ def _unknown(variant: str, names: list[str]) -> str:
 
 
 def within(patch: JsonObject, variant: str | None) -> JsonObject:
-    """Return a merge patch of parameters, inputs and model parameters, as a patch of a variant."""
+    """Return a merge patch of parameters, inputs and model parameters as a patch of a variant."""
     if variant is None or variant == BASE:
         return patch
     values = dict(patch.get("parameters", {}))

@@ -1,4 +1,4 @@
-"""Make rows of a study the variants of a new design, with a table, files and a report like any design."""
+"""Turn rows of a study into variants of a new design, with a table, files and a report like any design."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from app.studies.schemas import StudyResult
 from app.studies.variant import document_of
 from templates.core.units.units import unit
 
-LONGEST_NAME = 180  # letters of the first design's name that the new one keeps
+LONGEST_NAME = 180  # characters of the original design's name that the new one keeps
 
 
 class DesignFactory:
-    """Makes the designs that studies ask for."""
+    """Creates the designs that studies request."""
 
     def __init__(self, services: StudyServices, service: Designs) -> None:
         self._services, self._designs = services, service
 
     def built(self, run: Run, body: StudyIn, result: StudyResult) -> StudyResult:
-        """Return the result with the design whose variants are the rows to build, if there are any."""
+        """Return the result with the new design whose variants are the rows to build, if there are any."""
         rows = rows_to_build(body, result, run.plan.rows)
         if not rows:
             return result
@@ -48,7 +48,7 @@ class DesignFactory:
 
 
 def rows_to_build(body: StudyIn, result: StudyResult, count: int) -> dict[str, int]:
-    """Return the rows that become variants, by the names of these."""
+    """Return the rows that become variants, by the names of the variants."""
     match body.build:
         case "none":
             return {}

@@ -1,4 +1,4 @@
-"""Studies and their rows as the interface shows them."""
+"""Responses of the REST interface about studies and their rows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from templates.core.units.units import unit
 MOST_REASONS = 20
 
 Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
-"""A choice of rows: by their worst verdict, or those without values."""
+"""A selection of rows: by their worst verdict, or refused rows."""
 
 
 def study(session: Session, row: Row) -> Study:
@@ -68,7 +68,7 @@ def study(session: Session, row: Row) -> Study:
 
 
 def estimate(plan: Plan) -> StudyEstimate:
-    """Return the estimate of a study that is not begun."""
+    """Return the estimate of a study that has not begun."""
     return StudyEstimate(
         rows=plan.rows,
         criteria=plan.required,
@@ -80,27 +80,27 @@ def estimate(plan: Plan) -> StudyEstimate:
 
 
 def _named(levels: Mapping[str, str | None]) -> dict[str, str]:
-    """Return the levels of the steps that have any."""
+    """Return the levels of the steps that have levels."""
     return {step: level for step, level in levels.items() if level is not None}
 
 
 def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:
-    """Return the progress of a study, 0 to 1: by its rows, or from its job while it builds solids."""
+    """Return the progress of a study, from 0 to 1, by its rows; while it builds solids, by its job."""
     job = session.get(JobRow, row.job) if plan.solids and row.job else None
     return max(plan.share(rows, 0), job.progress if job is not None else 0.0)
 
 
 @dataclass(frozen=True)
 class RowQuery:
-    """The rows and columns to list, and their order."""
+    """The selection and order of rows and columns in a list."""
 
-    columns: tuple[str, ...] = ()  # all, if none is named
+    columns: tuple[str, ...] = ()  # all, if empty
     where: Where | None = None
-    sort: str | None = None  # a column; with `-` before it the largest first
+    sort: str | None = None  # a column; prefixed with `-` for descending order
 
 
 class RowList:
-    """The rows of a study that were calculated, filtered and sorted."""
+    """The calculated rows of a study, filtered and sorted."""
 
     def __init__(self, row: Row, stored: StoredRows, wanted: RowQuery) -> None:
         self.plan, self.stored, self.wanted = Plan.of(row.plan), stored, wanted
@@ -118,7 +118,7 @@ class RowList:
         return {name: self.plan.units[name] for name in self.names}
 
     def numbers(self) -> Integers:
-        """Return the rows that fit, in their order."""
+        """Return the numbers of the rows that match the filter, in order."""
         numbers = np.arange(self.stored.count)
         if self.wanted.where is not None:
             numbers = np.flatnonzero(self._fits())
@@ -129,7 +129,7 @@ class RowList:
         return numbers
 
     def page(self, limit: int, start: int, system: System = "si") -> StudyRows:
-        """Return a page of rows that begins with one of those that fit."""
+        """Return a page of rows, beginning at a position in the list."""
         numbers = self.numbers()
         following = str(start + limit) if start + limit < len(numbers) else None
         items = self.rows(numbers[start : start + limit])
@@ -137,7 +137,7 @@ class RowList:
         return page.in_units(system)
 
     def rows(self, numbers: Integers) -> list[StudyRow]:
-        """Return some rows, in this order."""
+        """Return some rows in the given order."""
         shown: dict[int, StudyRow] = {}
         for part in self.stored.parts:
             inside = numbers[(numbers >= part.first) & (numbers < part.first + part.count)]
@@ -147,7 +147,7 @@ class RowList:
         return [shown[number] for number in numbers.tolist()]
 
     def column(self, name: str) -> Array:
-        """Return a column of all rows, in its unit."""
+        """Return a column of all rows in its unit."""
         return self._in_unit(name, self.stored.values(self._array(name)))
 
     def _in_unit(self, name: str, values: AnyArray) -> Array:
@@ -184,7 +184,7 @@ class RowList:
         return shown
 
     def _is_confirmed(self, number: int, level: int) -> bool:
-        """Return whether a row was calculated again, or confirms what a search promised."""
+        """Return whether a row was recalculated at finer levels, or confirms a prediction."""
         return level == CONFIRM if self.plan.searched else number >= self.plan.rows
 
     def _fits(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
@@ -202,5 +202,5 @@ def _finite(value: float) -> float | None:
 
 
 def start_of(cursor: str | None) -> int:
-    """Return the place in a list at which a page begins."""
+    """Return the position in a list at which a page begins."""
     return int(cursor) if cursor and cursor.isdecimal() and len(cursor) < 9 else 0

@@ -13,18 +13,18 @@ from app.team.processes import LOOPBACK, START, ChildProgram, free_port, listens
 
 
 class Command:
-    """A command of Crankwright's in a process of its own.
+    """A Crankwright command in a separate process.
 
     Parameters
     ----------
     name
-        What it is called; its log in `folder` has this name.
+        Name of the command; its log in `folder` has this name.
     arguments
-        What stands behind `crankwright`.
+        The arguments after `crankwright`.
     folder
-        Where its log is.
+        The folder of its log.
     environment
-        Its settings, as variables.
+        Its settings, as environment variables.
     """
 
     def __init__(
@@ -36,44 +36,44 @@ class Command:
 
     @property
     def lives(self) -> bool:
-        """Return whether its process still runs."""
+        """Return whether the process is still running."""
         return self._process is not None and self._process.lives
 
     @property
     def pid(self) -> int:
-        """Return the number of its process; 0 if it was not started."""
+        """Return the id of the process; 0 if it was not started."""
         return self._process.pid if self._process else 0
 
     def start(self) -> None:
-        """Start it; it works some seconds later."""
-        self.stop()  # what is left of a process that has died
+        """Start the process, which becomes ready some seconds later."""
+        self.stop()  # the remains of a process that has died
         command = [sys.executable, "-m", "app", *self._arguments]
         self._process = ChildProgram(self.name, command, self._log, environment=self._environment)
 
     def until(self, answers: Callable[[], bool], seconds: float = START) -> None:
-        """Wait until it answers; raises as `ChildProgram.until` does."""
+        """Wait until the command answers; raises as `ChildProgram.until` does."""
         assert self._process is not None, "it has been started"
         self._process.until(answers, seconds)
 
     def require(self) -> None:
-        """Raise DidNotStart if it has been started and has ended."""
+        """Raise DidNotStart if the process was started and has ended."""
         if self._process:
             self._process.require()
 
     def kill(self) -> None:
-        """Kill -9 it alone; what it started notices that."""
+        """Kill only this process by `kill -9`; the processes that it started notice that."""
         if self._process:
             self._process.kill()
 
     def stop(self) -> None:
-        """Ask it to end, and wait for that."""
+        """Ask the process to end, and wait until it has ended."""
         if self._process:
             self._process.stop()
             self._process = None
 
 
 class Server(Command):
-    """`crankwright serve` with a data folder of its own in `folder`."""
+    """`crankwright serve` with its own data folder in `folder`."""
 
     def __init__(self, name: str, folder: Path, environment: Mapping[str, str]) -> None:
         self.port = free_port()
@@ -82,11 +82,11 @@ class Server(Command):
 
     @property
     def url(self) -> str:
-        """Return the address at which it answers."""
+        """Return the address of the server."""
         return f"http://{LOOPBACK}:{self.port}"
 
     def ready(self, others: Sequence[Command] = (), seconds: float = START) -> None:
-        """Wait until it can work, while the others live on which it depends; raises as `until` does."""
+        """Wait until the server is ready, as long as the parts that it needs run; raises as `until` does."""
 
         def answers() -> bool:
             for other in others:
@@ -98,7 +98,7 @@ class Server(Command):
 
 
 class Scheduler(Command):
-    """`crankwright scheduler`, which hands jobs to the workers."""
+    """`crankwright scheduler`, which passes jobs to the workers."""
 
     def __init__(self, folder: Path, environment: Mapping[str, str]) -> None:
         self.port = free_port()
@@ -107,11 +107,11 @@ class Scheduler(Command):
 
     @property
     def address(self) -> str:
-        """Return the address that `CRANKWRIGHT_ENGINE` names."""
+        """Return the address for `CRANKWRIGHT_ENGINE`."""
         return f"tcp://{LOOPBACK}:{self.port}"
 
     def ready(self) -> None:
-        """Wait until it listens; raises as `until` does."""
+        """Wait until the scheduler listens; raises as `until` does."""
         self.until(lambda: listens(self.port))
 
 

@@ -1,4 +1,4 @@
-"""An S3 server on loopback for trials: moto, which keeps objects in memory and proves no durability."""
+"""An S3 server on loopback for trials: moto, which keeps objects only in memory."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def is_installed() -> bool:
 
 
 class ObjectStore:
-    """An S3 server on a port of its own.
+    """An S3 server on its own port.
 
     Raises
     ------
     Missing
-        moto is not installed.
+        If moto is not installed.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -50,16 +50,16 @@ class ObjectStore:
 
     @property
     def endpoint(self) -> str:
-        """Return its address."""
+        """Return the address of the server."""
         return f"http://{LOOPBACK}:{self.port}"
 
     @property
     def pid(self) -> int:
-        """Return the number of its process."""
+        """Return the id of the server's process."""
         return self._process.pid
 
     def create(self, bucket: str, *, versioned: bool = False) -> str:
-        """Create a bucket and return the URL by which Crankwright is configured."""
+        """Create a bucket, and return the URL for Crankwright's settings."""
         with httpx.Client(base_url=self.endpoint, trust_env=False) as http:
             http.put(f"/{bucket}").raise_for_status()
             if versioned:
@@ -67,11 +67,11 @@ class ObjectStore:
         return f"s3://{bucket}"
 
     def send(self, number: int) -> None:
-        """Send a signal to the server, such as SIGSTOP: it then hangs and forgets nothing."""
+        """Send a signal to the server, such as SIGSTOP, after which it hangs but keeps its objects."""
         self._process.send(number)
 
     def close(self) -> None:
-        """End the server, and with it all that it holds."""
+        """End the server, which loses all its objects."""
         self._process.stop()
 
 

@@ -1,4 +1,4 @@
-"""All parts of a team on loopback: PostgreSQL, an S3 server, Dask with workers, two servers."""
+"""Start all parts of a team on loopback: PostgreSQL, an S3 server, Dask with workers, two servers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Say = Callable[[str], object]
 
 @dataclass(frozen=True)
 class Team:
-    """The running parts; `environment` has the settings that its servers share."""
+    """The running parts; `environment` has the settings that the servers share."""
 
     database: Cluster
     store: ObjectStore
@@ -37,12 +37,12 @@ class Team:
 
     @property
     def url(self) -> str:
-        """Return the URL of its database."""
+        """Return the URL of the team's database."""
         return self.environment["CRANKWRIGHT_DATABASE_URL"]
 
 
 def missing() -> list[str]:
-    """Return the parts that are not installed, a sentence each with the command that installs it."""
+    """Return a sentence for each part that is not installed, with the command that installs it."""
     lacking = [] if postgres_program("initdb") else [postgres.MISSING]
     if absent := [what for module, what in EXTRA.items() if find_spec(module) is None]:
         lacking.append(f"{', '.join(absent)}: pip install 'crankwright[team]'")
@@ -53,26 +53,26 @@ def missing() -> list[str]:
 def running(
     folder: Path, say: Say, settings: dict[str, str] | None = None, workers: int = 2
 ) -> Iterator[Team]:
-    """Start all parts, and end them in reverse order; their logs and files are in `folder`.
+    """Start all parts, and end them in reverse order; `folder` has their logs and files.
 
     Raises
     ------
     Missing
-        Something is not installed; the text names all of it.
+        If parts are not installed; the text names all of them.
     DidNotStart
-        A part has ended, or does not answer in time.
+        If a part has ended, or does not answer in time.
     """
     if lacking := missing():
         raise Missing("\n".join(lacking))
     with ExitStack() as stack:
         database = Cluster()
         stack.callback(database.close)
-        say(f"PostgreSQL on port {database.port}, as a server of its own for this trial")
+        say(f"PostgreSQL on port {database.port}, as a separate server for this trial")
         store = ObjectStore(folder)
         stack.callback(store.close)
-        say(f"S3 server on port {store.port}: moto, which keeps files in memory and proves no durability")
+        say(f"S3 server on port {store.port}: moto, which keeps files only in memory")
         environment = {
-            "DASK_TEMPORARY_DIRECTORY": str(folder),  # where it leaves files of its locks
+            "DASK_TEMPORARY_DIRECTORY": str(folder),  # where Dask keeps its lock files
             **AWS,
             "CRANKWRIGHT_DATABASE_URL": database.create(DATABASE),
             "CRANKWRIGHT_ARTIFACTS_URL": store.create(BUCKET),

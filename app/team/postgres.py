@@ -1,6 +1,7 @@
-"""A temporary PostgreSQL on loopback, for trials and tests, never for data.
+"""A temporary PostgreSQL on loopback, for trials and tests only.
 
-PostgreSQL refuses to run as root: if root starts it, it runs as `nobody`, who then owns its folder.
+PostgreSQL refuses to run as root. If root starts this module, PostgreSQL runs as `nobody`, who then owns its
+folder.
 """
 
 from __future__ import annotations
@@ -26,17 +27,18 @@ _PAUSE = 0.2  # between two attempts to start [s]
 
 
 class Cluster:
-    """A database server on a port of its own; `close` removes it with all that it holds.
+    """A database server on its own port; `close` removes it with all its data.
 
     Parameters
     ----------
     is_durable
-        Whether commits are synced to the disk: else they outlive the server's end, not the machine's.
+        Whether commits are synced to the disk; if not, they survive the end of the server, but not of the
+        machine.
 
     Raises
     ------
     Missing
-        PostgreSQL or its driver is not installed.
+        If PostgreSQL or its driver is not installed.
     """
 
     def __init__(self, *, is_durable: bool = False) -> None:
@@ -58,12 +60,12 @@ class Cluster:
 
     @property
     def pid(self) -> int:
-        """Return the number of the first of its processes; 0 if it does not run."""
+        """Return the id of the server's first process; 0 if it is not running."""
         return self._process.pid if self._process else 0
 
     @property
     def lives(self) -> bool:
-        """Return whether its first process still runs."""
+        """Return whether the server's first process is still running."""
         return self._process is not None and self._process.lives
 
     def url(self, database: str = "postgres") -> str:
@@ -71,25 +73,26 @@ class Cluster:
         return f"postgresql+psycopg://{USER}@{LOOPBACK}:{self.port}/{database}"
 
     def create(self, database: str, template: str = "template1") -> str:
-        """Create a database as a copy of another one, to which nobody is connected; return its URL."""
+        """Create a database as a copy of another one without connections, and return its URL."""
         self.execute(f'CREATE DATABASE "{database}" TEMPLATE "{template}"')
         return self.url(database)
 
     def drop(self, database: str) -> None:
-        """Remove a database, and end the connections to it."""
+        """Delete a database, and end the connections to it."""
         self.execute(f'DROP DATABASE IF EXISTS "{database}" WITH (FORCE)')
 
     def execute(self, statement: str) -> None:
-        """Execute a statement outside of a transaction."""
+        """Execute a statement outside of any transaction."""
         import psycopg
 
         with psycopg.connect(self._connection, autocommit=True) as connection:
             connection.execute(statement.encode())
 
     def start(self) -> None:
-        """Start the server and wait until it takes connections.
+        """Start the server, and wait until it accepts connections.
 
-        After its death it is tried again and again: it refuses as long as one of its processes lives.
+        After a crash the start is retried, because the server refuses to start while one of its old
+        processes is alive.
         """
         end = time.monotonic() + START
         while True:
@@ -109,13 +112,13 @@ class Cluster:
         self._process.until(self._answers)
 
     def stop(self) -> None:
-        """End the server at once, in order."""
+        """Shut the server down at once, in order."""
         if self._process:
             self._process.stop(signal.SIGINT)
             self._process = None
 
     def kill(self) -> None:
-        """Kill -9 the first of its processes; the others notice it and end."""
+        """Kill the server's first process by `kill -9`; the other processes notice it and end."""
         if self._process:
             self._process.kill()
             self._process.stop()
@@ -134,7 +137,7 @@ class Cluster:
 
     def _make(self, initdb: Path) -> None:
         command = [str(initdb), "-D", str(self.folder / "data"), "-U", USER, "-A", "trust", "-E", "UTF8"]
-        locale = ["--locale=C.UTF-8", "--no-sync"]  # in C no letter but A to Z has another case
+        locale = ["--locale=C.UTF-8", "--no-sync"]  # in locale C only A to Z have upper and lower case
         done = subprocess.run(
             [*command, *locale], cwd=self.folder, user=_NOBODY, capture_output=True, text=True, check=False
         )

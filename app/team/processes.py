@@ -1,4 +1,4 @@
-"""Child processes that are stopped by their id, and die with the process that started them."""
+"""Child processes that are stopped by their id, and end with the process that started them."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from app.team.errors import DidNotStart
 from app.workers.lifeline import Lifeline
 
 LOOPBACK = "127.0.0.1"
-START = 120.0  # for a process to answer [s]
-END = 30.0  # for a process to end when it is asked to [s]
-_GLANCE = 0.05  # between two questions [s]
+START = 120.0  # longest time until a process answers [s]
+END = 30.0  # longest time for a process to end after a request [s]
+_GLANCE = 0.05  # time between two checks [s]
 _LONGEST = 400  # characters of a line of a log
 
 
 def free_port() -> int:
-    """Return a TCP port of loopback on which nothing listens."""
+    """Return a TCP port on loopback on which nothing listens."""
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
         port: int = probe.getsockname()[1]
@@ -31,27 +31,27 @@ def free_port() -> int:
 
 
 def listens(port: int) -> bool:
-    """Return whether something on loopback accepts connections on a port."""
+    """Return whether some process accepts connections on a loopback port."""
     with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):
         return True
     return False
 
 
 class ChildProgram:
-    """A program in a session of its own, with its output in a file; it ends with this process.
+    """A program in its own session, with its output in a file; it ends with this process.
 
     Parameters
     ----------
     name
-        What the program is, in errors.
+        Name of the program in errors.
     command
         The program and its arguments.
     log
-        The file that its output is appended to.
+        The file to which its output is appended.
     environment
-        Variables beside those of this process.
+        Environment variables in addition to those of this process.
     user
-        Who runs it, if another user than this process does; for root only.
+        The user that runs the program, if it is not the user of this process; only root may set this.
     """
 
     def __init__(
@@ -80,12 +80,12 @@ class ChildProgram:
 
     @property
     def pid(self) -> int:
-        """Return the number of the process, and of its group."""
+        """Return the id of the process, which is also that of its group."""
         return self._process.pid
 
     @property
     def lives(self) -> bool:
-        """Return whether the process still runs."""
+        """Return whether the process is still running."""
         return self._process.poll() is None
 
     def until(self, answers: Callable[[], bool], seconds: float = START) -> None:
@@ -94,7 +94,7 @@ class ChildProgram:
         Raises
         ------
         DidNotStart
-            It has ended, or does not answer in time.
+            If it has ended, or does not answer in time.
         """
         end = time.monotonic() + seconds
         while not answers():
@@ -114,12 +114,12 @@ class ChildProgram:
         self._process.send_signal(number)
 
     def kill(self) -> None:
-        """Kill -9 the process alone, as an accident would; what it started is on its own."""
+        """Kill only the process by `kill -9`, as an accident would; its children are left to themselves."""
         self._process.kill()
         self._process.wait()
 
     def stop(self, number: int = signal.SIGTERM, seconds: float = END) -> int:
-        """Ask the process to end, end it hard after some time, and kill what is left of its group.
+        """Ask the process to end, kill it after some time, and kill the rest of its group.
 
         Returns
         -------
@@ -137,7 +137,7 @@ class ChildProgram:
         return self._process.wait()
 
     def said(self, lines: int = 5) -> str:
-        """Return the end of what it wrote, in words."""
+        """Return the end of the program's output, as text for a message."""
         written = [
             line[-_LONGEST:] for line in self.log.read_text(errors="replace").strip().splitlines()[-lines:]
         ]
@@ -147,5 +147,5 @@ class ChildProgram:
 
 
 def _path() -> str:
-    """Return the module path of this process for another, which may stand in another folder."""
+    """Return the module path of this process for a process that may run in another folder."""
     return os.pathsep.join(filter(None, sys.path))

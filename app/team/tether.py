@@ -1,4 +1,4 @@
-"""Run another program that dies with its parent process: `python -m app.team.tether …`.
+"""Run another program that ends with its parent process: `python -m app.team.tether …`.
 
 A pipe (`app.workers.lifeline`) ties the program and its process group to the process that started it. They
 end with that process, even after `kill -9`.
@@ -14,7 +14,7 @@ from app.workers.lifeline import hang_on
 
 
 def main(reader: int, user: str, command: list[str]) -> None:
-    """Tie this process group to the pipe, become the user if one is named, and then the command."""
+    """Tie this process group to the pipe, switch to the user if one is named, and run the command."""
     hang_on(reader, os.getpgid(0))
     for descriptor in _others(reader):
         os.set_inheritable(descriptor, True)  # the signal belongs to the open file
@@ -27,7 +27,7 @@ def main(reader: int, user: str, command: list[str]) -> None:
 
 
 def _others(reader: int) -> list[int]:
-    """Return the descriptors of the pipe that `hang_on` has opened beside the reader."""
+    """Return the descriptors of the pipe that `hang_on` has opened in addition to the reader."""
     pipe = os.stat(f"/proc/self/fd/{reader}").st_ino
     descriptors = []
     for name in os.listdir("/proc/self/fd"):

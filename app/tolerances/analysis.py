@@ -1,6 +1,6 @@
-"""The tolerance analysis of one design: checks the question, then limits, scatter, yields and shares.
+"""Analyse the tolerances of one design: check the request, then compute limits, scatter, yields, shares.
 
-Runs in a calculation process. One level of each step serves all rows.
+This runs in a calculation process. Each step has the same level in all rows.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from templates.core.progress import report
 
 LEAST_POINTS, USUAL_POINTS, MOST_POINTS = 1024, 16_384, 131_072
 MOST_OUTPUTS = 30
-ABOUT = "analysis"  # beside the outputs of an answer
+ABOUT = "analysis"  # key of the scope among the outputs of an answer
 PATIENCE = 20.0
 """For further points where none were asked for, by their estimate [s]."""
 LONGEST = 600.0
@@ -52,16 +52,16 @@ class ToleranceResults:
 
 @dataclass
 class Analysis:
-    """A checked question about a checked design.
+    """A checked request for a checked design.
 
     Attributes
     ----------
     outputs
-        What is analysed, in the order of the answer.
+        The analysed outputs, in the order of the answer.
     demands
-        The criteria that are judged, by name.
+        The judged criteria, by name.
     warnings
-        About tolerances that have no part in it.
+        Warnings about tolerances that do not take part.
     """
 
     graph: Graph
@@ -72,7 +72,9 @@ class Analysis:
     varied: list[TolerancedVariable]
     warnings: list[Warning]
     first_refusal: Refusal | None = None
-    stated: dict[str, bool] = field(default_factory=dict)  # by criterion: the errors of all models behind it
+    stated: dict[str, bool] = field(
+        default_factory=dict
+    )  # by criterion: whether the errors of all models behind it are known
     _errors: dict[Reference, float] = field(default_factory=dict)
     _levels: dict[str, str | None] = field(default_factory=dict)
 
@@ -83,7 +85,7 @@ class Analysis:
         Raises
         ------
         InvalidInputs
-            With everything that is wrong with the design or the question.
+            With all faults of the design and the request.
         """
         graph, wrong = build_graph(document, catalogues)
         raise_if(wrong)
@@ -106,23 +108,23 @@ class Analysis:
 
     @property
     def levels(self) -> dict[str, str]:
-        """Return the level of each step that has any."""
+        """Return the level of each step that has levels."""
         return {step: level for step, level in self._levels.items() if level is not None}
 
     @property
     def base(self) -> int:
-        """Return rows of each sample for the shares."""
+        """Return the number of rows in each sample for the shares."""
         return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
 
     def carried_out(self) -> ToleranceResults:
-        """Calculate everything.
+        """Return the results of the whole analysis.
 
         Raises
         ------
         InvalidInputs
             If an output is not a single value, or the levels of the design take too long.
         """
-        most = self._most_points()  # by the tables of costs: a measured pace is another one every time
+        most = self._most_points()  # from the tables of costs, because a measured speed varies
         nominal = self._nominal()
         self._require_single(nominal)
         self._require_time()
@@ -136,7 +138,7 @@ class Analysis:
         return ToleranceResults(nominal, ends, spread, causes, self._errors)
 
     def _nominal(self) -> Table:
-        """Return the values of the design itself, at the levels that all rows have from here on."""
+        """Return the values of the design itself, at the levels that all rows will have."""
         self._levels = dict(self.question.levels)
         row = np.array([[factor.nominal for factor in self.factors]])
         table = self._table(row, judge=True)
@@ -157,7 +159,7 @@ class Analysis:
         return Rows(_stacked(table, self.outputs), table.verdicts, margins)
 
     def _table(self, rows: Array, *, judge: bool = False) -> Table:
-        """Return the outputs, and with `judge` the verdicts, of rows of factors."""
+        """Return the outputs, and with `judge` also the verdicts, for rows of factors."""
         given = {one.reference: rows[:, column] for column, one in enumerate(self.varied)}
         criteria = list(self.demands) if judge else []
         table = self.engine(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
@@ -177,9 +179,9 @@ class Analysis:
         )
 
     def _most_points(self) -> int | None:
-        """Return the largest number of products to sample where yields need them.
+        """Return the largest number of products to sample if yields need them.
 
-        None if their number was given.
+        Return None if the request states the number.
         """
         if self.question.points is not None:
             return None
@@ -193,7 +195,7 @@ class Analysis:
         return self.engine.seconds(rows, self.outputs, self._levels, criteria=list(self.demands))
 
     def _require_time(self) -> None:
-        """Refuse what takes too long at these levels, naming one that takes long."""
+        """Refuse an analysis that takes too long at these levels, and name a step that takes long."""
         rows = 2000 + (self.question.points or USUAL_POINTS) + self.base * (len(self.factors) + 2)
         seconds = self._seconds(rows)
         if seconds > LONGEST:
@@ -204,12 +206,12 @@ class Analysis:
 
 
 def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:
-    """Return columns side by side, of the shape (rows, outputs)."""
+    """Return columns side by side as an array of shape (rows, outputs)."""
     return np.stack([table.columns[output] for output in outputs], axis=1)
 
 
 def _faults(graph: Graph, question: Question, every: Mapping[str, CriterionVariable]) -> Iterator[Fault]:
-    """Yield the faults of the names and numbers of a question."""
+    """Yield the faults of the names and numbers in a request."""
     unknown = [name for name in question.criteria or () if name not in every]
     yield from (fault.within("criteria") for fault in unknown_names(unknown, every, "criterion"))
     wanted = [name for name in question.outputs or () if not _is_quantity(graph, Reference.parse(name))]
@@ -236,7 +238,7 @@ def _level_faults(graph: Graph, step: str, level: str) -> Iterator[Fault]:
 
 
 def _is_quantity(graph: Graph, reference: Reference) -> bool:
-    """Return whether a name means a value that a row of the design can have."""
+    """Return whether a name refers to a value that a row of the design can have."""
     if graph.node(reference) is None and not graph.cell(reference):
         return False
     block = graph.blocks.get(reference.block)
@@ -245,7 +247,7 @@ def _is_quantity(graph: Graph, reference: Reference) -> bool:
 
 
 def _outputs(graph: Graph, question: Question, demands: Mapping[str, CriterionVariable]) -> list[Reference]:
-    """Return the outputs asked for; else those that criteria hold against limits; else all of the steps."""
+    """Return the requested outputs, else those that criteria compare with limits, else all of the steps."""
     if question.outputs is not None:
         return [Reference.parse(name) for name in dict.fromkeys(question.outputs)]
     subjects = [demand.alone for demand in demands.values() if demand.alone is not None]

@@ -1,4 +1,4 @@
-"""A tolerance analysis as the interface shows it: in declared units, with a reason for each missing value."""
+"""Convert a tolerance analysis to the answer: in declared units, with a reason for each missing value."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from app.tolerances.worst import Extreme
 from templates.core.arrays import Array
 from templates.core.units.units import Unit, Value, unit
 
-DIGITS = 10  # of a value in its unit: what comes after is rounding
+DIGITS = 10  # digits of a value in its unit; further digits are rounding errors
 REFUSED = "the design refuses some products, so there are no shares; see analysis.refused"
 STEADY = "no tolerance changes it"
 
 
 def answer(analysis: Analysis, findings: ToleranceResults, revision: int) -> answers.ToleranceAnalysis:
-    """Return the whole answer."""
+    """Return the complete answer."""
     return _Answer(analysis, findings).whole(revision)
 
 
@@ -37,7 +37,7 @@ class _Answer:
     findings: ToleranceResults
 
     def whole(self, revision: int) -> answers.ToleranceAnalysis:
-        """Return the answer: the analysis, and every output by its name."""
+        """Return the complete answer: the scope of the analysis, and every output by name."""
         outputs = {
             str(reference): self._output(column, reference)
             for column, reference in enumerate(self.analysis.outputs)
@@ -75,7 +75,7 @@ class _Answer:
         return answers.TolerancedValue.model_validate(parts)
 
     def _quantity(self, place: int, si: float) -> Quantity:
-        """Return a toleranced value in the unit in which it was typed."""
+        """Return a toleranced value in the unit that its user typed."""
         scale = unit(self.analysis.varied[place].typed.unit)
         return Quantity(value=_short(scale.from_si(si)), unit=scale.text)
 
@@ -118,7 +118,7 @@ class _Answer:
         return answers.OutputScatter.model_validate(given)
 
     def _criteria_of(self, reference: Reference) -> list[str]:
-        """Return the criteria that hold an output against a limit."""
+        """Return the criteria that compare an output with a limit."""
         return [name for name, demand in self.analysis.demands.items() if reference in demand.judged]
 
     def _worst(self, column: int, scale: Unit) -> answers.Worst | None:
@@ -165,7 +165,7 @@ class _Answer:
         return answers.Yield.model_validate({n: part for n, part in parts.items() if part is not None})
 
     def _limit(self, name: str, demand: CriterionVariable) -> float | None:
-        """Return the limit [SI], where it is one for all products."""
+        """Return the limit [SI], if it is the same for all products."""
         if not demand.has_one_limit:
             return None
         limit = float(self.findings.nominal.judged[name].limit[0])
@@ -198,19 +198,19 @@ def _share(share: indices.Share) -> answers.Share:
 
 
 def _needed(one: Yield, points: int) -> int | None:
-    """Return the points needed for the wanted standard error, if it falls as that of random points."""
+    """Return the points needed for the wanted standard error, if it decreases as for random points."""
     if one.standard_error <= AIM:
         return None
     return points << ceil(2 * log2(one.standard_error / AIM))
 
 
 def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:
-    """Return the whole answer to a body [JSON text] about a revision, in SI units.
+    """Return the complete answer in SI units to a request body [JSON text] about a revision.
 
     Raises
     ------
     InvalidInputs
-        With everything that is wrong with the design or the question.
+        With all faults of the design and the request.
     """
     document, catalogues = task.read()
     analysis = Analysis.of(document, catalogues, ToleranceIn.model_validate_json(body).question())

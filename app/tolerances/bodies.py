@@ -16,7 +16,7 @@ Named = Annotated[str, StringConstraints(pattern=NAME)]
 
 
 def _whole(raw: object) -> object:
-    """Return a number without a fraction as an integer, as JSON Schema takes it: 1024.0 is one."""
+    """Return a number without a fraction as an integer; JSON Schema also accepts 1024.0 as an integer."""
     return int(raw) if isinstance(raw, float) and raw.is_integer() else raw
 
 
@@ -35,15 +35,15 @@ class ToleranceIn(Bounded):
     )
 
     outputs: Annotated[list[Named], Field(min_length=1, max_length=MOST_OUTPUTS)] | None = Field(
-        None, description="outputs of steps, and parameters; those that criteria judge, if not given"
+        None, description="outputs of steps, and parameters; default: those that criteria judge"
     )
     criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
-        None, description="by name; all that are not waived, if not given"
+        None, description="criteria by name; default: all that are not waived"
     )
     points: Annotated[int, Field(ge=LEAST_POINTS, le=MOST_POINTS), Whole] | None = Field(
         None,
-        description="products that are sampled, a power of two; if not given, 16384, and up to 131072 where "
-        "the standard error of a yield would be above 0.0005",
+        description="number of sampled products, a power of two; default: 16384, and up to 131072 if the "
+        "standard error of a yield would otherwise exceed 0.0005",
     )
     seed: Annotated[int, Field(ge=0, lt=2**31), Whole] = Field(
         1, description="the same seed gives the same answer"
@@ -53,7 +53,7 @@ class ToleranceIn(Bounded):
     )
 
     def question(self) -> Question:
-        """Return the same as a process takes it."""
+        """Return the request in the form that a process receives."""
         return Question(
             None if self.outputs is None else tuple(self.outputs),
             None if self.criteria is None else tuple(self.criteria),

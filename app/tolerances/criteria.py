@@ -12,7 +12,7 @@ from templates.core.criteria.criterion import Criterion
 
 @dataclass(frozen=True)
 class CriterionVariable:
-    """A criterion, as an analysis sees it."""
+    """A criterion as a tolerance analysis evaluates it."""
 
     subject: Subject
 
@@ -23,24 +23,24 @@ class CriterionVariable:
 
     @property
     def references(self) -> frozenset[Reference]:
-        """Return the values that it names, without limits."""
+        """Return the values in the criterion, without limits."""
         return frozenset(self.subject.references.values())
 
     @cached_property
     def judged(self) -> frozenset[Reference]:
-        """Return the values that are compared with the limit."""
+        """Return the values that the criterion compares with its limit."""
         named = self.criterion.value.names
         return frozenset(of for name, of in self.subject.references.items() if name in named)
 
     @property
     def alone(self) -> Reference | None:
-        """Return the value that is judged, where it stands alone."""
+        """Return the judged value, if that side of the criterion is a single name."""
         name = self.criterion.subject
         return None if name is None else self.subject.references.get(name)
 
     @property
     def has_one_limit(self) -> bool:
-        """Return whether the limit is the same for every product: no value of the design stands in it."""
+        """Return whether the limit contains no value of the design, and so is the same for every product."""
         return self.subject.references.keys().isdisjoint(self.criterion.limit.names)
 
     @property

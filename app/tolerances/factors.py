@@ -1,6 +1,6 @@
 """Toleranced values as random numbers: quasi-random rows, and rows that search the limits.
 
-A *factor* is one toleranced value. Rows of factors are arrays of the shape (rows, factors) in SI.
+A *factor* is one toleranced value. Rows of factors are arrays of shape (rows, factors) in SI.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from scipy.special import ndtr, ndtri
 from templates.core.arrays import Array
 from templates.core.units.tolerance import Distribution
 
-CUT = 3.0  # standard deviations at which a normal distribution has its limits, and is cut
-MOST_AT_THREE, MOST_AT_TWO = 6, 12  # factors of a lattice of three, and of two, values each
+CUT = 3.0  # standard deviations at which a normal distribution is cut off at its limits
+MOST_AT_THREE, MOST_AT_TWO = 6, 12  # most factors for a lattice with three values each, and with two
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A value that lies between limits.
+    """A value between limits.
 
     Attributes
     ----------
     name
-        Of the value in its design.
+        Name of the value in its design.
     nominal, low, high
-        Its value and its limits [SI].
+        The nominal value and the limits [SI].
     distribution
-        Between the limits.
+        The distribution between the limits.
     """
 
     name: str
@@ -41,9 +41,10 @@ class Factor:
 
 
 def inverse(distribution: Distribution, share: Array) -> Array:
-    """Return the place, from −1 to 1 between the limits, below which a share (0 to 1) of the values lies.
+    """Return the quantile of a distribution as a position from −1 to 1 between the limits.
 
-    Normal: limits at ±3 standard deviations, cut there. Triangular: the peak is in the middle.
+    `normal` has its limits at ±3 standard deviations, where it is cut off. `triangular` has its peak in the
+    middle.
     """
     if distribution == "uniform":
         return 2 * share - 1
@@ -56,21 +57,21 @@ def inverse(distribution: Distribution, share: Array) -> Array:
 
 
 def placed(factors: Sequence[Factor], position: Array) -> Array:
-    """Return values [SI] of positions from −1 (lower limits) to 1 (upper limits)."""
+    """Return the values [SI] at positions from −1 (lower limits) to 1 (upper limits)."""
     low, high = np.array([f.low for f in factors]), np.array([f.high for f in factors])
     between: Array = np.clip(0.5 * ((1 - position) * low + (1 + position) * high), low, high)
     return between
 
 
 def scattered(factors: Sequence[Factor], shares: Array) -> Array:
-    """Return values [SI] of points of the unit cube, distributed as the factors are."""
+    """Return the values [SI] for points of the unit cube, with the distributions of the factors."""
     columns = [inverse(f.distribution, shares[:, i]) for i, f in enumerate(factors)]
     return placed(factors, np.stack(columns, axis=1))
 
 
 def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
-    """Return a scrambled Sobol' sequence of a number of points (a power of two) in the unit cube."""
-    from scipy.stats import qmc  # it takes as long as all other imports of a small command
+    """Return a scrambled Sobol' sequence in the unit cube; the number of points is a power of two."""
+    from scipy.stats import qmc  # this import takes as long as all others of a small command
 
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))
     points: Array = sequence.random_base2(count.bit_length() - 1)
@@ -78,9 +79,9 @@ def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
 
 
 def lattice(count: int) -> Array:
-    """Return positions on a lattice between the limits, so fine that so many factors allow it.
+    """Return positions on a lattice between the limits, as fine as the number of factors allows.
 
-    Always the middle.
+    The middle is always among them.
     """
     if count <= MOST_AT_THREE:
         return np.array(list(product((-1.0, 0.0, 1.0), repeat=count)))

@@ -1,4 +1,4 @@
-"""The question of a tolerance analysis, as a calculation process receives it."""
+"""The request for a tolerance analysis, as a calculation process receives it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Question:
-    """Outputs and criteria by name (None: those that the design suggests), number of points, seed.
+    """Outputs and criteria by name (None: those that the design implies), number of points, seed.
 
-    Without `points`, there are as many as bring every standard error of a yield to that aimed at.
+    Without `points`, as many points are sampled as every standard error of a yield needs to reach its target.
 
-    `levels` are pairs of a step and the level that it has instead of the design's.
+    `levels` are pairs of a step and its level, which replaces that of the design.
     """
 
     outputs: tuple[str, ...] | None = None

@@ -33,6 +33,6 @@ async def analyse_tolerances(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """Analyse the tolerances of the newest revision: worst case, scatter, shares, yields."""
+    """Analyse the tolerances of the newest revision: worst case, scatter, shares of variance, yields."""
     asked = DesignQuestion(id, (body or ToleranceIn()).model_dump_json(exclude_unset=True), units=units)
     return await answered(tolerances, asked, request, client, patience(prefer, tolerances.steps.deadline))

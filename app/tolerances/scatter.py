@@ -1,6 +1,7 @@
 """Scatter of outputs and yields of criteria, from eight or more independent scramblings of a Sobol' sequence.
 
-Standard errors come from the spread between scramblings: points within one scrambling are not independent.
+Standard errors are computed from the spread between scramblings, because points within one scrambling are not
+independent.
 """
 
 from __future__ import annotations
@@ -26,16 +27,16 @@ BINS = 40
 
 @dataclass(frozen=True)
 class Rows:
-    """The results of rows of factors.
+    """The results for rows of factors.
 
     Attributes
     ----------
     outputs
-        Of the shape (rows, outputs) [SI]; NaN where a row is refused.
+        Array of shape (rows, outputs) [SI]; NaN where a row is refused.
     codes
-        By criterion the verdict of each row, as places in `VERDICTS`.
+        For each criterion, the verdict of each row as an index into `VERDICTS`.
     margins
-        By criterion by how much the value itself meets its limit [SI]; NaN where that is not known.
+        For each criterion, the margin of the value itself in each row [SI]; NaN if unknown.
     """
 
     outputs: Array
@@ -53,7 +54,7 @@ class Spread:
     Attributes
     ----------
     quantiles
-        By their share.
+        Quantiles by their share of the products.
     edges, counts
         A histogram of all rows that have a value.
     """
@@ -72,9 +73,9 @@ class Yield:
     Attributes
     ----------
     value, standard_error
-        Where the value itself is compared with its limit; a refused row does not meet it.
+        The share whose value itself meets the limit, and its standard error; a refused row does not meet it.
     with_model_error
-        The share that surely meets it, and that which may, where the model is off by its stated error.
+        The share that certainly meets the limit and the share that may meet it, given the stated model error.
     """
 
     value: float
@@ -84,7 +85,7 @@ class Yield:
 
 @dataclass(frozen=True)
 class Scatter:
-    """The scatter over eight scramblings; None of an output or criterion that has no value in any row."""
+    """The scatter over all scramblings; None for an output or criterion without a value in any row."""
 
     spreads: Sequence[Spread | None]
     yields: Mapping[str, Yield | None]
@@ -95,10 +96,10 @@ class Scatter:
 def scatter(
     factors: Sequence[Factor], judged: Judged, points: int, seed: int, most: int | None = None
 ) -> Scatter:
-    """Sample the factors with `points` rows in eight scramblings.
+    """Return the scatter of `points` rows in eight scramblings of the factors.
 
-    With `most` there are twice as many scramblings, and twice as many again, until every yield has a standard
-    error of `AIM`, or so many rows. The spread of eight alone is too rough to stop by.
+    With `most`, the number of scramblings is doubled until every yield has a standard error of `AIM`, or
+    until there are so many rows. The spread of only eight scramblings is too uncertain for an earlier stop.
     """
     each = points // SCRAMBLINGS
     parts: list[Rows] = []
@@ -134,14 +135,14 @@ def _spread(values: Array) -> Spread | None:
 
 
 def _range(values: Array) -> tuple[float, float]:
-    """Return the range of a histogram; of one value alone, a little to both sides."""
+    """Return the range of a histogram; for a single value, a small range around it."""
     low, high = float(values.min()), float(values.max())
     margin = 0.0 if np.nextafter(low, np.inf) < high and high - low > 1e-9 * abs(high) else 1e-6 * abs(low)
     return (low - margin, high + margin) if high + margin > low - margin else (low - 0.5, high + 0.5)
 
 
 def _yield(name: str, parts: Sequence[Rows]) -> Yield | None:
-    """Return the yield of a criterion; its least standard error is one row."""
+    """Return the yield of a criterion; its standard error is at least that of one row."""
     margins = np.array([part.margins[name] for part in parts])
     codes = np.array([part.codes[name] for part in parts])
     if np.isnan(margins).all():

@@ -1,4 +1,4 @@
-"""The effect of tolerances on the outputs of a design: limits, scatter, shares and yields."""
+"""Response schemas for the effect of tolerances: limits, scatter, shares of the variance, and yields."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from app.schemas.answers import Answer, Quantity, Warning
 
 
 class TolerancedValue(Answer):
-    """A value that lies between limits."""
+    """A value with a tolerance."""
 
     nominal: Quantity
     low: Quantity
     high: Quantity
     distribution: Literal["normal", "uniform", "triangular"] = Field(
-        description="between the limits; of `normal` they stand at three standard deviations, where it is cut"
+        description="distribution between the limits; `normal` is cut off at three standard deviations"
     )
-    zone: str | None = Field(None, description="of ISO 286")
+    zone: str | None = Field(None, description="ISO 286 tolerance zone")
 
 
 class Extreme(Answer):
     """An end of the range of an output."""
 
-    value: float = Field(description="in the unit of the output")
-    at: dict[str, Quantity] = Field(description="the toleranced values there")
+    value: float = Field(description="value in the unit of the output")
+    at: dict[str, Quantity] = Field(description="the toleranced values at this end")
 
 
 class Worst(Answer):
-    """The least and the largest value within the limits."""
+    """The smallest and the largest value of an output within the limits."""
 
     low: Extreme
     high: Extreme
@@ -40,14 +40,14 @@ class Worst(Answer):
 class Share(Answer):
     """The part of an output's variance that one toleranced value causes."""
 
-    first: float = Field(description="alone")
-    total: float = Field(description="alone and together with others")
+    first: float = Field(description="share of the value alone")
+    total: float = Field(description="share including interactions with other values")
     first_standard_error: float
     total_standard_error: float
 
 
 class SharesSum(Answer):
-    """The first-order shares together: one where no two values act together, less where they do."""
+    """The sum of the first-order shares: 1 if no two values interact, less if they do."""
 
     value: float
     standard_error: float
@@ -57,51 +57,53 @@ class Yield(Answer):
     """The share of products that meet a criterion."""
 
     of: str = Field(description="the criterion")
-    value: float = Field(description="where the value itself is compared with its limit")
-    standard_error: float = Field(description="of the sampling; from the spread of eight scramblings")
+    value: float = Field(description="share of products whose calculated value meets the limit")
+    standard_error: float = Field(
+        description="standard error of sampling, from the spread between scramblings"
+    )
     with_model_error: list[float] = Field(
         min_length=2,
         max_length=2,
-        description="the share that surely meets it, and the share that may: the model is off by its stated "
-        "error. Scatter is not in it",
+        description="the share that certainly meets the limit and the share that may, if the model is "
+        "wrong by its stated error; scatter and model error are not added",
     )
-    error_stated: bool = Field(description="whether the error of the model was measured at all")
+    error_stated: bool = Field(description="whether the error of the model was measured")
     limit: float | None = Field(
-        None, description="in the unit of the output; absent where it differs from product to product"
+        None, description="limit in the unit of the output; absent if it differs between products"
     )
-    sign: Literal[">=", "<="] = Field(description="of the criterion")
+    sign: Literal[">=", "<="] = Field(description="sign of the criterion")
     points_needed: int | None = Field(
-        None, description="about how many `points` bring the standard error to 0.0005, if it is larger"
+        None, description="estimated `points` for a standard error of 0.0005, if it is larger now"
     )
 
 
 class Histogram(Answer):
-    """Numbers of sampled products between pairs of edges."""
+    """Numbers of sampled products between successive edges."""
 
-    edges: list[float] = Field(description="in the unit of the output")
+    edges: list[float] = Field(description="edges of the bins, in the unit of the output")
     counts: list[int]
 
 
 class OutputScatter(Answer):
-    """Scatter of one output, in `unit`; what does not apply is absent."""
+    """Scatter of one output, in `unit`; fields that do not apply are absent."""
 
     model_config = ConfigDict(populate_by_name=True)
 
     unit: str
-    nominal: float | None = Field(description="at the values themselves; null where there is none")
+    nominal: float | None = Field(description="output at the nominal values; null if there is none")
     worst: Worst | None = None
     mean: float | None = None
     standard_deviation: float | None = None
-    quantiles: dict[str, float] = Field({}, description="by their share of the products")
-    shares: dict[str, Share] = Field({}, description="by toleranced value, the largest total first")
+    quantiles: dict[str, float] = Field({}, description="quantiles by their share of the products")
+    shares: dict[str, Share] = Field({}, description="shares by toleranced value, the largest total first")
     shares_sum: SharesSum | None = None
     histogram: Histogram | None = None
     relative_error: float | None = Field(
-        None, description="largest stated error of the step that computes it; beside the scatter, not in it"
+        None, description="largest stated error of the step that computes it; not added to the scatter"
     )
-    yield_: Yield | None = Field(None, alias="yield", description="the lowest of `yields`")
-    yields: list[Yield] = Field([], description="of the criteria that hold it against a limit")
-    reason: str | None = Field(None, description="why something is absent")
+    yield_: Yield | None = Field(None, alias="yield", description="the criterion with the lowest yield")
+    yields: list[Yield] = Field([], description="yields of the criteria that compare the output with a limit")
+    reason: str | None = Field(None, description="why results are absent")
 
     def in_units(self, system: System) -> Self:
         """Return the numbers in a system of units."""
@@ -143,7 +145,7 @@ class RefusedProducts(Answer):
     """Products that the design refuses."""
 
     rows: int
-    at: dict[str, Quantity] = Field(description="the toleranced values of one of them")
+    at: dict[str, Quantity] = Field(description="the toleranced values of one refused product")
     reason: str
 
 
@@ -155,22 +157,22 @@ class UnjudgedCriterion(Answer):
 
 
 class About(Answer):
-    """The scope of an analysis of tolerances, with all that it left out."""
+    """The scope of a tolerance analysis, and everything that it left out."""
 
     revision: int
-    points: int = Field(description="products that were sampled for quantiles and yields")
+    points: int = Field(description="number of products sampled for quantiles and yields")
     seed: int
-    rows: int = Field(description="rows of the design that were calculated in all")
+    rows: int = Field(description="total number of calculated rows of the design")
     toleranced: dict[str, TolerancedValue] = Field(description="values that varied")
-    levels: dict[str, str] = Field(description="of fidelity, by step; the same for all rows")
+    levels: dict[str, str] = Field(description="levels of fidelity by step, the same for all rows")
     criteria: dict[str, Yield] = Field({}, description="the yield of each criterion")
     not_judged: dict[str, UnjudgedCriterion] = {}
     refused: RefusedProducts | None = None
-    warnings: list[Warning] = Field([], description="tolerances that had no part in this")
+    warnings: list[Warning] = Field([], description="warnings about tolerances that were left out")
 
 
 class ToleranceAnalysis(Answer):
-    """Outputs by name, and in `analysis` what was analysed; no revision is made."""
+    """Outputs by name, and in `analysis` the scope; no revision is created."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, OutputScatter] = Field(init=False)

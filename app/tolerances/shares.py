@@ -25,12 +25,12 @@ from app.tolerances.scatter import SCRAMBLINGS
 from app.tolerances.worst import Outputs
 from templates.core.arrays import Array
 
-NEGLIGIBLE = 1e-10  # of the standard deviation of an output, relative to its size: rounding, no scatter
+NEGLIGIBLE = 1e-10  # a smaller standard deviation, relative to the output, is rounding and no scatter
 
 
 @dataclass(frozen=True)
 class Share:
-    """The part of an output's variance that a factor causes alone (`first`), and with others (`total`)."""
+    """The share of a factor in an output's variance, alone (`first`) and with interactions (`total`)."""
 
     first: float
     total: float
@@ -40,7 +40,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Parts:
-    """The shares of all factors in one output, and the sum of the first-order ones with its error."""
+    """The shares of all factors in one output, and the sum of the first-order shares with its error."""
 
     shares: Sequence[Share]
     sum: float
@@ -49,14 +49,14 @@ class Parts:
 
 @dataclass(frozen=True)
 class Shares:
-    """For each output its parts; None of an output that does not scatter, or is refused in any row."""
+    """The parts of each output; None for an output without scatter, or refused in any row."""
 
     outputs: Sequence[Parts | None]
     rows: int
 
 
 def shares(factors: Sequence[Factor], outputs: Outputs, base: int, seed: int) -> Shares:
-    """Estimate all shares from `base` · (factors + 2) rows; `base` is eight times a power of two."""
+    """Return all shares, estimated from `base` · (factors + 2) rows; `base` is eight times a power of two."""
     each = base // SCRAMBLINGS
     samples = [_samples(factors, outputs, each, (seed, 3, number)) for number in range(SCRAMBLINGS)]
     stacked = np.stack(samples)  # scramblings, samples (A, B, AB...), rows, outputs
@@ -65,7 +65,7 @@ def shares(factors: Sequence[Factor], outputs: Outputs, base: int, seed: int) ->
 
 
 def _samples(factors: Sequence[Factor], outputs: Outputs, count: int, seed: Sequence[int]) -> Array:
-    """Return outputs of A, B and one AB for each factor, of the shape (samples, rows, outputs)."""
+    """Return the outputs for A, B and one AB for each factor, of shape (samples, rows, outputs)."""
     number = len(factors)
     points = sobol(2 * number, count, seed)
     first, second = scattered(factors, points[:, :number]), scattered(factors, points[:, number:])
@@ -75,13 +75,13 @@ def _samples(factors: Sequence[Factor], outputs: Outputs, count: int, seed: Sequ
 
 
 def _of_output(values: Array) -> Parts | None:
-    """Return the shares of one output, from values of the shape (scramblings, samples, rows)."""
+    """Return the shares of one output, from values of shape (scramblings, samples, rows)."""
     if np.isnan(values).any() or values.std() <= NEGLIGIBLE * np.abs(values).max():
         return None
     whole = _indices(values)
     without = np.stack([_indices(np.delete(values, number, axis=0)) for number in range(SCRAMBLINGS)])
     errors = _jackknife(without)
-    taken = np.argmin(errors, axis=1)[:, np.newaxis]  # of the two estimators
+    taken = np.argmin(errors, axis=1)[:, np.newaxis]  # index of the better estimator
     values_taken, errors_taken, without_taken = (
         np.take_along_axis(each, taken.reshape(shape), -2).squeeze(-2)
         for each, shape in ((whole, taken.shape), (errors, taken.shape), (without, (1, *taken.shape)))
@@ -92,14 +92,14 @@ def _of_output(values: Array) -> Parts | None:
 
 
 def _jackknife(without: Array) -> Array:
-    """Return the standard error of an estimate, from those without one scrambling each (first axis)."""
+    """Return the standard error of an estimate, from estimates that each omit one scrambling (first axis)."""
     spread = ((without - without.mean(axis=0)) ** 2).sum(axis=0)
     error: Array = np.sqrt((SCRAMBLINGS - 1) / SCRAMBLINGS * spread)
     return error
 
 
 def _indices(values: Array) -> Array:
-    """Return first-order and total shares by two estimators each, of the shape (2, 2, factors)."""
+    """Return first-order and total shares, each by two estimators, of shape (2, 2, factors)."""
     centred = values - values[:, :2].mean()
     a, b, mixed = centred[:, :1], centred[:, 1:2], centred[:, 2:]
 

@@ -1,4 +1,4 @@
-"""Find the values of a design that have tolerances, and those of them that an analysis can vary."""
+"""Find the toleranced values of a design, and those of them that an analysis can vary."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ APART = "nothing that was asked for follows from it"
 
 @dataclass(frozen=True)
 class TolerancedVariable:
-    """A toleranced value: where it stands, as its user wrote it, and as a factor of the analysis."""
+    """A toleranced value: its place in the design, its text as typed, and its factor in the analysis."""
 
     reference: Reference
     typed: TypedQuantity
@@ -33,9 +33,9 @@ class TolerancedVariable:
 
 
 def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[TolerancedVariable], list[Warning]]:
-    """Return the toleranced values from which something follows, and a warning for every other one.
+    """Return the toleranced values that affect the requested results, and a warning for every other one.
 
-    `behind` are the cells from which anything that was asked for follows.
+    `behind` are the values on which the requested results depend.
     """
     chosen: list[TolerancedVariable] = []
     warnings: list[Warning] = []
@@ -54,7 +54,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[TolerancedVaria
 
 
 def _factor(cell: Cell, typed: TypedQuantity) -> Factor | str:
-    """Return a toleranced value as a factor, or why it is none."""
+    """Return a toleranced value as a factor, or the reason why it cannot be one."""
     tolerance, value = typed.tolerance, typed.si
     assert tolerance is not None
     lower, upper = tolerance.lower, tolerance.upper
@@ -69,7 +69,7 @@ def _factor(cell: Cell, typed: TypedQuantity) -> Factor | str:
 
 
 def faults(chosen: Sequence[TolerancedVariable], warnings: Sequence[Warning]) -> Iterator[Fault]:
-    """Yield a fault if nothing, or too much, varies."""
+    """Yield a fault if no value varies, or too many do."""
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])
         detail = f"nothing that was asked for follows from a value with a tolerance{others and ': ' + others}"

@@ -1,7 +1,7 @@
-"""The least and the largest value of each output within the limits, including extremes between the limits.
+"""Find the smallest and the largest value of each output within the limits, even in the interior.
 
-A lattice with all corners and 512 quasi-random rows give the starting points; L-BFGS-B starts from the three
-best. Slopes and corners alone would miss interior extremes.
+A lattice with all corners and 512 quasi-random rows supply starting points; L-BFGS-B starts from the best
+three. Slopes and corners alone would miss interior extremes.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from templates.core.arrays import Array
 Outputs = Callable[[Array], Array]
 """From rows of factors [SI] to outputs of the shape (rows, outputs) [SI]; NaN where a row is refused."""
 
-SCANNED = 512  # quasi-random rows beside the lattice
+SCANNED = 512  # quasi-random rows in addition to the lattice
 STARTS = 3
-MOST_STEPS = 30  # of one climb
-STEP = 1e-3  # of a difference quotient, of half the width between the limits
-APART = 0.25  # of half the width: starts that are nearer find the same extreme
+MOST_STEPS = 30  # steps of one local search
+STEP = 1e-3  # step of a difference quotient, relative to half the tolerance range
+APART = 0.25  # starts closer than this, relative to half the range, find the same extreme
 
 
 @dataclass(frozen=True)
@@ -35,16 +35,16 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Worst:
-    """Both ends for each output (None of one that has no value anywhere), and what the search met.
+    """Both ends for each output (None for one without any value), and statistics of the search.
 
     Attributes
     ----------
     ends
         Low and high for each output.
     rows, refused
-        Rows that were calculated, and those of them that the design refused.
+        Number of calculated rows, and of those that the design refused.
     first_refused
-        The factors [SI] of one such row.
+        The factors [SI] of one refused row.
     """
 
     ends: Sequence[tuple[Extreme, Extreme] | None]
@@ -54,7 +54,7 @@ class Worst:
 
 
 def worst(factors: Sequence[Factor], outputs: Outputs, seed: int) -> Worst:
-    """Search the limits."""
+    """Return the ends of each output, found by a search within the limits."""
     search = _Search(factors, outputs)
     nominal = np.array([[_position(f) for f in factors]])
     random = 2 * sobol(len(factors), SCANNED, (seed, 1)) - 1
@@ -65,13 +65,13 @@ def worst(factors: Sequence[Factor], outputs: Outputs, seed: int) -> Worst:
 
 
 def _position(factor: Factor) -> float:
-    """Return position of the value itself, from −1 to 1; outside, where both limits lie on one side of it."""
+    """Return the position of the nominal value between the limits, −1 to 1; the nearer end if outside."""
     half = (factor.high - factor.low) / 2
     return float(np.clip((factor.nominal - (factor.high + factor.low) / 2) / half, -1, 1))
 
 
 class _Search:
-    """One search: counts rows, and keeps a refused one."""
+    """One search, which counts its rows and keeps a refused one."""
 
     def __init__(self, factors: Sequence[Factor], outputs: Outputs) -> None:
         self.factors, self.outputs = factors, outputs
@@ -79,7 +79,7 @@ class _Search:
         self.first_refused: Array | None = None
 
     def values(self, positions: Array) -> Array:
-        """Return the outputs at some positions."""
+        """Return the outputs at given positions."""
         rows = placed(self.factors, positions)
         values = self.outputs(rows)
         refused = np.isnan(values).all(axis=1)
@@ -90,13 +90,13 @@ class _Search:
         return values
 
     def ends(self, positions: Array, values: Array, column: int) -> tuple[Extreme, Extreme] | None:
-        """Return the least and the largest value of one output."""
+        """Return the smallest and the largest value of one output."""
         if np.isnan(values).all():
             return None
         return self._end(positions, values, column, 1.0), self._end(positions, values, column, -1.0)
 
     def _end(self, positions: Array, values: Array, column: int, sign: float) -> Extreme:
-        """Return the least value, or for the sign −1 the largest."""
+        """Return the smallest value, or for the sign −1 the largest."""
         best = int(np.nanargmin(sign * values))
         best_end = values[best], positions[best]
         scale = float(np.nanmax(values) - np.nanmin(values))
@@ -108,7 +108,7 @@ class _Search:
         return Extreme(float(best_end[0]), placed(self.factors, best_end[1][np.newaxis])[0])
 
     def _climb(self, start: Array, column: int, factor: float) -> tuple[float, Array]:
-        """Return a local extreme from a start; the best point that was met."""
+        """Return the best point found by a local search from a start."""
         best: list[tuple[float, Array]] = []
 
         def function(position: Array) -> tuple[float, Array]:
@@ -123,7 +123,7 @@ class _Search:
         return min(best, key=lambda one: factor * one[0])
 
     def _slopes(self, position: Array, column: int) -> tuple[float, Array]:
-        """Return an output and its slopes, from one call of 1 + 2k rows; 0 where a neighbour is refused."""
+        """Return an output and its slopes from one call of 1 + 2k rows; 0 where a neighbour is refused."""
         count = len(position)
         steps = STEP * np.eye(count)
         beside = np.clip(np.vstack([position + steps, position - steps]), -1, 1)
@@ -134,7 +134,7 @@ class _Search:
 
 
 def _starts(positions: Array, values: Array) -> list[int]:
-    """Return the rows with the least values, apart from each other."""
+    """Return the rows with the smallest values that are far enough from each other."""
     chosen: list[int] = []
     for row in np.argsort(values, kind="stable")[: 20 * STARTS]:
         if np.isnan(values[row]) or len(chosen) == STARTS:

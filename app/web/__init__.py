@@ -1,1 +1,1 @@
-"""The pages of the service, for engineers."""
+"""The web pages of the service."""

@@ -50,7 +50,7 @@ ROUTERS = (
     model_import.forms,
     second_part.router,
     second_part.forms,
-    faults.router,  # before the templates, likewise
+    faults.router,  # before the templates: `faults` is not the id of one
     template.router,
     solve.router,
     model.router,
@@ -83,16 +83,16 @@ ROUTERS = (
     plots.router,  # before the files: Plotly's is in its package
 )
 FOLDER = Path(__file__).parent
-SENT = {".css", ".js", ".svg"}  # endings of the files that a browser may fetch
+SENT = {".css", ".js", ".svg"}  # suffixes of files that a browser may load
 
 
 class Files(StaticFiles):
-    """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
+    """Files that a browser caches and revalidates before use, so that it has new ones after an update."""
 
     def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
         """Return the file for a path; from a page's folder only style sheets, scripts and pictures.
 
-        System calls raise an error for a null byte.
+        A null byte in the path is refused, because system calls raise an error for it.
         """
         is_sent = "\0" not in path and Path(path).suffix in SENT
         return super().lookup_path(path) if is_sent else ("", None)
@@ -112,7 +112,7 @@ class Files(StaticFiles):
 
 
 def install(app: FastAPI) -> None:
-    """Add the pages; call it after the interface is complete."""
+    """Add the pages to the app; call this after the interface is complete."""
     for router in ROUTERS:
         openapi.include(app, router)
     app.mount("/static", Files(directory=FOLDER), name="static")

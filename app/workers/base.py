@@ -1,4 +1,4 @@
-"""The interface that every worker implements."""
+"""The interfaces that workers implement."""
 
 import sys
 import threading
@@ -20,7 +20,7 @@ UNLIMITED = sys.maxsize
 
 @dataclass(frozen=True)
 class Limits:
-    """Time that one run may take [s] and memory that it may have beside the program itself [MiB]."""
+    """The longest time of one run [s], and its memory in addition to the program itself [MiB]."""
 
     deadline: float = 60.0
     memory_mb: int = 3072
@@ -35,7 +35,7 @@ def shares_process(function: Callable[..., object], args: tuple[object, ...]) ->
 def may_share(when: Callable[[*Ts], bool]) -> Callable[[Callable[[*Ts], T]], Callable[[*Ts], T]]:
     """Mark a function whose process may serve another job afterwards, if `when` allows it.
 
-    `when` is called with the arguments. The process of an unmarked function ends with its job.
+    `when` is called with the function's arguments. The process of an unmarked function ends with its job.
     """
 
     def mark(function: Callable[[*Ts], T]) -> Callable[[*Ts], T]:
@@ -49,15 +49,15 @@ _SHARED = "shares_process"
 
 
 class Runner(Protocol):
-    """Runs functions one after another on behalf of one piece of work, within that one's limits or others."""
+    """Runs functions one after another for one piece of work, within its limits or others."""
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """Return the result of the function or raise its exception; see `Worker.run`."""
+        """Return the result of the function, or raise its exception; see `Worker.run`."""
         ...
 
 
 class Batch(Protocol):
-    """Runs the functions of one piece of work, one after another, from one thread."""
+    """Runs the functions of one piece of work one after another, called from one thread."""
 
     def run(
         self,
@@ -67,9 +67,9 @@ class Batch(Protocol):
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:
-        """Return the result of the function or raise its exception.
+        """Return the result of the function, or raise its exception.
 
-        The function is found by its module and name, arguments and result are pickled. `on_progress` is
+        The function is sent as its module and name; arguments and result are pickled. `on_progress` is
         called in this thread.
 
         Raises
@@ -85,25 +85,25 @@ class Batch(Protocol):
 
 
 class Worker(Batch, Protocol):
-    """Runs functions one by one, each on its own, from any number of threads."""
+    """Runs functions independently of each other, called from any number of threads."""
 
     def answers(self) -> bool:
-        """Return whether a function would find a process that is alive.
+        """Return whether a function would find a live process.
 
-        If none is, one is started. Never blocks.
+        If there is none, one is started. The call never blocks.
         """
         ...
 
 
 class BatchWorker(Worker, Protocol):
-    """A worker of which a piece of work can have a process for all its functions."""
+    """A worker that can run all functions of a piece of work in one process."""
 
     def capacity(self, lane: Lane) -> int:
         """Return how many functions of a lane could start now; 0 if they would wait. It never blocks."""
         ...
 
     def batch(self, lane: Lane = GEOMETRY) -> Batch:
-        """Run several functions of a lane in one process, as long as each one succeeds.
+        """Return a batch that runs functions of a lane in one process, as long as each succeeds.
 
         If a function crashes, takes too long, uses too much memory, is cancelled or raises, its process ends,
         and the next function gets a new one. Close the batch at the end.

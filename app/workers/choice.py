@@ -1,4 +1,4 @@
-"""Start the workers that the settings choose: processes on this machine, or on other machines."""
+"""Start the workers that the settings select: processes on this machine, or on other machines."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from app.workers.local import LocalProcesses
 
 @dataclass(frozen=True)
 class Workers:
-    """The workers for jobs, and those of this machine: for reports and checks of files.
+    """The worker for jobs, and those on this machine for reports and for checks of files.
 
-    `why_silent` says why no process answers that would run a job, if none does.
+    `why_silent` returns why no process for jobs answers, if none does.
     """
 
     of_jobs: BatchWorker
@@ -26,17 +26,17 @@ class Workers:
 
 
 def why_silent_here() -> str:
-    """Return why no process of this machine answers."""
+    """Return why no process on this machine answers."""
     return "they are being started, or hang"
 
 
 def started_workers(settings: Settings, stack: ExitStack) -> Workers:
-    """Start the workers; the stack ends them."""
+    """Start the workers and return them; the exit stack stops them."""
     if settings.engine == LOCAL:
         local = LocalProcesses()
         stack.callback(local.close)
         return Workers(local, local, why_silent_here)
-    from app.workers.remote.engine import DaskWorker  # the embedded default does without Dask
+    from app.workers.remote.engine import DaskWorker  # the default needs no Dask
 
     here = LocalProcesses(CHECKS if settings.template_folders else ())
     stack.callback(here.close)

@@ -15,11 +15,11 @@ import signal
 
 
 class WorkerError(Exception):
-    """A function could not be completed."""
+    """Base class: the function could not be completed."""
 
 
 class JobCrashed(WorkerError):
-    """The process died; a negative exit code is the signal that killed it, None is unknown."""
+    """The process died; a negative exit code is the signal that killed it, and None means unknown."""
 
     def __init__(self, exit_code: int | None) -> None:
         super().__init__(exit_code)
@@ -46,7 +46,7 @@ class DeadlineExceeded(WorkerError):
 
 
 class MemoryExceeded(WorkerError):
-    """The function wanted more memory than its limit [MiB]."""
+    """The function needed more memory than its limit [MiB]."""
 
     def __init__(self, megabytes: int) -> None:
         super().__init__(megabytes)
@@ -57,14 +57,14 @@ class MemoryExceeded(WorkerError):
 
 
 class JobCancelled(WorkerError):
-    """The function was asked to stop, and its process killed."""
+    """The function was cancelled, and its process killed."""
 
     def __str__(self) -> str:
         return "The work was cancelled."
 
 
 class WorkerLost(WorkerError):
-    """The machine that ran the function, or the scheduler, has gone: nobody knows how it would have ended."""
+    """The machine that ran the function, or the scheduler, was lost, so the outcome is unknown."""
 
     def __init__(self, what: str) -> None:
         super().__init__(what)
@@ -75,7 +75,7 @@ class WorkerLost(WorkerError):
 
 
 class RemoteError(WorkerError):
-    """An exception or a result that cannot be pickled, given by the name of its class and its text."""
+    """Stands for an exception or result that cannot be pickled, with the name of its class and its text."""
 
     def __init__(self, kind: str, text: str) -> None:
         super().__init__(kind, text)

@@ -1,4 +1,4 @@
-"""The processes that descend from the server, from /proc: show their usage, and end them. Linux only."""
+"""Find the processes that descend from the server in /proc, measure their usage, and end them. Linux only."""
 
 import ctypes
 import os
@@ -17,8 +17,8 @@ _PROC = Path("/proc")
 class Use:
     """Resources of a set of processes: their number, processor time [s], resident memory [bytes].
 
-    The processor time includes that of children which have ended and were waited for. Memory that processes
-    share is counted for each of them.
+    The processor time includes that of ended children that were waited for. Memory that processes share is
+    counted for each of them.
     """
 
     count: int
@@ -35,7 +35,7 @@ def use(pid: int | None = None) -> Use:
 
 
 def kill(seconds: float = 1.0) -> None:
-    """Kill every descendant of this process, and wait at most this time [s] until all have ended.
+    """Kill every descendant of this process, and wait at most this long for their end [s].
 
     Orphans become children of this process, so the next round finds them.
     """
@@ -67,11 +67,11 @@ def _descendants(table: dict[int, list[str]], ancestor: int) -> dict[int, list[s
 
 
 def _table() -> dict[int, list[str]]:
-    """Return the fields of /proc/PID/stat of all processes, numbered from 0; names are left out."""
+    """Return the fields of /proc/PID/stat for all processes, numbered from 0 and without names."""
     table = {}
     for entry in os.listdir(_PROC) if _PROC.is_dir() else ():
         if entry.isdecimal():
-            with suppress(OSError):  # it has ended meanwhile
+            with suppress(OSError):  # it may have ended meanwhile
                 stat = (_PROC / entry / "stat").read_text(errors="replace")
                 table[int(entry)] = [entry, "", *stat.rpartition(")")[2].split()]
     return table

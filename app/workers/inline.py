@@ -13,7 +13,7 @@ Ts = TypeVarTuple("Ts")
 
 
 class Inline:
-    """Runs functions in the thread that asks."""
+    """Runs functions in the calling thread."""
 
     def run(
         self,
@@ -30,16 +30,16 @@ class Inline:
             return function(*args)
 
     def batch(self, lane: Lane = GEOMETRY) -> Self:
-        """Run all functions in the calling thread and return their results; see `BatchWorker.batch`."""
+        """Return this worker as a batch, which runs all functions in the calling thread."""
         return self
 
     def capacity(self, lane: Lane) -> int:
-        """Return no bound: every calling thread runs its own function."""
+        """Return an unlimited capacity, because every calling thread runs its own function."""
         return UNLIMITED
 
     def answers(self) -> bool:
-        """Return True: the caller's thread runs everything."""
+        """Return True, because the caller's thread runs every function."""
         return True
 
     def close(self) -> None:
-        """Do nothing, since nothing needs to be closed."""
+        """Do nothing, because there is nothing to close."""

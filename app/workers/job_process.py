@@ -35,7 +35,7 @@ Rehearsal = Callable[[Callable[[], bool]], object]
 """Does some work like a job's; its argument says whether the job has come, and then ends soon."""
 
 _PR_SET_PDEATHSIG = 1
-_GROWTH = 4  # a process that keeps more than this part of its allowance takes no other request
+_GROWTH = 4  # a process that keeps more than 1/4 of its allowance takes no other request
 
 
 def serve_jobs(
@@ -43,40 +43,42 @@ def serve_jobs(
 ) -> NoReturn:
     """Wait for a request, answer it, and end the process, unless another request may follow.
 
-    While it waits it rehearses, so that modules loaded at first use are ready. It exits without cleaning up,
-    because destructors of geometry kernels may crash after the work is done.
+    While it waits, the process rehearses, so that modules loaded at first use are ready. It exits without
+    cleaning up, because destructors of geometry kernels may crash after the work is done.
     """
     exit_code = 1
     try:
         _die_with(parent)
         os.setpgid(0, 0)
-        hang_on(lifeline, group=os.getpid())  # also if the forkserver is stopped or was killed
+        hang_on(lifeline, group=os.getpid())  # works even if the fork server is stopped or was killed
         for rehearse in rehearsals:
-            with suppress(Exception):  # the job will meet it again, and say so
+            with suppress(Exception):  # the job will raise this error again and report it
                 rehearse(connection.poll)
         request = receive(connection)
-        reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
+        reusable = not has_hung_up(
+            connection.fileno()
+        )  # otherwise the job was cancelled before this process started
         is_first = True
         while reusable:
             answer, reusable = _answer(request, connection)
             send(connection, answer)
             del answer
             if reusable:
-                gc.collect()  # what a calculation leaves in cycles may be large
+                gc.collect()  # reference cycles left by a calculation may be large
                 if is_first:
-                    gc.freeze()  # what was loaded at first use stays: later collections need not look at it
+                    gc.freeze()  # modules loaded at first use stay; later collections can skip them
                 is_first = False
                 request = receive(connection)
         exit_code = 0
-    finally:  # also when the server has closed its end, which is how it dismisses a process
+    finally:  # also if the server closes its end, by which it dismisses a process
         os._exit(exit_code)
 
 
 def _die_with(parent: int) -> None:
-    """Have the kernel kill this process when its parent dies; Linux only, elsewhere the parent must do it."""
+    """Make the kernel kill this process when its parent dies; elsewhere than on Linux the parent does it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it died before the kernel knew
+    if os.getppid() != parent:  # the parent died before the kernel was told
         raise ProcessLookupError(parent)
 
 
@@ -90,7 +92,7 @@ def _answer(packed: PackedMessage, connection: Connection) -> tuple[PackedMessag
         _limit(request.limits)
         reusable = request.reusable
         return _run(task, request, connection)
-    except BaseException as error:  # whatever it is belongs to the caller
+    except BaseException as error:  # the caller receives any error
         reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
         return pack(ErrorMessage(pack(_portable(error)), reusable)), reusable
 
@@ -119,7 +121,7 @@ def _packed_result(result: object) -> PackedMessage:
 
 
 def _portable(error: BaseException) -> BaseException:
-    """Return the exception, or a RemoteError if it cannot be sent; a note names its origin."""
+    """Return the exception, or a RemoteError if it cannot be sent; a note names where it was raised."""
     where = "".join(traceback.format_exception(error))
     try:
         pickle.loads(pickle.dumps(error))
@@ -130,10 +132,10 @@ def _portable(error: BaseException) -> BaseException:
 
 
 def _limit(limits: Limits) -> None:
-    """Set the limits of this process in the kernel, which enforces them even without the server.
+    """Set this process's limits in the kernel, which enforces them even without the server.
 
-    These are soft limits, which a process raises for its next request. The kernel counts the processor time
-    of all requests together, and ends the process at the soft limit.
+    These are soft limits, which a process raises for its next request. The kernel adds up the processor time
+    of all requests, and ends the process at the soft limit.
     """
     used = resource.getrusage(resource.RUSAGE_SELF)
     seconds = math.ceil(used.ru_utime + used.ru_stime + limits.deadline * (os.cpu_count() or 1)) + 1
@@ -150,7 +152,7 @@ def _set_soft(kind: int, wanted: int) -> None:
 
 
 def _has_grown(limits: Limits) -> bool:
-    """Return whether the process has kept so much memory that the next request could run out."""
+    """Return whether the process holds so much memory that the next request could exceed the limit."""
     if sys.platform != "linux":
         return False
     return _mapped_bytes() - _mapped_at_start() > limits.memory_mb * 2**20 / _GROWTH
@@ -158,11 +160,11 @@ def _has_grown(limits: Limits) -> bool:
 
 @cache
 def _mapped_at_start() -> int:
-    """Return the address space before the first request [bytes]."""
+    """Return the size of the address space before the first request [bytes]."""
     return _mapped_bytes()
 
 
 def _mapped_bytes() -> int:
-    """Return the address space of the process [bytes]."""
+    """Return the present size of the process's address space [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

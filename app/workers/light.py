@@ -1,3 +1,3 @@
-"""The modules to import in processes that check a team's files."""
+"""The modules that processes which check a team's files import in advance."""
 
 CHECKS = ("cad.model", "app.catalogue.check")

@@ -1,8 +1,8 @@
 """The worker of a server on one machine: the functions of a job share one process, which ends with the job.
 
-If a job ran only marked functions (`app.workers.base.may_share`), its process is kept for the next such job.
-Starting a process costs more than building a small solid: the fork, and the parts that the kernel loads at
-first use.
+If a job ran only marked functions (`app.workers.base.may_share`), its process is kept for the next such job,
+because starting a process costs more than building a small solid: the fork, and the parts that the kernel
+loads at first use.
 """
 
 import logging
@@ -23,15 +23,15 @@ Ts = TypeVarTuple("Ts")
 
 logger = logging.getLogger(__name__)
 
-# What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
-# imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
+# Modules that jobs import: the kernel, every model, and the modules of the job functions. Finite elements
+# are imported only by jobs that need them (0.3 s): NGSolve starts threads at once, which a fork would lack.
 KERNEL = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.analysis_process")
 
 
 class LocalProcesses:
     """Runs functions in processes that are forked from one with the geometry modules loaded.
 
-    One process is kept waiting for the next job, because a fork of such a large process is not free.
+    One process is kept ready for the next job, because forking such a large process takes time.
     """
 
     def __init__(self, preload: Sequence[str] = KERNEL) -> None:
@@ -59,19 +59,19 @@ class LocalProcesses:
         return self.started(request).finish(request.limits, on_progress, cancelled)
 
     def batch(self, lane: Lane = GEOMETRY) -> "Batch":
-        """Run several functions in one process; see `BatchWorker.batch`."""
+        """Return a batch that runs several functions in one process; see `BatchWorker.batch`."""
         return Batch(self.started, self)
 
     def capacity(self, lane: Lane) -> int:
-        """Return no limit: the queue has as many threads as this machine runs jobs."""
+        """Return an unlimited capacity, because the queue has as many threads as this machine runs jobs."""
         return UNLIMITED
 
     def answers(self) -> bool:
-        """Return whether the forkserver is alive, and has forked the process that waits for the next job."""
+        """Return whether the fork server is alive, and has forked the process for the next job."""
         if not self._forkserver.is_alive():
             if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
                 try:
-                    self._spare = self._forkserver.fork()  # starts it again
+                    self._spare = self._forkserver.fork()  # restarts the fork server
                 finally:
                     self._lock.release()
             return False
@@ -79,7 +79,7 @@ class LocalProcesses:
 
     def close(self) -> None:
         """Kill all processes; running jobs end with JobCrashed."""
-        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
+        self._forkserver.close()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             self._closed = True
             self._spare.kill()
@@ -88,7 +88,7 @@ class LocalProcesses:
             self._kept.clear()
 
     def lend(self) -> "IdleProcess | None":
-        """Return the process that an earlier job has left, if one waits."""
+        """Return the idle process of an earlier job, if there is one."""
         with self._lock:
             return self._kept.pop() if self._kept else None
 
@@ -101,23 +101,23 @@ class LocalProcesses:
         used.process.kill()
 
     def started(self, request: Request) -> JobProcess:
-        """Give the job to the waiting process, and fork the next one meanwhile."""
+        """Pass the job to the waiting process, and fork the next one meanwhile."""
         with self._lock:
             process, self._spare = self._spare, self._forkserver.fork()
         try:
             process.start(request)
-        except OSError:  # something killed it while it waited
+        except OSError:  # the process was killed while it waited
             process = self._forkserver.fork()
             process.start(request)
         return process
 
 
-MOST_IN_BATCH = 100  # functions that one process runs: what leaks in it ends with it
-MOST_KEPT = 1  # processes that wait for another job after their own
+MOST_IN_BATCH = 100  # largest number of functions for one process, which limits leaks
+MOST_KEPT = 1  # largest number of idle processes kept for another job
 
 
 class IdleProcess(NamedTuple):
-    """A process that has returned from so many functions, and waits for another."""
+    """A process that has completed some functions, and waits for another."""
 
     process: JobProcess
     runs: int
@@ -126,16 +126,17 @@ class IdleProcess(NamedTuple):
 class Batch:
     """Runs functions in one process, as long as each returns.
 
-    Its process is given up after whatever did not return: the kernel may be in any state then. If it had run
-    other functions before, the same one runs once more in a new process, whose answer counts. So no function
-    fails for what another has left behind, in this batch or in an earlier one.
+    After a function that did not return, its process is abandoned, because the state of the kernel is
+    unknown. If the process had run other functions before, the function runs once more in a new process,
+    whose answer counts. So no function fails because of what another one has left behind, in this batch or
+    in an earlier one.
 
     Parameters
     ----------
     started
-        Gives a request to a new process.
+        Function that passes a request to a new process.
     keeper
-        Lends the process of an earlier batch, and takes the process of this one; nobody, if None.
+        Lends the process of an earlier batch, and takes back the process of this one; None for neither.
     """
 
     def __init__(
@@ -169,7 +170,7 @@ class Batch:
     ) -> Outcome:
         """Run a packed, reusable function as `run` does; see `JobProcess.finish`.
 
-        `is_shared` states whether its process may serve other batches as well.
+        `is_shared` states whether its process may also serve other batches.
         """
         self._is_shared = self._is_shared and is_shared
         if (process := self._taken() or self._lent()) is not None:
@@ -178,7 +179,7 @@ class Batch:
                 outcome = self._finished(process, request.limits, on_progress, cancelled)
             except (JobCancelled, DeadlineExceeded):
                 raise
-            except (OSError, WorkerError) as error:  # it died, maybe while it waited
+            except (OSError, WorkerError) as error:  # the process died, perhaps while it waited
                 logger.info("once more in a new process: %s", error)
             else:
                 if isinstance(outcome, ResultMessage):
@@ -188,7 +189,7 @@ class Batch:
         return self._finished(self._started(request), request.limits, on_progress, cancelled)
 
     def close(self) -> None:
-        """Leave a waiting process to the next batch; end it if it may not serve another."""
+        """Leave the process to the next batch, or end it if other batches may not use it."""
         if (process := self._taken()) is None:
             return
         if self._keeper is not None and self._is_shared:
@@ -197,7 +198,7 @@ class Batch:
             process.kill()
 
     def _lent(self) -> JobProcess | None:
-        """Return the process of an earlier batch, if all that this one runs may share it."""
+        """Return the process of an earlier batch, if all functions of this batch may share it."""
         lent = self._keeper.lend() if self._keeper is not None and self._is_shared else None
         if lent is None:
             return None

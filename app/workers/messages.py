@@ -1,7 +1,7 @@
 """Messages between the server and a job process.
 
-The arguments and the result of a function are packed separately within a message. So a process that only
-forwards messages, such as a worker on another machine, imports nothing that the function imports.
+The arguments and the result of a function are packed separately within a message. Therefore a process that
+only forwards messages, such as a worker on another machine, imports nothing that the function imports.
 """
 
 import pickle
@@ -21,19 +21,19 @@ _COUNT = Struct("!I")
 
 @dataclass(frozen=True)
 class PackedMessage:
-    """A pickled message, and beside it the large bytes that it holds, piece by piece."""
+    """A pickled message; the large byte strings in it are kept separately, piece by piece."""
 
     message: bytes
     pieces: tuple[PickleBuffer | bytes, ...] = ()
 
     def unpacked(self) -> object:
-        """Return the message."""
+        """Return the original message."""
         return pickle.loads(self.message, buffers=self.pieces)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
         """Return the parts to pickle.
 
-        Within another message, large parts are sent separately without a copy.
+        Within another message, large parts are sent separately without being copied.
         """
         message = PickleBuffer(self.message) if len(self.message) > PIECE else self.message
         return PackedMessage, (message, tuple(map(PickleBuffer, self.pieces)))
@@ -41,7 +41,7 @@ class PackedMessage:
 
 @dataclass(frozen=True)
 class Request:
-    """To the process: what to run, within what limits, and whether another request may follow."""
+    """A message to the process: the function, its limits, and whether another request may follow."""
 
     task: PackedMessage
     limits: Limits
@@ -61,7 +61,7 @@ class Request:
 
 @dataclass(frozen=True)
 class Progress:
-    """From the process: how far it is."""
+    """A message from the process about its progress."""
 
     fraction: float
     text: str
@@ -69,7 +69,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class ResultMessage:
-    """From the process: the result, and whether it waits for another request."""
+    """A message from the process with the result, and whether it waits for another request."""
 
     value: PackedMessage
     reusable: bool = False
@@ -81,13 +81,13 @@ class ResultMessage:
 
 @dataclass(frozen=True)
 class ErrorMessage:
-    """From the process: the exception, and whether it waits for another request."""
+    """A message from the process with the exception, and whether it waits for another request."""
 
     error: PackedMessage
     reusable: bool = False
 
     def result(self) -> NoReturn:
-        """Return the result, or raise the function's exception."""
+        """Raise the function's exception."""
         error = self.error.unpacked()
         assert isinstance(error, BaseException), "a process packs nothing else here"
         raise error
@@ -97,21 +97,21 @@ Outcome = ResultMessage | ErrorMessage
 
 
 def pack(message: object) -> PackedMessage:
-    """Pickle a message; raises the errors of pickle."""
+    """Return a pickled message; raises the errors of pickle."""
     pieces: list[PickleBuffer] = []
     packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)
     return PackedMessage(packed, tuple(pieces))
 
 
 def send(connection: Connection, packed: PackedMessage) -> None:
-    """Send a message: the number of pieces, the message, the pieces."""
+    """Send a message: first the number of pieces, then the message, then the pieces."""
     connection.send_bytes(_COUNT.pack(len(packed.pieces)) + packed.message)
     for piece in packed.pieces:
         connection.send_bytes(piece)
 
 
 def receive(connection: Connection) -> PackedMessage:
-    """Receive a message; blocks. Raises EOFError if the other end closes before the message is complete."""
+    """Return the next message; this blocks. Raises EOFError if the other end closes within a message."""
     head = connection.recv_bytes()
     (count,) = _COUNT.unpack_from(head)
     return PackedMessage(head[_COUNT.size :], tuple(connection.recv_bytes() for _ in range(count)))

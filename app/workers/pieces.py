@@ -1,4 +1,4 @@
-"""Large bytes in pieces, each small enough not to block the other threads.
+"""Large byte strings in pieces, each small enough not to block other threads.
 
 Copying, joining or pickling ten megabytes holds the interpreter lock for about ten milliseconds.
 """
@@ -10,18 +10,18 @@ from dataclasses import dataclass
 from pickle import PickleBuffer
 from typing import Self, SupportsIndex
 
-PIECE = 2**18  # bytes; a copy takes some 0.1 ms
+PIECE = 2**18  # bytes; copying a piece takes about 0.1 ms
 
 
 @dataclass(frozen=True)
 class Pieces:
-    """Bytes in pieces, in their order; they travel between processes one by one (`app.workers.messages`)."""
+    """Bytes in pieces, in order; they travel between processes one by one (`app.workers.messages`)."""
 
     parts: tuple[bytes | memoryview, ...]
 
     @classmethod
     def of(cls, data: bytes) -> Self:
-        """Return the bytes in pieces, not copied."""
+        """Return the bytes in pieces, without copying them."""
         if len(data) <= PIECE:
             return cls((data,))
         view = memoryview(data)

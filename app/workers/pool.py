@@ -14,19 +14,19 @@ from templates.core.progress import Reporter
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-REUSE = 100  # requests that one process takes at most: what leaks in it ends with it
+REUSE = 100  # largest number of requests for one process, which limits leaks
 
 
 class WarmProcesses:
-    """Runs functions in processes that are forked from one with light modules loaded, and kept.
+    """Runs functions in processes that are forked from one with light modules loaded, and reused.
 
-    A process takes another request only if the last one ended by itself: whatever crashed, took too long,
-    wanted too much memory or was cancelled ends its own process and no other.
+    A process takes another request only if the last one returned normally. After a crash, a time-out, too
+    much memory or a cancellation only the process concerned ends.
 
     Args:
-        preload: leaf modules; a package such as `numpy` would be imported with everything beneath it.
-        spares: processes that are kept waiting.
-        reuse: requests that one process takes.
+        preload: leaf modules; a package such as `numpy` would be imported with everything in it.
+        spares: number of idle processes.
+        reuse: largest number of requests for one process.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class WarmProcesses:
         self._spares, self._reuse = spares, reuse
         self._lock = threading.Lock()
         self._closed = False
-        self._served: dict[JobProcess, int] = {}  # requests by process, of those that live
+        self._served: dict[JobProcess, int] = {}  # number of requests of each live process
         self._idle = [self._forked() for _ in range(spares)]
 
     def run(
@@ -61,7 +61,7 @@ class WarmProcesses:
         return cast(T, outcome.result())
 
     def answers(self) -> bool:
-        """Return whether the forkserver is alive; if it has died, it is started again."""
+        """Return whether the fork server is alive; if it has died, it is restarted."""
         if self._forkserver.is_alive():
             return True
         if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
@@ -74,7 +74,7 @@ class WarmProcesses:
     def close(self) -> None:
         """Kill all processes; running functions end with JobCrashed."""
         self._closed = True
-        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
+        self._forkserver.close()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             for process in self._idle:
                 process.kill()
@@ -86,12 +86,12 @@ class WarmProcesses:
         return process
 
     def _started(self, request: Request) -> JobProcess:
-        """Give the request to a waiting process; replace one that has died."""
+        """Pass the request to an idle process; replace one that has died."""
         with self._lock:
             process = self._idle.pop() if self._idle else self._forked()
         try:
             process.start(request)
-        except OSError:  # something killed it while it waited
+        except OSError:  # the process was killed while it waited
             self._put_back(process)
             with self._lock:
                 process = self._forked()
@@ -99,7 +99,7 @@ class WarmProcesses:
         return process
 
     def _put_back(self, process: JobProcess) -> None:
-        """Keep a process that may be used again, and one at least that waits for the next request."""
+        """Keep a process that may be used again; at least one process waits for the next request."""
         with self._lock:
             self._served[process] += 1
             is_kept = (

@@ -18,15 +18,15 @@ from typing import NoReturn
 from app.workers.processes import ForkServer
 from app.workers.threads import ONE_THREAD
 
-_GLANCE = 0.01  # between two looks whether a process has ended [s]
-_LONGEST_NAME = 15  # of a process, in Linux [characters]
+_GLANCE = 0.01  # time between two checks whether a process has ended [s]
+_LONGEST_NAME = 15  # longest process name in Linux [characters]
 _started: dict[tuple[str, ...], ForkServer] = {}
 
 
 def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) -> None:
     """Fork a fork server for these modules in advance; it ends with this process, used or not.
 
-    If this process already has threads, or is not on Linux, nothing is forked: callers get a new process
+    If this process already has threads, or is not on Linux, nothing is forked: callers then get a new process
     later.
 
     Parameters
@@ -68,30 +68,32 @@ def close() -> None:
 
 
 class ForkedProcess:
-    """A child of this process; behaves as a `subprocess.Popen`."""
+    """A child of this process with the interface of `subprocess.Popen`."""
 
     def __init__(self, pid: int) -> None:
         self.pid = pid
         self._code: int | None = None
 
     def poll(self) -> int | None:
-        """Return the exit code; None while the process lives."""
+        """Return the exit code; None while the process is running."""
         if self._code is None:
             try:
                 ended, status = os.waitpid(self.pid, os.WNOHANG)
-            except ChildProcessError:  # somebody else has asked: its code is lost, as with `Popen`
+            except (
+                ChildProcessError
+            ):  # other code has waited for it, so its exit code is lost, as with `Popen`
                 self._code = 0
             else:
                 self._code = os.waitstatus_to_exitcode(status) if ended else None
         return self._code
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return the exit code once the process has ended.
+        """Wait for the end of the process, and return its exit code.
 
         Raises
         ------
         subprocess.TimeoutExpired
-            If it lives longer [s].
+            If it takes longer than the timeout [s].
         """
         end = time.monotonic() + (float("inf") if timeout is None else timeout)
         while (code := self.poll()) is None:
@@ -107,7 +109,10 @@ class ForkedProcess:
 
 
 def _may_fork() -> bool:
-    """Return whether this process has one thread: a fork lacks the others, and would wait for their locks."""
+    """Return whether this process has only one thread.
+
+    A fork lacks all other threads, and would wait for their locks.
+    """
     return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
 
 
@@ -118,18 +123,20 @@ def _become_fork_server(
     environment: Mapping[str, str],
     prepare: Callable[[], object] | None,
 ) -> NoReturn:
-    """Turn a fork of the server into a fork server, in the state of a new process."""
+    """Turn a fork of the server into a fork server with the state of a new process."""
     try:
         from app.workers.forkserver import main
 
         os.setpgid(0, 0)
         _keep_only(channel, lifeline)
-        with open("/proc/self/comm", "w", encoding="ascii") as comm:  # its command line is the server's
+        with open(
+            "/proc/self/comm", "w", encoding="ascii"
+        ) as comm:  # its command line remains that of the server
             comm.write(modules[0][:_LONGEST_NAME])
         for name, text in environment.items():
             os.environ.setdefault(name, text)
         main(channel, lifeline, modules, prepare)
-    finally:  # whatever happens, it does not go on as a second server
+    finally:  # in no case may it continue as a second server
         os._exit(1)
 
 

@@ -1,4 +1,4 @@
-"""The server's side of job processes: the forkserver, and one process for one job."""
+"""The server's side of job processes: the fork server, and one process for each job."""
 
 import json
 import os
@@ -27,12 +27,12 @@ _BOOT = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     "from app.workers.forkserver import main; main(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:])"
 )
-_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
-_PATIENCE = 1.0  # how long the forkserver may take to end [s]
+_GLANCE = 0.05  # time between two checks whether the job was cancelled [s]
+_PATIENCE = 1.0  # longest time for the fork server to end [s]
 
 
 class JobProcess:
-    """A process that waits for one job, runs it, and is gone, unless it is `reusable` after that."""
+    """A process that waits for a job, runs it, and ends, unless it is `reusable`."""
 
     def __init__(self, connection: Connection, status: Connection) -> None:
         self._connection = connection
@@ -45,7 +45,7 @@ class JobProcess:
         Raises
         ------
         OSError
-            The process died while it was waiting.
+            If the process died while it was waiting.
         """
         self.reusable = False
         send(self._connection, pack(request))
@@ -53,12 +53,12 @@ class JobProcess:
     def finish(
         self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None
     ) -> Outcome:
-        """Wait for the end of the job and return its outcome, which includes its own exceptions.
+        """Wait for the end of the job, and return its outcome, which may be the function's own exception.
 
         Raises
         ------
         DeadlineExceeded, JobCancelled, JobCrashed
-            If the process was ended, or exited by itself.
+            If the process exceeded its deadline, was cancelled, or ended by itself.
         """
         cancelled = cancelled or threading.Event()
         try:
@@ -69,7 +69,7 @@ class JobProcess:
                 self.kill()
 
     def kill(self) -> None:
-        """End the process and its children; one that is not forked yet ends itself later."""
+        """End the process and its children; a process that is not forked yet ends itself later."""
         if self._status.closed:
             return
         with suppress(ProcessLookupError, JobCrashed):
@@ -79,20 +79,20 @@ class JobProcess:
         self._status.close()
 
     def _await_birth(self, cancelled: threading.Event) -> None:
-        """Wait for the process: its clock starts then, not while the forkserver is importing, or hangs."""
+        """Wait until the process exists; its time is counted from then, not while the fork server imports."""
         while not ("_pid" in vars(self) or self._status.poll(_GLANCE)):
             if cancelled.is_set():
                 raise JobCancelled
         _ = self._pid
 
     def is_born(self) -> bool:
-        """Return whether the forkserver has forked the process.
+        """Return whether the fork server has forked the process.
 
-        It reads nothing, so its owner may use the connection meanwhile.
+        This reads nothing, so the owner may use the connection meanwhile.
         """
         try:
             return "_pid" in self.__dict__ or self._status.poll()
-        except OSError:  # it has got a job and is gone
+        except OSError:  # it has received a job and ended
             return False
 
     @cached_property
@@ -104,7 +104,7 @@ class JobProcess:
 
     def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Outcome:
         end = time.monotonic() + limits.deadline
-        messages = select.poll()  # one for all: `Connection.poll` makes a selector each time
+        messages = select.poll()  # one for all; `Connection.poll` creates a selector each time
         messages.register(self._connection.fileno(), select.POLLIN)
         while True:
             _await_message(messages, end, limits, cancelled)
@@ -142,20 +142,20 @@ def _await_message(messages: select.poll, end: float, limits: Limits, cancelled:
 
 
 class Process(Protocol):
-    """A child of the server, as `subprocess.Popen` has it."""
+    """The interface of a child process, as in `subprocess.Popen`."""
 
     @property
     def pid(self) -> int:
-        """Return its process id."""
+        """Return the process id."""
 
     def poll(self) -> int | None:
-        """Return the exit code; None while it lives."""
+        """Return the exit code; None while the process is running."""
 
     def wait(self, timeout: float | None = None) -> int:
         """Return the exit code, or raise `subprocess.TimeoutExpired`."""
 
     def kill(self) -> None:
-        """Kill it."""
+        """Kill the process."""
 
 
 Launch = Callable[[Sequence[str], int, int, Mapping[str, str]], Process]
@@ -172,17 +172,17 @@ def launch(preload: Sequence[str], channel: int, lifeline: int, environment: Map
         pass_fds=[channel, lifeline],
         stdin=subprocess.DEVNULL,
         env={**environment, **os.environ},
-        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
-        # the niceness of the processes would count for nothing: see app/workers/priority.py.
+        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a separate session, the
+        # niceness of the processes would have no effect: see app/workers/priority.py.
         process_group=0,
     )
 
 
 class ForkServer:
-    """Starts the forkserver, starts it again if it has died, and asks it for processes.
+    """Starts the fork server, restarts it if it has died, and requests processes from it.
 
-    Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
-    The first process begins as `begin` says, every other one by `launch`.
+    `environment` contains defaults, which the server's own environment overrides. `begin` starts the first
+    process, and `launch` every later one.
     """
 
     def __init__(
@@ -212,11 +212,11 @@ class ForkServer:
         return JobProcess(connection, status)
 
     def is_alive(self) -> bool:
-        """Return whether the forkserver runs; neither ended nor stopped by a signal."""
+        """Return whether the fork server is running, neither ended nor stopped by a signal."""
         return self._process.poll() is None and not self.is_stopped()
 
     def is_stopped(self) -> bool:
-        """Return whether a signal has stopped the forkserver, so that it never answers. Linux only."""
+        """Return whether a signal has stopped the fork server, so that it cannot answer. Linux only."""
         try:
             state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
         except OSError:
@@ -224,9 +224,9 @@ class ForkServer:
         return state in "Tt"
 
     def close(self) -> None:
-        """Kill the forkserver and all its processes."""
+        """Kill the fork server and all its processes."""
         self._closed = True
-        self._lifeline.cut()  # before the lock, which who waits for a stopped forkserver may hold
+        self._lifeline.cut()  # before the lock, which a thread waiting for a stopped fork server may hold
         with self._lock:
             self._end()
 
@@ -254,6 +254,6 @@ class ForkServer:
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)
             return
-        self._process.kill()  # where a lifeline kills nobody, it may still be importing
+        self._process.kill()  # without a lifeline it may still be importing
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)

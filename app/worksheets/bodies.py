@@ -9,14 +9,16 @@ from pydantic.config import JsonValue
 
 from app.schemas.bounds import Bounded
 
-LONGEST_TEXT = 65_536  # bytes in UTF-8 of a worksheet
-MOST_CHECKED = 2**20  # characters that `check` takes: it says of a text that is too long how long it may be
+LONGEST_TEXT = 65_536  # largest size of a worksheet in UTF-8 [bytes]
+MOST_CHECKED = (
+    2**20
+)  # characters that `check` accepts, so that its answer can state the limit for a longer text
 ID = r"^[a-z][a-z0-9_]*$"
 NAME = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f][^\x00-\x1f\x7f]*$"
 
 
 def storable(text: str) -> str:
-    """Return a text that the database can store.
+    """Return the text if the database can store it.
 
     Raises
     ------
@@ -32,7 +34,7 @@ def storable(text: str) -> str:
 
 
 def legible(name: str) -> str:
-    """Return a legible name of a person.
+    """Return a person's name if it is legible.
 
     Raises
     ------
@@ -65,37 +67,41 @@ def _examples(**example: JsonValue) -> ConfigDict:
 
 
 class WorksheetBody(Bounded):
-    """The body of a request about worksheets."""
+    """Base class of request bodies about worksheets."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
 class SheetCheckIn(WorksheetBody):
-    """A text that is to be checked."""
+    """Request to check a text."""
 
     model_config = _examples(text=EXAMPLE)
 
-    text: str = Field(max_length=MOST_CHECKED, description="the worksheet; at most 64 KiB make one")
-    id: str | None = Field(None, max_length=64, pattern=ID, description="under which it would be described")
+    text: str = Field(
+        max_length=MOST_CHECKED, description="the text of the worksheet; at most 64 KiB are valid"
+    )
+    id: str | None = Field(
+        None, max_length=64, pattern=ID, description="id under which the check describes it"
+    )
 
 
 class SheetIn(WorksheetBody):
-    """A new worksheet."""
+    """Request for a new worksheet."""
 
     model_config = _examples(id="bush_duty", text=EXAMPLE, author="A. Weber")
 
     id: str = Field(
         max_length=64,
         pattern=ID,
-        description="small letters, digits and _; no template, model or other worksheet may have it",
+        description="small letters, digits and _; not used by a template, model or other worksheet",
         examples=["bush_duty"],
     )
     text: Text
-    author: Person | None = Field(None, description="who wrote it; nobody proves the name yet")
+    author: Person | None = Field(None, description="who wrote it; a typed name is not verified")
 
 
 class SheetPatch(WorksheetBody):
-    """A change of a worksheet: what is not named stays."""
+    """Request to change a worksheet; members that are not given stay unchanged."""
 
     model_config = _examples(text=EDITED)
 
@@ -104,18 +110,20 @@ class SheetPatch(WorksheetBody):
 
 
 class ReviewIn(WorksheetBody):
-    """A review of one text."""
+    """Review of one text."""
 
     model_config = _examples(reviewer="B. Klein", digest="0" * 64)
 
-    reviewer: Person = Field(description="another name than the author's; nobody proves it yet")
-    digest: str = Field(max_length=64, pattern=r"^[0-9a-f]{64}$", description="of the text that was reviewed")
+    reviewer: Person = Field(description="the reviewer, who is not the author; a typed name is not verified")
+    digest: str = Field(max_length=64, pattern=r"^[0-9a-f]{64}$", description="digest of the reviewed text")
 
 
 class WithdrawIn(WorksheetBody):
-    """Why a released version shall not be used any longer."""
+    """Request to withdraw a released version, with the reason."""
 
     model_config = _examples(reason="the clearance is too small")
 
     reason: str = Field(min_length=1, max_length=1000, pattern=NAME)
-    version: int | None = Field(None, ge=1, le=10**6, description="the newest released one, if none is named")
+    version: int | None = Field(
+        None, ge=1, le=10**6, description="the version; by default the newest released one"
+    )

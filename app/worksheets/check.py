@@ -1,6 +1,6 @@
-"""Check a text and report its faults; if it has none, print every line with the example's numbers.
+"""Check a text: report its faults, or print every line with the example's numbers.
 
-It runs in a calculation process, like all code that reads a user's text.
+The check runs in a calculation process, like all code that reads a user's text.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from templates.core.sheets.grammar import LANGUAGE
 from templates.core.sheets.lines import chunks_of, normal
 
 UNNAMED = "worksheet"
-"""The id under which a text without one is described."""
+"""The id under which a text without an id is described."""
 
 ROUNDS = 4
-"""Limit on how often a faulty text is read again without its faulty statements."""
+"""Largest number of times that a faulty text is read again without its faulty statements."""
 
 
 def checked(text: str, id: str | None) -> bytes:
     """Return the answer to `check` as JSON.
 
-    The lines show the results of valid statements without the faulty ones.
+    For a faulty text, its lines show the results of the valid statements.
     """
     try:
         answer = _sound(read(text), id or UNNAMED)
@@ -60,7 +60,7 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """Return the sheet of the valid statements, each in its line; None if there is none.
+    """Return the sheet of the valid statements, each in its original line; None if there is none.
 
     Statements that use a faulty one become faulty too, so the text is read up to `ROUNDS` more times.
     """
@@ -74,7 +74,7 @@ def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
 
 
 def _blanked(text: str, refused: SheetRefused) -> str:
-    """Return a text with empty lines in the place of its faulty statements."""
+    """Return a text in which empty lines replace the faulty statements."""
     text = normal(text)
     lines, faulty = text.split("\n"), {fault.line for fault in refused.faults}
     for chunk in chunks_of(text):
@@ -104,7 +104,7 @@ def _names(sheet: Sheet) -> list[SheetName]:
 
 @dataclass(frozen=True)
 class _Result:
-    """The result of the example in a line."""
+    """The result of the example in one line of the text."""
 
     value: object = None
     unit: str | None = None
@@ -115,7 +115,7 @@ class _Result:
 
 @dataclass(frozen=True)
 class _Example:
-    """The example as far as it was calculated: values, warnings, verdicts of checks, and what refuses it."""
+    """The calculated example: values, warnings, verdicts of checks, and the faults that refuse it."""
 
     values: Mapping[str, _Result] = field(default_factory=dict)
     warnings: tuple[Notice, ...] = ()
@@ -135,7 +135,7 @@ def _example(cls: type[Template]) -> _Example:
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
-    """Return inputs and outputs of an evaluation by name, as in answers."""
+    """Return inputs and outputs of an evaluation by name, as in responses."""
     answer = json_values.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 

@@ -3,8 +3,8 @@
 WorksheetError
     IdTaken             a file, or another worksheet, has the id
     OutOfOrder          the state of the worksheet does not allow the step
-        OtherText       a review names a text that differs from the stored one
-        Unresolved      regions of its import are not verified, and nobody has resolved them
+        OtherText       a review is of another text than the stored one
+        UnresolvedRegions   regions of its import are neither verified nor resolved
         TestsFailed     the worksheet has faults, or its tests fail
     OwnReview           an author reviews their own worksheet
     StaleWorksheet      the worksheet has changed since the client read it
@@ -16,22 +16,22 @@ from collections.abc import Sequence
 
 
 class WorksheetError(Exception):
-    """Anything that worksheets refuse, beyond wrong inputs."""
+    """Base class of the errors of worksheets, apart from wrong inputs."""
 
 
 class IdTaken(WorksheetError):
-    """A file, or another worksheet, has the id."""
+    """Raised if a file or another worksheet has the id."""
 
     def __init__(self, id: str, by: str) -> None:
         super().__init__(f"the id {id!r} belongs to {by} already; choose another, such as {id[:60]}_2")
 
 
 class OutOfOrder(WorksheetError):
-    """The state of the worksheet does not allow it."""
+    """Raised if the state of the worksheet does not allow the step."""
 
 
 class OtherText(OutOfOrder):
-    """A review names another text than the one that is stored."""
+    """Raised if a review is of another text than the stored one."""
 
     def __init__(self, named: str, digest: str | None) -> None:
         super().__init__(
@@ -41,9 +41,9 @@ class OtherText(OutOfOrder):
 
 
 class TestsFailed(OutOfOrder):
-    """The worksheet has faults, or its tests fail; `reasons` says which."""
+    """Raised if the worksheet has faults, or its tests fail; `reasons` lists them."""
 
-    __test__ = False  # no test of pytest
+    __test__ = False  # prevents pytest from collecting it as a test
 
     def __init__(self, reasons: Sequence[str]) -> None:
         self.reasons = tuple(reasons)
@@ -52,25 +52,25 @@ class TestsFailed(OutOfOrder):
 
 
 class UnresolvedRegions(OutOfOrder):
-    """Regions of the import differ, are refused or blocked, and their lines stand as imported."""
+    """Raised if regions of the import differ, are refused or blocked, and their lines are unchanged."""
 
     def __init__(self, reasons: Sequence[str]) -> None:
         self.reasons = tuple(reasons)
         count, some = len(self.reasons), "; ".join(self.reasons[:5])
-        remedy = "rewrite or remove the lines that stand for them"
+        remedy = "rewrite or remove the lines imported from them"
         regions = "region" if count == 1 else "regions"
         super().__init__(f"{count} {regions} of the import unresolved: {some}: {remedy}")
 
 
 class OwnReview(WorksheetError):
-    """An author reviews their own worksheet."""
+    """Raised if an author reviews their own worksheet."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f"{name!r} is the author; let another person review the worksheet")
 
 
 class StaleWorksheet(WorksheetError):
-    """The worksheet has changed since the client read it."""
+    """Raised if the worksheet has changed since the client read it."""
 
     def __init__(self, id: str) -> None:
-        super().__init__(f"worksheet {id} has changed meanwhile; read it again, then send your change")
+        super().__init__(f"worksheet {id} has changed in the meantime; read it again, then send your change")

@@ -1,4 +1,4 @@
-"""Examine a text in a calculation process, because a user wrote it.
+"""Examine a text in a calculation process, because it comes from a user.
 
 The language limits bytes, statements and operations, and has no loops. The process limits time and memory.
 """
@@ -22,7 +22,7 @@ LONGEST_TITLE = 200
 
 @dataclass(frozen=True)
 class Examination:
-    """The contents that a text declares, and all its faults."""
+    """The title and digest of a text, and all its faults."""
 
     title: str
     digest: str | None
@@ -32,7 +32,7 @@ class Examination:
 
 @dataclass(frozen=True)
 class TestRun:
-    """A text whose tests ran: why it cannot be released, or its golden record."""
+    """The test results of a text, with the reasons against a release, or its golden record."""
 
     tests: tuple[TestResult, ...]
     reasons: tuple[str, ...]
@@ -40,7 +40,7 @@ class TestRun:
 
 
 def examined(text: str) -> Examination:
-    """Read a text."""
+    """Return the examination of a text."""
     try:
         sheet = read(text)
     except SheetRefused as refused:
@@ -65,25 +65,25 @@ def tried(id: str, version: int, text: str) -> TestRun:
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:
-    """Yield the missing parts that a template needs but the language does not require."""
+    """Yield a sentence for each part that a template needs but the language does not require."""
     if not cls.formulas:
-        yield "it gives nothing: write a formula"
+        yield "it has no output: write a formula"
     required = [name for name, declared in cls.inputs.items() if declared.required]
     for name in required:
         if name not in cls.example:
-            yield f"{name} has no example: write (example …) behind its words"
+            yield f"{name} has no example: write (example …) after its description"
 
 
 def as_released(
     source: SheetSource, digest: str | None, golden: Mapping[str, object] | None
 ) -> type[Template] | str:
-    """Return the class of a released text, or why it no longer equals its release."""
+    """Return the class of a released text, or the reason why it no longer matches its release."""
     try:
         cls = class_of(source)
     except TemplateError as error:
-        return f"its text is not understood any more: {error}"
+        return f"its text can no longer be read: {error}"
     if digest_of(cls) != digest:
-        return "its text is not that of the release"
+        return "its text differs from the release"
     try:
         difference = next(differences(cls, golden or {}), None)
     except (TemplateError, LookupError, TypeError, ValueError, AttributeError) as error:
@@ -92,6 +92,6 @@ def as_released(
 
 
 def title_of(text: str) -> str:
-    """Return the first heading of a text, readable or not."""
+    """Return the first heading of a text, whether or not the text can be read."""
     headings = (line.lstrip("# ").strip() for line in text.splitlines() if line.startswith("#"))
     return next((heading for heading in headings if heading), "")[:LONGEST_TITLE]

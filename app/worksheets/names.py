@@ -11,12 +11,12 @@ from app.worksheets.errors import IdTaken
 from templates.core.errors import Fault, InvalidInputs
 
 RESERVED = frozenset({"check", "import", "new"})
-"""Words with a path of their own, such as `/worksheets/check`: no worksheet may have one as its id."""
+"""Words that are part of a path, such as `/worksheets/check`, and so cannot be the id of a worksheet."""
 _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Check that a worksheet may have this id, as far as files are concerned.
+    """Check that no file has this id, and that the id has no other meaning.
 
     Raises
     ------
@@ -26,7 +26,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
         If a template or a CAD model has it.
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
-        why = "has an address of its own" if id in RESERVED else "ends like a version"
+        why = "is part of an address" if id in RESERVED else "ends like a version"
         raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as bush_duty")])
     files = catalogues.files
     for catalogue in (files.templates, files.models):
@@ -35,13 +35,13 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 
 
 def signed(typed: str | None) -> tuple[str | None, str | None]:
-    """Return the author of an action: name and id of a principal who has signed in, else a typed name."""
+    """Return the author of an action: name and id of a signed-in principal, else the typed name."""
     who = acting()
     return (typed, None) if who.id in BUILT_IN else (who.name, who.id)
 
 
 def is_same_person(one: str, other: str) -> bool:
-    """Return whether two names are equal except for case, blanks and invisible characters."""
+    """Return whether two names are equal, ignoring case, spaces and invisible characters."""
     return _folded(one) == _folded(other)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.follower import Follower
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
 from app.pool.sources import SheetSource, class_of
 from app.storage.database import Database
@@ -22,16 +23,16 @@ from templates.core.language.template import Template
 
 logger = logging.getLogger(__name__)
 
-EVERY = 1.0  # how often a server looks what another one on its database has released [s]
-AT_ONCE = 15.0  # how long a look reads releases; those that are left are read beside the service [s]
-WAITING = "its release is being read again, as at every start of the service; ask again in some seconds"
+AT_ONCE = 15.0  # largest time of one update; the remaining releases are read while the service runs [s]
+WAITING = "its release is being verified after the start of the service; try again in a few seconds"
 
 
 class WorksheetPublication:
-    """Keeps the worksheets among the templates as the database has them.
+    """Keeps the catalogue of templates in step with the worksheets in the database.
 
-    A released version is read from its text once in every server. If its digest or its golden results are not
-    those of the release, it is broken: nothing is calculated by it, nor by one that waits to be read.
+    Every server reads a released version from its text once. If its digest or its golden results differ from
+    the release, the version is broken, and the server refuses to calculate with it. It also refuses a version
+    that it has not read yet.
     """
 
     def __init__(
@@ -40,30 +41,19 @@ class WorksheetPublication:
         self.database, self.catalogues, self._at_once = database, catalogues, at_once
         self._looking = threading.Lock()
         self._states: tuple[repository.State, ...] = ()
-        self._read: dict[Key, tuple[str, ReleasedSheet | str]] = {}  # by edit
+        self._read: dict[Key, tuple[str, ReleasedSheet | str]] = {}  # results with the edit that was read
         self._waiting: set[Key] = set()
-        self._is_shared, self._ending = is_shared, threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="worksheets", daemon=True)
+        self.follower = Follower("worksheets", self.look, lambda: is_shared or bool(self._waiting))
+        """Reads the remaining releases and, on a shared database, those of other servers."""
         self.look()
 
     @property
     def broken(self) -> dict[Key, str]:
-        """Return why released versions are broken."""
+        """Return the broken released versions, each with its reason."""
         return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
 
-    def start(self) -> None:
-        """Read what is left, and look what other servers release, if there may be others on this database."""
-        if self._is_shared or self._waiting:
-            self._thread.start()
-
-    def stop(self) -> None:
-        """Look no more."""
-        self._ending.set()
-        if self._thread.is_alive():
-            self._thread.join()
-
     def look(self) -> None:
-        """Take notice of what has changed in the database, for as long as a look may take."""
+        """Update the catalogue after changes in the database, within the time of one update."""
         with self._looking:
             with self.database.read() as session:
                 states = repository.states(session)
@@ -78,7 +68,7 @@ class WorksheetPublication:
             self.catalogues.publish(self._sheets(), self.draft)
 
     def draft(self, id: str, version: int) -> type[Template]:
-        """Return the draft of a worksheet as it is now.
+        """Return the present draft of a worksheet.
 
         Raises
         ------
@@ -88,7 +78,7 @@ class WorksheetPublication:
         try:
             with self.database.read() as session:
                 row = repository.version(session, id, version)
-            return class_of(SheetSource(id, version, row.text, None))  # `loaded` keeps a thousand texts
+            return class_of(SheetSource(id, version, row.text, None))  # `loaded` caches a thousand texts
         except NotFound as error:
             raise UnreleasedTemplate(id, str(error)) from None
         except TemplateError as error:
@@ -104,15 +94,6 @@ class WorksheetPublication:
         drafts = (state for state in self._states if state.state not in RELEASED)
         return Sheets(sound, broken, {(one.id, one.number): _remedy(one) for one in drafts})
 
-    def _watch(self) -> None:
-        while not self._ending.wait(EVERY):
-            if not (self._is_shared or self._waiting):
-                return
-            try:
-                self.look()
-            except Exception:
-                logger.exception("The worksheets could not be looked at")
-
 
 def _remedy(state: repository.State) -> str:
     place = f"POST /api/v1/worksheets/{state.id}"
@@ -120,7 +101,7 @@ def _remedy(state: repository.State) -> str:
 
 
 def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, ReleasedSheet | str]]:
-    """Return releases with the edit that was read, as many as the time [s] allows, one at least."""
+    """Return releases with the edit that was read, as many as the time [s] allows, but at least one."""
     read: dict[Key, tuple[str, ReleasedSheet | str]] = {}
     begun = time.monotonic()
     for row in rows:
@@ -131,7 +112,7 @@ def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, Rel
 
 
 def _verified(row: Row) -> ReleasedSheet | str:
-    """Return a released version, or why it is broken."""
+    """Return a released version, or the reason why it is broken."""
     source = SheetSource(row.id, row.number, row.text, row.withdrawn)
     if isinstance(released := as_released(source, row.digest, row.record), str):
         logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, released)

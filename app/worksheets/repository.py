@@ -1,4 +1,4 @@
-"""All SQL of worksheets; every function runs in its caller's transaction."""
+"""All SQL statements for worksheets; every function runs in its caller's transaction."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.errors import StaleWorksheet
 
 RELEASED = ("released", "withdrawn")
-"""States in which nothing of a version but its withdrawal changes any more."""
+"""States in which a version can no longer change, except by withdrawal."""
 
 
 class State(NamedTuple):
-    """The present state of a version; another `edit` says that something of it has changed."""
+    """The state of a version; `edit` changes with every change of the version."""
 
     id: str
     number: int
@@ -33,7 +33,7 @@ def newest(session: Session, id: str) -> Row:
     Raises
     ------
     NotFound
-        If there is none of this id.
+        If there is no worksheet with this id.
     """
     rows = select(Row).where(Row.id == id).order_by(Row.number.desc()).limit(1)
     if (row := session.scalar(rows)) is None:
@@ -47,7 +47,7 @@ def version(session: Session, id: str, number: int) -> Row:
     Raises
     ------
     NotFound
-        If there is none of this id or number.
+        If there is no such worksheet or version.
     """
     if (row := session.get(Row, (id, number))) is None:
         raise NotFound(f"worksheet {id[:64]!r} has no version {number}")
@@ -55,12 +55,12 @@ def version(session: Session, id: str, number: int) -> Row:
 
 
 def versions(session: Session, id: str) -> list[Row]:
-    """Return all versions of a worksheet, ascending."""
+    """Return all versions of a worksheet, in ascending order."""
     return list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
 
 
 def page(session: Session, limit: int, after: str | None) -> list[Row]:
-    """Return the newest versions in the order of their ids, one more than `limit`."""
+    """Return the newest versions in the order of their ids, one more than `limit` if there are more."""
     last = select(Row.id, func.max(Row.number).label("number")).group_by(Row.id).subquery()
     rows = select(Row).join(last, and_(Row.id == last.c.id, Row.number == last.c.number))
     if after is not None:
@@ -69,7 +69,7 @@ def page(session: Session, limit: int, after: str | None) -> list[Row]:
 
 
 def states(session: Session) -> tuple[State, ...]:
-    """Return the present states of all versions."""
+    """Return the states of all versions."""
     rows = select(Row.id, Row.number, Row.state, Row.edit).order_by(Row.id, Row.number)
     return tuple(State(*row) for row in session.execute(rows))
 
@@ -80,7 +80,7 @@ def add(session: Session, row: Row) -> None:
     Raises
     ------
     StaleWorksheet
-        Another server has made it meanwhile.
+        If another server has inserted it in the meantime.
     """
     row.edit, row.created = new_id(session), now()
     row.updated = row.created
@@ -93,12 +93,12 @@ def add(session: Session, row: Row) -> None:
 
 
 def save(session: Session, row: Row, **changes: object) -> Row:
-    """Change a version if it has not changed since it was read: of two servers, only one succeeds.
+    """Change a version and return it; of several concurrent changes only one succeeds.
 
     Raises
     ------
     StaleWorksheet
-        It has changed since.
+        If the version has changed since it was read.
     """
     same = and_(Row.id == row.id, Row.number == row.number, Row.edit == row.edit)
     values = {**changes, "edit": new_id(session), "updated": now()}
@@ -115,12 +115,12 @@ def _size(text: str) -> int:
 
 
 def discard(session: Session, row: Row) -> None:
-    """Delete a version that was never released and is still as it was read.
+    """Delete a version that was never released.
 
     Raises
     ------
     StaleWorksheet
-        It has changed since.
+        If the version has changed since it was read.
     """
     same = and_(Row.id == row.id, Row.number == row.number, Row.edit == row.edit)
     gone = delete(Row).where(same).execution_options(synchronize_session=False)

@@ -1,7 +1,7 @@
 """Operations on worksheets: draft → tested → reviewed → released → withdrawn.
 
 An edit returns a worksheet to draft; an edit of a released version starts the next version. Texts are read in
-a calculation process only. A change is stored only if nobody changed the version in the meantime.
+a calculation process only. A change is stored only if the version has not changed in the meantime.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
 Imported = tuple[str, ImportRecord]
-"""The SHA-256 of the file that a worksheet comes from, and what the import says of its regions."""
+"""The SHA-256 of the file from which a worksheet was imported, and the import record."""
 
-PATIENCE = 30.0  # for a text to be read and tried, its turn included [s]
+PATIENCE = 30.0  # time for reading and testing a text, including the wait [s]
 
 
 class Worksheets:
-    """All changes of worksheets; every method answers with the version that it led to."""
+    """All operations on worksheets; every method that changes one returns the resulting version."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class Worksheets:
         self.database, self.catalogues, self.pool, self.published = database, catalogues, pool, published
 
     def create(self, body: SheetIn, once: Once, imported: Imported | None = None) -> Row:
-        """Return a new worksheet, a draft.
+        """Create a worksheet as a draft, and return it.
 
         Raises
         ------
@@ -62,8 +62,8 @@ class Worksheets:
         InvalidInputs
             If no worksheet may have it.
         """
-        if (before := self._repeated(once)) is not None:
-            return before
+        if before := once.find_in(self.database):
+            return self.newest(before["id"])
         require_free(body.id, self.catalogues)
         reading = self.calculated(once.client, examined, body.text)
 
@@ -87,12 +87,12 @@ class Worksheets:
         return self._written(unit)
 
     def change(self, id: str, body: SheetPatch, expected: str | None, once: Once) -> Row:
-        """Return an edit: a draft again, or the draft of the next version if this one is released.
+        """Edit a worksheet and return the draft; if the newest version is released, begin the next one.
 
         Raises
         ------
         StaleWorksheet
-            If `expected` (an If-Match) is not the newest version as it is now.
+            If `expected` (an If-Match) does not match the present newest version.
         """
         with self.database.read() as session:
             row = repository.newest(session, id)
@@ -124,14 +124,14 @@ class Worksheets:
         return self._written(unit)
 
     def test(self, id: str, expected: str | None, client: str) -> Row:
-        """Run the tests and the golden steps: tested, if all is well.
+        """Run the tests and the golden steps; if all pass, the version becomes tested.
 
         Raises
         ------
         OutOfOrder
             If the newest version is released, or reviewed already.
         TestsFailed
-            With everything that is wrong; the state stays.
+            With all faults and failed tests; the state does not change.
         """
         row = self.newest(id, expected)
         _require(row, "draft", "tested")
@@ -139,7 +139,7 @@ class Worksheets:
         return self._saved(row, "test", state="tested", tests=list(map(asdict, result.tests)))
 
     def review(self, id: str, body: ReviewIn, expected: str | None) -> Row:
-        """Note who reviewed the text.
+        """Record who reviewed the text.
 
         Raises
         ------
@@ -162,16 +162,16 @@ class Worksheets:
         return self._saved(row, "review", state="reviewed", reviewer=reviewer, reviewer_principal=principal)
 
     def release(self, id: str, expected: str | None, client: str) -> Row:
-        """Make the reviewed version a template that never changes; its golden record is kept.
+        """Make the reviewed version a template that never changes, and store its golden record.
 
         Raises
         ------
         OutOfOrder
             If the newest version is not reviewed.
-        Unresolved
-            If regions of its import are not verified, and their lines stand as imported.
+        UnresolvedRegions
+            If regions of its import are not verified, and their lines are unchanged.
         TestsFailed
-            If the tests fail by now, as after an update of the program.
+            If the tests fail now, for example after an update of the program.
         """
         row = self.newest(id, expected)
         _require(row, "reviewed")
@@ -184,7 +184,7 @@ class Worksheets:
         )
 
     def withdraw(self, id: str, body: WithdrawIn, expected: str | None) -> Row:
-        """Say why a released version shall not be used any longer; designs that use it still calculate.
+        """Withdraw a released version and record the reason; designs that use it still calculate.
 
         Raises
         ------
@@ -201,16 +201,18 @@ class Worksheets:
         return self._saved(row, "withdraw", state="withdrawn", withdrawn=body.reason)
 
     def delete(self, id: str, expected: str | None) -> None:
-        """Delete the newest version, which was never released.
+        """Delete the newest version if it was never released.
 
         Raises
         ------
         OutOfOrder
-            If it was.
+            If it was released.
         """
         row = self.newest(id, expected)
         if row.state in RELEASED:
-            raise OutOfOrder(f"{id} version {row.number} is {row.state}, so it stays; withdraw it instead")
+            raise OutOfOrder(
+                f"{id} version {row.number} is {row.state}, so it cannot be deleted; withdraw it instead"
+            )
         self.database.write(lambda session: _discard(session, row))
         self.published.look()
 
@@ -222,7 +224,7 @@ class Worksheets:
         NotFound
             If there is none.
         StaleWorksheet
-            If `expected` (an If-Match) names another state of it.
+            If `expected` (an If-Match) does not match its present state.
         """
         with self.database.read() as session:
             row = repository.newest(session, id)
@@ -230,13 +232,13 @@ class Worksheets:
         return row
 
     def show(self, row: Row) -> Sheet:
-        """Return a version of a worksheet as the interface answers it."""
+        """Return a version of a worksheet as a response."""
         with self.database.read() as session:
             versions = repository.versions(session, row.id)
         return views.sheet(row, versions, self.published.broken)
 
     def sheet(self, id: str, number: int | None = None) -> Sheet:
-        """Return a version of a worksheet, by default the newest, as the interface answers it.
+        """Return a version of a worksheet, by default the newest, as a response.
 
         Raises
         ------
@@ -257,14 +259,14 @@ class Worksheets:
             return repository.version(session, id, number)
 
     def calculated(self, client: str, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """Return the result of a function of a text, in a calculation process.
+        """Return the result of a function of a text, calculated in a calculation process.
 
         Raises
         ------
         TooManyCalculations
-            As many wait as may.
+            If too many calculations wait.
         DeadlineExceeded
-            It took too long.
+            If it took too long.
         """
         calculation = self.pool.submit(client, function, *args)
         try:
@@ -294,13 +296,6 @@ class Worksheets:
         self.published.look()
         return row
 
-    def _repeated(self, once: Once) -> Row | None:
-        if not once.key:
-            return None
-        with self.database.read() as session:
-            location = once.find(session)
-            return repository.newest(session, location["id"]) if location else None
-
 
 def _discard(session: Session, row: Row) -> None:
     repository.discard(session, row)
@@ -326,9 +321,9 @@ def _draft(id: str, number: int, text: str, reading: Examination) -> Row:
 
 
 def _edited(draft: Row) -> dict[str, object]:
-    """Return the changes of an edit to the row of a version.
+    """Return the columns of a version that an edit changes.
 
-    Who reviewed the old text did not review this one.
+    An edit removes the review, because the reviewer has not seen the new text.
     """
     names = ("text", "title", "language", "digest", "faults", "author", "author_principal")
     unsigned: dict[str, object] = {
@@ -360,7 +355,7 @@ NEXT = {
     "released": "; an edit begins the next version",
     "withdrawn": "; an edit begins the next version",
 }
-"""By state, what is to be done next."""
+"""The next step for each state."""
 
 
 def _require_match(expected: str | None, row: Row) -> None:

@@ -1,4 +1,4 @@
-"""Worksheets as the REST interface shows them."""
+"""Responses of the REST interface about worksheets."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from app.worksheets.imports.views import origin
 from app.worksheets.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
 
 Broken = Mapping[Key, str]
-"""Why released versions are broken."""
+"""Broken released versions, with their reasons."""
 
 
 def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
-    """Return one version with its text, and all versions of its worksheet."""
+    """Return one version with its text, and the list of all versions."""
     reason = broken.get((row.id, row.number))
     return Sheet.model_validate(
         {
@@ -43,7 +43,7 @@ def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
 
 
 def summary(row: Row, broken: Broken) -> SheetSummary:
-    """Return a worksheet in a list."""
+    """Return a worksheet as an entry of a list."""
     return SheetSummary(
         id=row.id,
         version=row.number,
@@ -68,6 +68,6 @@ def _version(row: Row, broken: Broken) -> SheetVersion:
 
 
 def state(row: Row, broken: Broken) -> State:
-    """Return the state of a version: as stored, unless it is broken."""
+    """Return the state of a version: `broken`, or as stored."""
     stored: State = row.state  # type: ignore[assignment] # only `app.worksheets.service` writes it
     return "broken" if (row.id, row.number) in broken else stored

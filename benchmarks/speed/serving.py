@@ -1,4 +1,4 @@
-"""The service over HTTP: evaluations, changes, regenerations, a large array, a page, a report, its start."""
+"""Measure the service over HTTP: evaluations, changes, regenerations, a large array, pages, its start."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ SETTLING = 2.0  # after a change: the service prepares its next job [s]
 
 
 def figures() -> list[Figure]:
-    """Measure all lines of the service, on one server."""
+    """Measure all figures of the service, on one server."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         begin = time.perf_counter()
@@ -52,9 +52,9 @@ def figures() -> list[Figure]:
         ready = time.perf_counter() - begin
         time.sleep(2 * SETTLING)
         memory = proportional_megabytes(server.pid)
-        at_rest = "proportional set size, at rest"
+        at_rest = "proportional set size, idle"
         rows = [
-            Figure("`serve` to ready", ready, "s", 3.0, detail="by the clock"),
+            Figure("`serve` until ready", ready, "s", 3.0, detail="wall time"),
             Figure("its memory, all processes", memory, "MB", 500.0, detail=at_rest),
         ]
         evaluations, alone = evaluating(server, folder)
@@ -65,7 +65,7 @@ def figures() -> list[Figure]:
 
 
 def evaluating(server: Server, folder: Path) -> tuple[list[Figure], float]:
-    """Measure `evaluate` against a bare endpoint with the same body and answer, and that endpoint [s]."""
+    """Measure `evaluate` and a bare endpoint with the same body and answer [s]."""
     with httpx.Client(base_url=server.url, trust_env=False) as http:
         answers = {name: http.post(EVALUATE, json=asked).json() for name, asked in QUESTIONS.items()}
     file, rows, least = folder / "answers.json", [], np.inf
@@ -81,7 +81,7 @@ def evaluating(server: Server, folder: Path) -> tuple[list[Figure], float]:
                     others.append(other)
             ratio = median(np.divide(own, others).tolist())
             detail = (
-                f"processor time over the bare one's, {1e6 * median(own):.0f} µs; median of {ROUNDS} turns"
+                f"processor time over the bare endpoint, {1e6 * median(own):.0f} µs; median of {ROUNDS} turns"
             )
             rows.append(
                 Figure(f"`evaluate`, {name}, against bare FastAPI", ratio, "times", aim, detail=detail)
@@ -108,17 +108,17 @@ def changes(server: Server, alone: float) -> list[Figure]:
             runs = [pool.submit(clients, action, server.url, f"{name} {n}") for n in range(PROCESSES)]
             delays = [delay for run in runs for delay in run.result()]
             spent, clock = (used(server.pid) - before) / len(delays), time.perf_counter() - begin
-            rate = f"{len(delays) / clock:.0f} a second beside the clients"
+            rate = f"{len(delays) / clock:.0f} per second while the clients also run"
             rows.append(Figure(f"accepted {name}, {CLIENTS} clients", 1e3 * spent, "ms", 1.0, detail=rate))
             slow = 1e3 * quantiles(delays, n=100)[98]
-            rows.append(Figure("their 99th percentile", slow, "ms", 50.0, detail="by the clock"))
-    against = "processor time over the bare endpoint of one output"
+            rows.append(Figure("their 99th percentile", slow, "ms", 50.0, detail="wall time"))
+    against = "processor time relative to the bare endpoint of one output"
     rows.append(Figure("PATCH against bare FastAPI", spent / alone, "times", 12.0, detail=against))
     return rows
 
 
 def clients(action: Callable[[str, str, float], list[float]], url: str, name: str) -> list[float]:
-    """Return the delays of several clients, in threads of this process [s]."""
+    """Return the response times of several clients in threads of this process [s]."""
     number = CLIENTS // PROCESSES
     with ThreadPoolExecutor(number) as pool:
         runs = [pool.submit(action, url, f"{name} {n}", SECONDS) for n in range(number)]
@@ -126,7 +126,7 @@ def clients(action: Callable[[str, str, float], list[float]], url: str, name: st
 
 
 def create(url: str, name: str, seconds: float) -> list[float]:
-    """Create designs for some time; return the delay of each [s]."""
+    """Create designs for some time; return the response time of each [s]."""
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
 
         def once(number: int) -> None:
@@ -137,7 +137,7 @@ def create(url: str, name: str, seconds: float) -> list[float]:
 
 
 def change(url: str, name: str, seconds: float) -> list[float]:
-    """Change one design for some time; return the delay of each accepted change [s]."""
+    """Change one design for some time; return the response time of each accepted change [s]."""
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
         design = http.post(DESIGNS, json={"name": name, "parameters": {"a": "0"}}).raise_for_status().json()
 
@@ -150,7 +150,7 @@ def change(url: str, name: str, seconds: float) -> list[float]:
 
 
 def delays(action: Callable[[int], None], seconds: float) -> list[float]:
-    """Do something again and again; return how long each time took [s]."""
+    """Repeat an action for some time; return the time of each repetition [s]."""
     taken = []
     end = time.monotonic() + seconds
     for number in count(1):
@@ -163,7 +163,7 @@ def delays(action: Callable[[int], None], seconds: float) -> list[float]:
 
 
 def regenerations(server: Server, folder: Path) -> list[Figure]:
-    """Measure PATCH → new STEP against the model's own build and export: processor time of all processes."""
+    """Measure PATCH → new STEP relative to the model's build and export, in processor time."""
     ratios, ours, alone = [], [], []
     with httpx.Client(
         base_url=server.url, trust_env=False, timeout=90, headers={"Prefer": "wait=60"}
@@ -186,12 +186,12 @@ def regenerations(server: Server, folder: Path) -> list[Figure]:
                 ours.append(1e3 * spent)
                 alone.append(1e3 * own)
                 ratios.append(spent / own)
-    detail = f"{median(ours):.0f} ms of {median(alone):.0f} ms; median of {ROUNDS} turns"
+    detail = f"{median(ours):.0f} ms and {median(alone):.0f} ms; median of {ROUNDS} turns"
     return [Figure("PATCH → new STEP, against build and export", median(ratios), "times", 4.3, detail=detail)]
 
 
 def build(inner_diameter: float, file: Path) -> None:
-    """Build the same ball bearing [mm] by the model's own `build()`, and export it by CadQuery."""
+    """Build the same ball bearing [mm] by the model's `build()`, and export it by CadQuery."""
     model = models().get("ball_bearing", 1).from_quantities({"inner_diameter": f"{inner_diameter!r} mm"})
     assembly = cq.Assembly(name="ball_bearing")
     for part in model.build():
@@ -206,7 +206,7 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
     result.inputs.clear()  # the echo is what was sent
-    forms = {
+    forms: dict[str, tuple[Callable[[], bytes], float | None]] = {
         "JSON": (lambda: to_json(json_values.evaluation(result)), None),
         NPY: (lambda: npy(result), 10.0),
     }
@@ -216,16 +216,16 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
             1e3 * processor_seconds(write),
             "ms",
             aim,
-            detail=f"{len(write()) / 1e6:.1f} MB; writing alone",
+            detail=f"{len(write()) / 1e6:.1f} MB; only writing",
         )
         for name, (write, aim) in forms.items()
     ]
 
 
 def pages(server: Server, folder: Path) -> list[Figure]:
-    """Return the page of a design of 60 steps, again and after a change, and its report.
+    """Return the cost of the page of a design with 60 steps, repeated and after a change, and of its report.
 
-    Time of all processes.
+    The cost is the processor time of all processes.
     """
     step = {"template": "oil_film", "version": 1}
     steps = {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from cad.drafting.letter_width import width_of
 from cad.drafting.parameter_match import Dimension
-from cad.tolerances import Limits
+from cad.tolerances import deviations, number_of
 
 SMALL = 0.7  # deviations are of so many times the height of the number
 _LED = ("circle", "arc", "aligned")
@@ -69,18 +69,3 @@ def read_stack(mtext: str) -> tuple[str, str, str]:
     """Return the words of a dimension in DXF, without its deviations; and these."""
     match = _STACK.fullmatch(mtext)
     return (match[1].rstrip() + match[4], match[2], match[3]) if match else (mtext, "", "")
-
-
-def deviations(limits: Limits) -> tuple[str, str]:
-    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
-    texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
-    digits = max(1, *(len(text.partition(".")[2]) for text in texts))
-    if limits.upper == -limits.lower:
-        return f"±{limits.upper:.{digits}f}", ""
-    upper, lower = (f"{end:+.{digits}f}" if end else "0" for end in (limits.upper, limits.lower))
-    return upper, lower
-
-
-def number_of(value: float, digits: int) -> str:
-    """Return a number with at most this many decimals."""
-    return f"{value:.{digits}f}".rstrip("0").rstrip(".")

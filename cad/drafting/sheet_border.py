@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from cad.drafting.formats import COLUMN, EDGE, LEFT
 from cad.drafting.frames import Frame
-from cad.drafting.labels import deviations, number_of
 from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.page import APP, Page
 from cad.drafting.parameter_match import size_of
@@ -24,7 +23,7 @@ from cad.drafting.title import (
 )
 from cad.header import Header
 from cad.stamp import MARK
-from cad.tolerances import Limits, limits_of
+from cad.tolerances import Limits, deviations, limits_of, number_of
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0

@@ -1,8 +1,8 @@
-"""Parsed units and grammars, cached beside Python's bytecode.
+"""Cache parsed units and grammars next to Python's bytecode.
 
 Python keeps the bytecode of a module in `__pycache__`, or below `sys.pycache_prefix`. Parsed definitions are
 cached there too. Each cache file records its source and program versions, and is replaced if they differ.
-Where Python may not write bytecode, nothing is cached, and each start parses the definitions.
+If Python may not write bytecode, nothing is cached and each start parses the definitions again.
 """
 
 from __future__ import annotations
@@ -24,45 +24,42 @@ _UNREADABLE = (
     OSError, EOFError, ImportError, AttributeError, LookupError, TypeError, ValueError,
     pickle.UnpicklingError,
 )  # fmt: skip
-"""What reading of pickles may raise that are damaged, or that others have written."""
+"""Errors that reading may raise for damaged pickles, or for those of other programs."""
 
 
 def place(name: str) -> Path:
-    """Return the path under which an object of this name is stored."""
+    """Return the path at which an object of this name is cached."""
     return Path(cache_from_source(__file__)).parent / name
 
 
 def may_write() -> bool:
-    """Return whether Python would write bytecode there."""
+    """Return whether Python would write bytecode to this folder."""
     return not sys.dont_write_bytecode and os.access(place(""), os.W_OK)
 
 
 def file(name: str) -> str | bool:
-    """Return the file for Lark's `cache`, which validates its content.
-
-    The result is False if no file is possible.
-    """
+    """Return the path of Lark's cache file, or False if none can be used; Lark validates its content."""
     kept = place(name)
     return str(kept) if may_write() or kept.is_file() else False
 
 
 def from_folder(name: str, make: Callable[[Path | None], T]) -> T:
-    """Create something with a folder of prepared parts; without one, if there is none.
+    """Create an object from a folder of prepared files, or without one if the folder cannot be written.
 
-    A folder is filled under another name and then renamed, so that it is always complete.
+    A folder is filled under a temporary name and then renamed, so that it is always complete.
 
     Parameters
     ----------
     name
-        Names the folder, with the versions of all packages on which its files depend.
+        The name of the folder, with the versions of all packages on which its files depend.
     make
-        Makes it from files of the folder that it is given, and writes those that are missing.
+        Creates the object from the files in the given folder, and writes those that are missing.
     """
     kept = place(name)
     if kept.is_dir():
         with suppress(*_UNREADABLE):
             return make(kept)
-        shutil.rmtree(kept, ignore_errors=True)  # the next start makes it again
+        shutil.rmtree(kept, ignore_errors=True)  # the next start creates it again
     elif may_write():
         with suppress(*_UNREADABLE), tempfile.TemporaryDirectory(dir=kept.parent, prefix=name) as folder:
             filled = Path(folder, "filled")

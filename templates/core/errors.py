@@ -21,17 +21,17 @@ from typing import Any
 from templates.core.nearest import nearest
 
 MOST_SUGGESTED = 10
-"""Unknown names of one request that get a suggestion; a thousand typing errors are not typing errors."""
+"""Most unknown names of one request that get a suggestion; a thousand of them are not typing errors."""
 
 MOST_LISTED = 100
-"""Names that one sentence lists."""
+"""Most names that one sentence lists."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that is wrong: which name, a code for programs, a sentence with its remedy for people.
+    """One fault: the name that it concerns, a code for programs, a sentence with a remedy for people.
 
-    `also` are other names that the sentence is about: changing one of them may help as well.
+    `also` are other names that the sentence mentions: changing one of them may also remove the fault.
     """
 
     name: str
@@ -41,17 +41,17 @@ class Fault:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return every name that the fault is about, its own first."""
+        """Return every name that the fault concerns, its own name first."""
         return (self.name, *self.also)
 
     def within(self, prefix: str) -> Fault:
-        """Return the same fault, seen from outside: `speed` becomes `film.speed`."""
+        """Return the same fault as seen from the enclosing design: `speed` becomes `film.speed`."""
         name, *also = (f"{prefix}.{name}" for name in self.names)
         return replace(self, name=name, also=tuple(also))
 
 
 class TemplateError(Exception):
-    """Anything that templates refuse; comes whole out of another process."""
+    """Base of all errors that templates raise; it pickles with all its attributes."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _remade, (type(self), self.args, vars(self))
@@ -64,7 +64,7 @@ def _remade(kind: type[TemplateError], args: tuple[Any, ...], state: dict[str, A
 
 
 class InvalidInputs(TemplateError):
-    """Wrong inputs, all of them at once."""
+    """All wrong inputs of a request, reported at once."""
 
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)
@@ -72,7 +72,7 @@ class InvalidInputs(TemplateError):
 
 
 class UnknownTemplate(TemplateError):
-    """No such template or version in the catalogue."""
+    """The catalogue contains no such template or version."""
 
     code = "unknown_name"
 
@@ -82,28 +82,28 @@ class UnknownTemplate(TemplateError):
 
 
 class QuarantinedTemplate(UnknownTemplate):
-    """The file of this version has faults, so that nothing is calculated by it."""
+    """The file of this version has faults, so the version cannot be used."""
 
     code = "quarantined"
 
 
 class UnreleasedTemplate(UnknownTemplate):
-    """The version is the draft of a worksheet: it can be tried, and nothing that is kept may use it."""
+    """The version is a draft worksheet: users can try it, but saved work cannot use it."""
 
     code = "unreleased"
 
 
 class UnusableFile(TemplateError):
-    """A file of the catalogue that cannot be imported, or does not declare what its name promises."""
+    """A file of the catalogue cannot be imported, or does not declare what its name states."""
 
     def __init__(self, path: str, reason: str) -> None:
         super().__init__(f"{path}: {reason}")
 
 
 class Unreachable(TemplateError):
-    """The target lies outside what can be reached between the bounds, or within a jump of the formula.
+    """The output cannot reach the target between the bounds, or only jumps across it.
 
-    `reachable` is the range [unit] of the output between the bounds; NaN if it has no value there at all.
+    `reachable` is the range [unit] of the output between the bounds; NaN if it has no value there.
     """
 
     def __init__(self, name: str, detail: str, reachable: tuple[float, float], unit: str) -> None:
@@ -112,7 +112,7 @@ class Unreachable(TemplateError):
 
 
 class FaultyText(TemplateError):
-    """A text that is not a quantity, unit or relation; `code` says in which way."""
+    """A text that is not a quantity, unit or relation; `code` names the kind of fault."""
 
     def __init__(self, code: str, detail: str) -> None:
         self.code = code
@@ -124,7 +124,7 @@ class FaultyText(TemplateError):
 
 
 def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
-    """Return a fault for a name that is not declared, with the nearest declared name."""
+    """Return a fault for an undeclared name, with the nearest declared name."""
     near = nearest(name, candidates := list(candidates))
     if (whole := name.replace("radial_clearance", "diametral_clearance")) != name and whole in candidates:
         remedy = f"give {whole}, which is twice the radial clearance"
@@ -134,7 +134,7 @@ def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
 
 
 def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) -> list[Fault]:
-    """Return a fault for each name that is not declared, the first of them with the nearest declared ones."""
+    """Return a fault for each undeclared name; the first one suggests the nearest declared names."""
     if not (unknown := list(names)):
         return []
     declared, each = list(candidates), iter(unknown)
@@ -143,7 +143,7 @@ def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) ->
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the names as a list in a sentence, limited in length."""
+    """Return names as a list for a sentence, limited in length."""
     more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
     return ", ".join(names[:MOST_LISTED]) + more
 
@@ -153,9 +153,9 @@ _brief.maxlevel, _brief.maxlist, _brief.maxdict, _brief.maxstring, _brief.maxoth
 
 
 def excerpt(raw: Any) -> str:
-    """Return anything that was sent, in a few ASCII characters.
+    """Return a short ASCII excerpt of any received value.
 
-    Short however long or deep it is, fit for JSON.
+    It is short however long or deep the value is, and valid in JSON.
     """
     if isinstance(raw, int) and raw.bit_length() > 200:
         return "a number of more than 60 digits"
@@ -165,6 +165,6 @@ def excerpt(raw: Any) -> str:
 def plain(name: str, most: int = 80) -> str:
     """Return a received name, shortened and valid in JSON.
 
-    Lone surrogates are escaped, other letters kept.
+    Lone surrogates are escaped, other characters are unchanged.
     """
     return name[:most].encode("utf-8", "backslashreplace").decode("utf-8")

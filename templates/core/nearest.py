@@ -1,4 +1,4 @@
-"""The declared names nearest to an unknown one, at a bounded cost whatever the names are."""
+"""Find the declared names nearest to an unknown name, at a bounded cost for any names."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ MOST_COMPARED, SHORTLIST, LONGEST_NAME = 1000, 10, 80
 
 
 def nearest(name: str, declared: Iterable[str]) -> list[str]:
-    """Return at most three names that are close to `name`, the closest first.
+    """Return at most three names similar to `name`, the most similar first.
 
-    `difflib` takes the square of the length, so it sees only the names that share most letters with this one.
+    The cost of `difflib` grows with the square of the length, so it compares only the names that share most
+    letters with this one.
     """
     letters = Counter(name[:LONGEST_NAME])
     compared = islice(declared, MOST_COMPARED)
@@ -23,5 +24,5 @@ def nearest(name: str, declared: Iterable[str]) -> list[str]:
 
 
 def _shared(letters: Counter[str], other: str) -> float:
-    """Return the share of letters that two names have in common, in any order."""
+    """Return the fraction of letters that two names have in common, in any order."""
     return 2 * (letters & Counter(other)).total() / max(1, letters.total() + len(other))

@@ -1,4 +1,4 @@
-"""Report the progress of a long calculation or a job; the caller may set a listener from outside."""
+"""Report the progress of a long calculation or a job; the caller may install a reporter."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(fraction: float, text: str) -> None:
-    """Report the completed fraction (0 to 1) of the work, and the next action."""
+    """Report the completed fraction (0 to 1) of the work, and a text on the next action."""
     reporter = _reporter.get()
     if reporter is not None:
         reporter(fraction, text)
@@ -20,7 +20,7 @@ def report(fraction: float, text: str) -> None:
 
 @contextmanager
 def reporting(reporter: Reporter | None) -> Iterator[None]:
-    """Send reports to this reporter within the context."""
+    """Send progress to this reporter within the context."""
     token = _reporter.set(reporter)
     try:
         yield
@@ -30,7 +30,7 @@ def reporting(reporter: Reporter | None) -> Iterator[None]:
 
 @contextmanager
 def part_of_progress(number: int, count: int) -> Iterator[None]:
-    """Let `report` within the context speak of one part of `count` equal ones, counted from 0."""
+    """Scale `report` within the context to one of `count` equal parts, counted from 0."""
     whole = _reporter.get()
     if whole is None or count == 1:
         yield

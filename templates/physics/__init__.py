@@ -1,1 +1,1 @@
-"""Published formulas as pure functions: SI or dimensionless arrays in and out."""
+"""Published formulas as pure functions that take and return arrays, in SI units or dimensionless."""

@@ -181,7 +181,7 @@ def test_curves_that_are_too_many_for_a_design_are_refused(http):
     }
     answer = http.post(f"{API}/designs", json={"name": "fine", "parameters": {}, "steps": {"load": fine}})
     assert answer.status_code == 422
-    assert "more than the 100000" in answer.json()["detail"]
+    assert "one place of a design may have at most 100000" in answer.json()["detail"]
     named = {**fine, "outputs": ["crankpin_load_max", "main_load_x"]}
     assert created(http, {"name": "fine", "parameters": {}, "steps": {"load": named}})["state"] == "current"
 

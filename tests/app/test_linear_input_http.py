@@ -1,4 +1,4 @@
-"""The request that froze the service for ever, and its relatives: each is answered, and by a refusal."""
+"""The request that froze the service, and similar ones, are answered by a refusal."""
 
 import http.client
 import socket
@@ -112,7 +112,7 @@ class TestDepth:
         assert [link["kind"] for link in links] == ["relation"] * DEEPEST + ["deeper"]
         assert links[-1]["value"]["value"] == pytest.approx(0.011)
         page = http.get(f"/designs/{design}/explain/size", timeout=HANG)
-        assert "follows from more links than are shown" in page.text
+        assert "depends on more values than are shown" in page.text
 
     def test_a_hundred_steps_of_one_long_name_have_a_sheet_each(self, http):
         double = {"template": "double", "inputs": {"length": {"value": [1, 2], "unit": "mm"}}}

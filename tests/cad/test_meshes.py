@@ -1,4 +1,4 @@
-"""STL and GLB: closed, no degenerate triangles, as close to the surface as asked for, with named nodes."""
+"""STL and GLB: closed, no degenerate triangles, within the requested deflection, with named nodes."""
 
 import json
 import struct
@@ -9,9 +9,9 @@ import pytest
 from slow_models import DRAWN, quick_for
 
 from cad.catalogue import models
-from cad.deflection import COARSEST, FINEST, STEPS, deflection_of, plain_kind, with_deflection
 from cad.errors import GeometryError
 from cad.export import derive, is_derived
+from cad.file_kinds import COARSEST, FINEST, STEPS, deflection_of, plain_kind, with_deflection
 from cad.inspect import measure
 from cad.mesh import closed_mesh, is_closed, mesh
 from cad.step import read_step

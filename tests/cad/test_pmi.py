@@ -1,4 +1,4 @@
-"""PMI and properties in STEP files: what three readers find there, against the limits that were typed."""
+"""PMI and properties in STEP files, read by three readers and compared with the typed limits."""
 
 import hashlib
 import io
@@ -7,11 +7,13 @@ import subprocess
 import sys
 from collections import Counter
 from decimal import Decimal
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from bare_shells import HALF
+from cadquery import Shape
 from part21_reader import File
 from seeds import seeded
 from sizes_of import sizes_of
@@ -20,6 +22,8 @@ from undivided import TWO_THROWS
 from cad.catalogue import models
 from cad.errors import GeometryError
 from cad.inspect import measure
+from cad.pmi import FORM_SIGNS, SIGNS
+from cad.pmi_presentation import strokes
 from cad.regenerate import as_text, build_key, regenerate_class
 from cad.statements import UNITS, compared, read_statements
 from cad.step import read_step
@@ -313,7 +317,32 @@ def test_open_cascade_reads_its_limits_datum_material_and_volume(fitted):
         (48.0, 0.0, 0.025), (2.4, 0.005, 0.005), (24.0, 0.1, 0.0),
     ]  # fmt: skip
     assert [d.GetName().ToCString() for d in read(datums, XCAFDoc_Datum)] == ["A"]
+    lines = [Shape.cast(d.GetPresentation()) for d in read(dimensions, XCAFDoc_Dimension)]
+    box = read_step(fitted.step)[0].shape.BoundingBox()
+    rows = []
+    for line in lines:  # letters beside the box of the solid, and a leader to it
+        boxes = [edge.BoundingBox() for edge in line.Edges()]
+        beside = [one for one in boxes if one.xmin > box.xmax]
+        assert len(beside) > 10
+        assert any(one.xmin <= box.xmax for one in boxes)
+        rows.append((min(one.zmin for one in beside), max(one.zmax for one in beside)))
+    assert all(below[1] < above[0] for below, above in pairwise(sorted(rows)))
     assert materials.Length() == 1
+
+
+def test_every_letter_of_an_annotation_has_strokes():
+    signs = {*SIGNS.values(), *FORM_SIGNS.values(), *"0123456789.+-±/ABC"}
+    assert all(strokes(letter) for sign in signs for letter in sign)
+    assert all(0 <= x <= 4 and 0 <= y <= 6 for letter in signs for s in strokes(letter[0]) for x, y in s)
+
+
+def test_annotations_are_drawn_once_each_and_name_their_text(fitted):
+    text = fitted.step.decode("latin-1")
+    assert re.findall(r"DRAUGHTING_CALLOUT\('([^']*)'", text)[:3] == [
+        "diameter 48 +0.025/0", "2.4 +/-0.005", "24 0/-0.1",
+    ]  # fmt: skip
+    assert text.count("= TESSELLATED_ANNOTATION_OCCURRENCE(") == text.count("= DRAUGHTING_CALLOUT(")
+    assert "COLOUR('white')" not in text
 
 
 def test_properties_are_those_of_the_solid(fitted):

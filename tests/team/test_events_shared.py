@@ -1,4 +1,4 @@
-"""Events between servers of one PostgreSQL: all of them, in order, whatever connections are lost."""
+"""Events between servers of one PostgreSQL: all of them, in order, even if connections are lost."""
 
 import asyncio
 import json
@@ -209,7 +209,7 @@ def test_hints_that_reach_no_database_are_logged_and_end_nothing(caplog):
     notices.send(["queue:regenerate"])
     notices.stop()
     notices._send()  # in this thread, until it meets the end
-    assert "hints to other servers are lost; they will look" in caplog.text
+    assert "hints to other servers are lost; they will poll the database" in caplog.text
 
 
 def test_many_hints_arrive_though_one_notification_has_no_room_for_them(own_postgres):

@@ -1,1 +1,1 @@
-"""Routes of calculations."""
+"""Routes that evaluate and solve single templates, and read curves."""

@@ -1,4 +1,4 @@
-"""`/curves`: a CSV file, as the inputs of templates take it."""
+"""`/curves`: convert the columns of a table file to curves that inputs of templates accept."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ BODY = {
 async def read_curve_table(request: Request) -> Curves:
     """Return the curves of a table, such as an indicator diagram: `{"curves": {"pressure": {"value", …}}}`.
 
-    The body is the file itself, CSV or XLSX: names, units beside or below them, a row for each point. Several
-    cycles are averaged; time and TDC pulses are converted to crank angles. `assumed` lists the assumptions.
-    Each curve can be used in `inputs` under the required name. Nothing is stored.
+    The body is the file itself, CSV or XLSX: names, units beside or below them, and a row for each point.
+    Several cycles are averaged; time and TDC pulses are converted to crank angles. `assumed` lists the
+    assumptions. Each curve can be used in `inputs` under the name of an input. Nothing is stored.
     """
     kind, _, extra = request.headers.get("content-type", "").lower().partition(";")
     charset = extra.partition("charset=")[2].strip(' "') or "utf-8"

@@ -1,7 +1,7 @@
 """`/templates/{id}/versions/{n}/evaluate`, `…/solve` and `…/worksheet`.
 
-A cheap calculation runs here, in the event loop or a thread. An expensive calculation, or a large body, goes
-to a calculation process.
+A cheap calculation runs in the server, in its event loop or a thread. An expensive calculation, or one with a
+large body, goes to a calculation process.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
-FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
+FEW = 100  # points and names evaluated in the event loop if all levels are quick; a thread would cost more
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
 DECLARED = {**LATER, **refusals(404, 429)}
@@ -45,9 +45,9 @@ Prefer = Annotated[
 
 
 class LargeRoute(PlainRoute):
-    """A route with a template, its version and a body, which hands a large body on without parsing it.
+    """A route with a template, its version and a body; it passes a large body on without parsing it.
 
-    To parse 16 MB holds the interpreter, and with it the server, for a second.
+    Parsing 16 MB would hold the interpreter lock, and so block the server, for a second.
     """
 
     async def admit(self, request: StrictRequest) -> None:
@@ -56,7 +56,7 @@ class LargeRoute(PlainRoute):
             await _admit(request)
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
-        """Return the answer to a large body."""
+        """Return the response to a request with a large body."""
         parts = await request.parts()
         if sum(map(len, parts)) <= LARGE or (system := _system(request)) is None or not _is_plain(request):
             return None
@@ -76,7 +76,7 @@ async def _admit(request: Request) -> None:
     services = services_of(request)
     await services.catalogues.tried(*_template(request))
     client = await get_client(request)
-    if _patience(request) > 0:  # else a job waits for its turn
+    if _patience(request) > 0:  # otherwise a job waits in the queue
         services.calculations.admit(client)
 
 
@@ -93,7 +93,7 @@ def _patience(request: Request) -> float:
 
 
 def _is_plain(request: Request) -> bool:
-    """Return whether the path names a template and a version in the usual form."""
+    """Return whether a path names its template and version in the usual form."""
     id, number = request.path_params["id"], request.path_params["number"]
     return len(id) <= LONGEST_ID and PLAIN_NUMBER.fullmatch(number) is not None
 
@@ -104,7 +104,7 @@ def _template(request: Request) -> tuple[str, int]:
 
 
 def _system(request: Request) -> System | None:
-    """Return the requested system of units; None if the word names none."""
+    """Return the system of units that a request names; None if there is no such system."""
     return SYSTEMS.get(request.query_params.get("units"))
 
 
@@ -124,7 +124,10 @@ async def evaluate_template(
     body: EvaluateIn,
     prefer: Prefer = None,
 ) -> Response:
-    """Evaluate a template: inputs in any unit, scalars or arrays; only the requested outputs are computed."""
+    """Evaluate a template with inputs in any unit, scalars or arrays.
+
+    Only the requested outputs are computed.
+    """
     services = services_of(request)
     cls = await services.catalogues.tried(id, number)
     form = _form(request, "evaluate")
@@ -176,7 +179,7 @@ async def write_worksheet(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
+    """Evaluate a template and write every formula out: symbol = expression = numbers = result."""
     services = services_of(request)
     cls = await services.catalogues.tried(id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
@@ -193,7 +196,7 @@ async def _question(
 
 
 def _form(request: Request, operation: str) -> Form:
-    """Return the requested format: an array if the client lists it before JSON."""
+    """Return the requested format: an array if the Accept header prefers it to JSON."""
     first = request.headers.get("accept", "").partition(",")[0].partition(";")[0].strip()
     return "npy" if first == NPY and "npy" in OPERATIONS[operation].write else "json"
 

@@ -1,4 +1,4 @@
-"""`/evaluations/{job}`: the answer of a calculation that went on as a job."""
+"""`/evaluations/{job}`: the answer to a calculation that continued as a job."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute
 
 
 class FilmPressureIn(Bounded):
-    """A journal at rest in its film."""
+    """The inputs of a journal that runs steadily in its film."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", json_schema_extra={"examples": [{"inputs": TYPICAL}]}
@@ -26,7 +26,7 @@ class FilmPressureIn(Bounded):
 
     inputs: dict[str, Given] = Field(
         max_length=20,
-        description="one value each, as in `evaluate`",
+        description="inputs as in `evaluate`, each with a single value",
         json_schema_extra={
             "properties": dict.fromkeys(TYPICAL, GIVEN),
             "required": list(TYPICAL),
@@ -37,6 +37,9 @@ class FilmPressureIn(Bounded):
 
 @router.post("/film-pressure", dependencies=[needs("viewer")])
 async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmPressure:
-    """Return the pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
+    """Return the pressure [position along the shaft][angle from the narrowest gap].
+
+    Angles increase in the sense of rotation.
+    """
     field = await run_in_threadpool(solve_film_pressure, body.inputs)
     return field.in_units(units)

@@ -56,7 +56,10 @@ async def evaluate_line(
     level: Annotated[str | None, Query(max_length=64)] = None,
     tolerance: Annotated[float | None, Query(gt=0, lt=1)] = None,
 ) -> Response:
-    """Evaluate a template with the query as inputs: return a row of names, one of units, then the numbers."""
+    """Evaluate a template with inputs from the query, and return CSV.
+
+    The CSV has a row of names, a row of units, then the numbers.
+    """
     cls, inputs = catalogues.templates.get(id, number), _inputs(request)
     names = [name.strip() for name in outputs.split(",") if name.strip()] if outputs else None
     run = partial(csv_of, source_of(cls), inputs, names, level, tolerance)
@@ -69,9 +72,9 @@ async def evaluate_line(
 
 
 def _inputs(request: Request) -> dict[str, Raw]:
-    """Return the inputs as texts.
+    """Return the inputs in the query as texts.
 
-    A repeated name is an array; a reserved name is refused.
+    A repeated name becomes an array; a reserved name is refused.
     """
     given: dict[str, list[str]] = {}
     for name, text in request.query_params.multi_items():

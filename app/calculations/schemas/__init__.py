@@ -1,1 +1,1 @@
-"""Answers of the interface about curves, evaluations and fields of pressure."""
+"""Response schemas for curves, evaluations and pressure fields."""

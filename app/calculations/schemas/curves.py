@@ -1,4 +1,4 @@
-"""Curves read from a table of comma-separated values."""
+"""Schema of curves that were read from a table file."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from app.schemas.answers import Answer, Values
 
 
 class Curves(Answer):
-    """The columns of a table, each a quantity that an input can take."""
+    """The columns of a table, each as a quantity that an input accepts."""
 
-    curves: dict[str, Values] = Field(description="by the name of the column")
+    curves: dict[str, Values] = Field(description="curves by the name of their column")
     assumed: list[str] = Field(
         [],
-        description="what was assumed: the decimal mark, the letters of the file, cycles that were averaged",
+        description="assumptions made: decimal mark, encoding of the file, averaging of cycles",
     )

@@ -13,60 +13,60 @@ from app.schemas.criteria import Criterion, Verdict
 
 
 class CalculatedBy(Version):
-    """The version that calculated, with the digest of its code."""
+    """The template version that calculated a result, with the digest of its code."""
 
-    digest: str | None = Field(None, description="SHA-256 of the code; absent where nothing calculated")
+    digest: str | None = Field(None, description="SHA-256 of the code; absent if nothing was calculated")
 
 
 class UsedInput(Answer):
-    """An input as it was used."""
+    """An input as the calculation used it."""
 
     model_config = ConfigDict(populate_by_name=True)
 
     value: Value
     unit: str | None = None
     source: Literal["given", "default"] = Field(alias="from")
-    plus: JsonValue = Field(None, description="tolerance upwards, if one was given")
-    minus: JsonValue = Field(None, description="tolerance downwards, if one was given")
-    upper: JsonValue = Field(None, description="upper deviation of a tolerance that lies on one side")
-    lower: JsonValue = Field(None, description="lower deviation of a tolerance that lies on one side")
-    zone: str | None = Field(None, description="zone of ISO 286 from which the limits come")
-    distribution: str | None = Field(None, description="between the limits, if one was given")
+    plus: JsonValue = Field(None, description="upper tolerance, if given")
+    minus: JsonValue = Field(None, description="lower tolerance, if given")
+    upper: JsonValue = Field(None, description="upper deviation of a one-sided tolerance")
+    lower: JsonValue = Field(None, description="lower deviation of a one-sided tolerance")
+    zone: str | None = Field(None, description="ISO 286 tolerance zone that defines the limits")
+    distribution: str | None = Field(None, description="distribution between the limits, if given")
 
 
 class Output(Measured):
-    """An output; null where there is none, with the reason."""
+    """An output; its value is null if it is missing, and `reason` says why."""
 
     value: Value
-    unit: str | None = Field(None, description="absent for a text")
+    unit: str | None = Field(None, description="unit; absent if the output is a text")
     reason: str | None = Field(None, description="why there is no value")
     reasons: list[JsonValue] | None = Field(
-        None, description="of an array: the reason at each point, or null"
+        None, description="for an array: why each point has no value; null where it has one"
     )
 
 
 class Assumption(Answer):
-    """Something that an answer takes for granted and that makes a part look safer."""
+    """An assumption of a calculation that makes a part look safer than it may be."""
 
-    name: str = Field(description="the input whose default stands, or the criterion; empty for the model")
+    name: str = Field(description="the input whose default is used, or the criterion; empty for the model")
     detail: str
 
 
 ERROR: JsonDict = {
-    "description": "estimated relative error of each point; of a curve, relative to its largest absolute "
-    "value; null where none is stated",
+    "description": "estimated relative error of each point; for a curve, relative to its largest absolute "
+    "value; null if unknown",
     "anyOf": [{"type": "number"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Error = Annotated[object, WithJsonSchema(ERROR)]
 LEVEL: JsonDict = {
-    "description": "the level of fidelity; an array where each point has its own",
+    "description": "the level of fidelity; an array if points have different levels",
     "anyOf": [{"type": "string"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Level = Annotated[object, WithJsonSchema(LEVEL)]
 
 
 class Results(Answer):
-    """Inputs as they were used, and the outputs that follow."""
+    """The inputs as the calculation used them, and the resulting outputs."""
 
     template: CalculatedBy
     inputs: dict[str, UsedInput]
@@ -74,48 +74,48 @@ class Results(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
-    assumed: list[Assumption] = Field([], description="defaults that make a part look safer, and stand")
+    assumed: list[Assumption] = Field([], description="default values in use that make a part look safer")
     criteria: list[Criterion] | None = Field(
-        None, description="worst first; absent where the template has none whose outputs are wanted"
+        None, description="criteria, worst first; absent if the template has none for the requested outputs"
     )
-    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
+    verdict: Verdict | None = Field(None, description="verdict over all criteria; absent if there are none")
 
 
 class Evaluation(Results):
     """The answer to `evaluate`."""
 
-    seconds: float = Field(description="time that the evaluation took, in s")
+    seconds: float = Field(description="elapsed time of the evaluation [s]")
 
 
 class Root(Quantity):
-    """A value of the unknown that gives the target."""
+    """A value of the unknown at which the output reaches its target."""
 
-    slope: Literal[-1, 0, 1] = Field(description="sign of the output's slope; 0: flat, or it only touches")
-    level: str | None = Field(description="the level at which it was calculated")
-    error: float | None = Field(
-        description="estimated relative error of the output; null where none is stated"
+    slope: Literal[-1, 0, 1] = Field(
+        description="sign of the output's slope; 0 where it is flat or only touches the target"
     )
-    confirmed: bool = Field(description="false: a solution at the level of the curve only")
+    level: str | None = Field(description="the level of fidelity at which it was calculated")
+    error: float | None = Field(description="estimated relative error of the output; null if unknown")
+    confirmed: bool = Field(description="false if only the level of the curve found this solution")
 
 
 class Jump(Quantity):
     """A value of the unknown at which the output jumps across the target."""
 
-    before: Quantity = Field(description="the output just below")
-    after: Quantity = Field(description="the output just above")
+    before: Quantity = Field(description="the output just below this value")
+    after: Quantity = Field(description="the output just above this value")
 
     def in_units(self, system: System) -> Self:
-        """Return the root, with both sides of the equation, in a system of units."""
+        """Return the jump, with the output on both sides, in a system of units."""
         sides = {"before": self.before.in_units(system), "after": self.after.in_units(system)}
         return super().in_units(system).model_copy(update=sides)
 
 
 class TracedCurve(Answer):
-    """The output over the unknown, between the bounds, at one level."""
+    """The output as a function of the unknown between its bounds, at one level of fidelity."""
 
     x: Values = Field(
-        description="the unknown, ascending; even steps, in the logarithm where the bounds span a decade; of "
-        "a level that takes few points, the solutions and a value to both sides of each"
+        description="the unknown, ascending, in even steps, or logarithmic if the bounds span a decade; "
+        "an expensive level has only the solutions and one value on each side of each solution"
     )
     y: Shown = Field(description="the output; null where it has no value")
     reasons: list[str | None] = Field(description="why there is no value; null where there is one")
@@ -129,18 +129,18 @@ class Solution(Answer):
     warnings: list[Warning]
     roots: list[Root] = Field([], description="every crossing of the target within the bounds, ascending")
     touching: list[Root] = Field([], description="extrema that just reach the target, ascending")
-    jumps: list[Jump] = Field([], description="where the output jumps across the target")
+    jumps: list[Jump] = Field([], description="values at which the output jumps across the target")
     curve: TracedCurve | None = Field(
         None, description="the curve that was searched; absent in answers of earlier program versions"
     )
     finer: list[TracedCurve] = Field(
         [], description="the curve of each finer level at which solutions were confirmed"
     )
-    evaluation: Evaluation = Field(description="at `unknown`")
+    evaluation: Evaluation = Field(description="evaluation at `unknown`")
 
 
 class FormulaMathML(Answer):
-    """The parts of a formula in MathML; empty where there is none."""
+    """The parts of a formula in MathML; a missing part is an empty text."""
 
     lead: str = Field(description="symbol = expression")
     numbers: str = Field(description="= the expression with numbers")
@@ -154,7 +154,7 @@ class WorkedFormula(Answer):
     words: str
     symbol: str
     expression: str
-    numbers: str = Field(description="empty where an array has no single value")
+    numbers: str = Field(description="expression with numbers; empty for an array, which has no single value")
     result: str
     source: str | None
     mathml: FormulaMathML

@@ -6,7 +6,7 @@ from app.schemas.answers import Answer, Measured, Quantity, Values
 
 
 class Field(Measured):
-    """Numbers over the unrolled surface: [place along the shaft][angle]."""
+    """Numbers over the unrolled surface: [position along the shaft][angle]."""
 
     value: list[list[float]]
     unit: str

@@ -1,1 +1,1 @@
-"""Routes of catalogue."""
+"""Routes of the catalogue: templates, the library, and faults of files."""

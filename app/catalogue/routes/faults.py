@@ -17,7 +17,7 @@ router = APIRouter(prefix="/api/v1/catalogue", tags=["templates"], route_class=S
 
 @router.get("/faults")
 def list_catalogue_faults(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> FaultList:
-    """Return every file of a team's folders that has faults; quarantined files are not used."""
+    """Return every file with faults in a team's folders; quarantined files are not used."""
     faulty = [file for file in catalogues.snapshot.files if file.faults]
     return page_of(FaultList, faulty, limit, cursor, _shown)
 

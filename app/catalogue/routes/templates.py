@@ -80,7 +80,7 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy
     cls = catalogues.templates.get(id, number)
     measured = accuracy(cls)
     if measured is None:
-        raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
+        raise UnknownTemplate(id, f"the error of {id} version {number} has not been measured")
     return Accuracy.model_validate(measured.content)
 
 
@@ -109,7 +109,7 @@ Marks = Mapping[Key, Mapping[str, SheetMark]]
 
 
 def marks(catalogues: Catalogues) -> Marks:
-    """Return the worksheet-related part of the answer about each template."""
+    """Return, for each version that is a worksheet, its state, author and reviewer."""
     return {
         key: {
             "worksheet": SheetMark(

@@ -1,1 +1,1 @@
-"""Answers of the interface about templates, tables of the library and faults of files."""
+"""Response schemas for templates, tables of the library and faults of files."""

@@ -1,4 +1,4 @@
-"""The declarations of inputs, parameters and outputs of a template or model, read from its JSON Schemas."""
+"""Inputs, parameters and outputs of a template or model, read from its JSON Schemas."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from app.catalogue.schemas.templates import Schema
 
 
 class DeclaredValue(BaseModel):
-    """One input, parameter or output; the schema says more, which the pages do not use."""
+    """One input, parameter or output; only the parts of its schema that pages use."""
 
     title: str
     symbol: str | None = None
     unit: str | None = None
-    along: str | None = None  # of a curve: the name of its axis
+    along: str | None = None  # for a curve: the name of its axis
     enum: tuple[str, ...] = ()
-    library: str | None = None  # of a limit: the table of the library whose rows may be named
-    filled_by: str | None = Field(None, alias="from")  # of a limit: the table whose rows have a value for it
+    library: str | None = None  # for a limit: the library table whose rows may be named
+    filled_by: str | None = Field(None, alias="from")  # for a limit: the table whose rows have a value for it
     default: JsonValue = None
     default_formula: str | None = None
     examples: list[JsonValue] = []
-    anyOf: list[dict[str, JsonValue]] = []  # the forms in which it may be given
+    anyOf: list[dict[str, JsonValue]] = []  # the accepted forms of the value
 
     @property
     def has_default(self) -> bool:
-        """Return whether an empty field means the default value."""
+        """Return whether the schema has a default, which an empty field stands for."""
         return "default" in self.model_fields_set
 
     @cached_property
     def is_list(self) -> bool:
-        """Return whether the value is a list or a curve, by its forms or its example."""
+        """Return whether the value is a list or a curve, judged by its accepted forms or its example."""
         has_list = any(_holds_list(example) for example in self.examples)
         return has_list or (bool(self.anyOf) and all(_is_list(form) for form in self.anyOf))
 
@@ -42,7 +42,7 @@ def _holds_list(example: JsonValue) -> bool:
 
 
 def _is_list(form: dict[str, JsonValue]) -> bool:
-    """Return whether one form of a value is a list, or a quantity with a list."""
+    """Return whether one accepted form of a value is a list, or a quantity with a list."""
     match form:
         case {"type": "array"} | {"properties": {"value": {"type": "array"}}}:
             return True
@@ -54,7 +54,7 @@ _NAMES = TypeAdapter(frozenset[str])
 
 
 class _Same:
-    """A schema, equal to itself alone: to compare or digest its text would cost as much as to read it."""
+    """A schema that compares by identity, because hashing its content would cost as much as reading it."""
 
     __slots__ = ("schema",)
 
@@ -69,7 +69,7 @@ class _Same:
 
 
 def properties(schema: Schema) -> Mapping[str, DeclaredValue]:
-    """Return the declarations in a schema, by name, in order; cached while steps share the schema."""
+    """Return the declarations in a schema by name, in order; the result is cached for each schema object."""
     return _read(_Same(schema))
 
 
@@ -79,5 +79,5 @@ def _read(same: _Same) -> Mapping[str, DeclaredValue]:
 
 
 def required(schema: Schema) -> frozenset[str]:
-    """Return the names that the schema requires."""
+    """Return the names of the required values in a schema."""
     return _NAMES.validate_python(schema["required"])

@@ -10,23 +10,25 @@ from app.schemas.answers import Answer, Page
 class FileFault(Answer):
     """One fault of a file."""
 
-    code: str = Field(description="`syntax`, `dimensions`, `cycle`, `example`, … : one word for programs")
-    line: int | None = Field(description="the line of the file; null where the fault has none")
+    code: str = Field(
+        description="machine-readable kind of fault: `syntax`, `dimensions`, `cycle`, `example`, …"
+    )
+    line: int | None = Field(description="line in the file; null if the fault has no line")
     what: str = Field(description="what is wrong")
-    remedy: str = Field(description="what would be right")
-    quarantines: bool = Field(description="false: it is reported, and the version is used all the same")
+    remedy: str = Field(description="how to correct it")
+    quarantines: bool = Field(description="false if the fault is only reported and the version stays usable")
 
 
 class FaultyFile(Answer):
-    """A file of a team's folder with everything that is wrong with it."""
+    """A file of a team's folder, with all its faults."""
 
-    file: str = Field(description="the file within its folder, the name of the folder first")
-    id: str | None = Field(description="from the file's name; null where that is not a name of a version")
+    file: str = Field(description="name of the folder and path of the file in it")
+    id: str | None = Field(description="id from the file's name; null if the name is not that of a version")
     version: int | None
     quarantined: bool = Field(description="whether the version cannot be used")
-    digest: str = Field(description="SHA-256 of the file and of those beside it that belong to it")
+    digest: str = Field(description="SHA-256 of the file and its accompanying files")
     faults: list[FileFault]
 
 
 class FaultList(Page[FaultyFile]):
-    """Files with faults, in the order of the folders and of their names."""
+    """A page of files with faults, sorted by folder and name."""

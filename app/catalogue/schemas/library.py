@@ -1,4 +1,4 @@
-"""The library as the interface describes it: tables of materials, oils and finishes, each value cited."""
+"""Response schemas for the library: tables of materials, oils and finishes, with cited values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.schemas.answers import Answer, Measured, Page
 
 
 class CitedQuantity(Measured):
-    """One number with its unit, and where it comes from."""
+    """One number with its unit and its source."""
 
     value: float
     unit: str
@@ -16,31 +16,31 @@ class CitedQuantity(Measured):
 
 
 class LibraryColumn(Answer):
-    """A quantity that the rows of a table give."""
+    """A quantity that the rows of a table contain."""
 
     name: str
     unit: str
     words: str
-    fills: list[str] = Field(description="inputs of templates that may take the value")
+    fills: list[str] = Field(description="inputs of templates that accept this value")
 
 
 class LibraryRow(Answer):
     """One material, oil or finish."""
 
-    id: str = Field(description='what a request names: `"limits": {"bearing_material": "tin_bronze"}`')
+    id: str = Field(description='id to use in a request: `"limits": {"bearing_material": "tin_bronze"}`')
     words: str
-    values: dict[str, CitedQuantity] = Field(description="by the name of the column; absent where no source")
+    values: dict[str, CitedQuantity] = Field(description="values by column; absent without a source")
     source: str
     note: str | None = None
 
 
 class LibraryTableSummary(Answer):
-    """One table in the list."""
+    """A table of the library as a list item."""
 
     id: str
     title: str
     words: str
-    limits: bool = Field(description="whether a row may be named among the `limits` of a calculation")
+    limits: bool = Field(description="whether `limits` of a calculation may name a row")
     rows: int
 
 
@@ -54,6 +54,6 @@ class LibraryTable(Answer):
     id: str
     title: str
     words: str
-    limits: bool = Field(description="whether a row may be named among the `limits` of a calculation")
+    limits: bool = Field(description="whether `limits` of a calculation may name a row")
     columns: list[LibraryColumn]
     rows: list[LibraryRow]

@@ -9,20 +9,20 @@ from pydantic import ConfigDict, Field, JsonValue
 from app.schemas.answers import Answer, Page
 
 Schema = dict[str, JsonValue]
-"""A JSON Schema. It holds units, symbols and bounds beside each property."""
+"""A JSON Schema; each property also has its unit, symbol and bounds."""
 
 
 class SheetMark(Answer):
-    """The mark of a template that is a worksheet: who wrote it, and who reviewed it."""
+    """The state, author and reviewer of a template that is a worksheet."""
 
     state: Literal["released", "withdrawn"]
     author: str | None
     reviewer: str | None
-    review_verified: bool = Field(description="false: a typed name, which nobody proved")
+    review_verified: bool = Field(description="false if the reviewer's name was only typed, not verified")
 
 
 class TemplateSummary(Answer):
-    """One version in a list."""
+    """One version as a list item."""
 
     id: str
     version: int
@@ -30,14 +30,17 @@ class TemplateSummary(Answer):
     summary: str
     status: Literal["released", "withdrawn"]
     latest: bool
-    worksheet: SheetMark | None = Field(None, description="absent for a template from a file")
+    worksheet: SheetMark | None = Field(
+        None, description="author and reviewer; absent unless it is a worksheet"
+    )
 
 
 class TemplateList(Page[TemplateSummary]):
     """Versions of templates or models."""
 
     notes: list[str] = Field(
-        [], description="on names in a search: other definitions, and the factor between"
+        [],
+        description="notes on searched names that are defined differently here, with the conversion factor",
     )
 
 
@@ -48,49 +51,51 @@ class TemplateVersions(TemplateList):
 
 
 class Formula(Answer):
-    """One formula, in words and on paper."""
+    """One formula as text, LaTeX and MathML."""
 
-    name: str = Field(description="the output that it gives")
+    name: str = Field(description="the output that the formula computes")
     text: str
     latex: str
     mathml: str
     source: str | None = Field(description="where the formula comes from")
-    uses: list[str] = Field(description="the inputs and outputs that it follows from")
+    uses: list[str] = Field(description="the inputs and outputs that the formula uses")
 
 
 class Limit(Answer):
-    """Where a value is refused, or carries a warning."""
+    """A limit of validity: a value outside it is refused or causes a warning."""
 
     text: str
-    name: str | None = Field(None, description="the value; absent for a limit of the whole template")
+    name: str | None = Field(None, description="the limited value; absent for a limit of the whole template")
     kind: Literal["refused_unless", "warned_unless"] | None = None
     source: str | None = None
 
 
 class DeclaredLimit(Answer):
-    """A limit of a criterion that its user gives, in `limits` beside `inputs`."""
+    """A limit of a criterion that the user may set in `limits`, next to `inputs`."""
 
     name: str
     unit: str
     words: str
-    library: str | None = Field(description="the table of the library whose rows have a value for it")
-    default: str | None = Field(description="what it is where nobody gives it, such as `min(speed_range)`")
+    library: str | None = Field(description="the library table whose rows have a value for this limit")
+    default: str | None = Field(
+        description="default if the request gives no value, such as `min(speed_range)`"
+    )
 
 
 class DeclaredCriterion(Answer):
-    """A criterion that every evaluation is held against."""
+    """A criterion that every evaluation is checked against."""
 
     name: str
     words: str
     require: str = Field(description="the comparison, such as `film >= 3 um`")
-    source: str | None = Field(description="of the limit, or of the rule")
-    unverified: str | None = Field(description="why the limit is not sure")
-    warning: str | None = Field(description="the code of the warning where the value misses the limit")
+    source: str | None = Field(description="source of the limit or of the rule")
+    unverified: str | None = Field(description="why the limit is uncertain")
+    warning: str | None = Field(description="code of the warning given when the criterion is not met")
     limits: list[DeclaredLimit]
 
 
 class Description(Answer):
-    """The inputs and outputs of a version, with its sources."""
+    """The inputs, outputs and sources of a version."""
 
     id: str
     version: int
@@ -107,8 +112,10 @@ class Description(Answer):
     criteria: list[DeclaredCriterion]
     references: list[str]
     errata: list[str]
-    example: dict[str, JsonValue] = Field(description="inputs that can be sent as they are")
-    given_limits: Schema = Field({}, description="JSON Schema of the object `limits`, which criteria take")
+    example: dict[str, JsonValue] = Field(description="example inputs that can be sent unchanged")
+    given_limits: Schema = Field(
+        {}, description="JSON Schema of the object `limits`, the user's limits for criteria"
+    )
 
 
 class Template(Description):
@@ -116,7 +123,9 @@ class Template(Description):
 
     inputs: Schema = Field(description="JSON Schema of the object `inputs`")
     latest: bool
-    worksheet: SheetMark | None = Field(None, description="absent for a template from a file")
+    worksheet: SheetMark | None = Field(
+        None, description="author and reviewer; absent unless it is a worksheet"
+    )
 
 
 class Axis(Answer):
@@ -126,20 +135,22 @@ class Axis(Answer):
 
     attribute: str
     name: str | None = Field(None, description="the input or output along the axis")
-    values: list[float] = Field(description="the ends of the cells")
+    values: list[float] = Field(description="boundaries of the cells along the axis")
 
 
 class Accuracy(Answer):
-    """Measured cost and error of every level; what else a measurement says depends on the template."""
+    """Measured cost and error of every level; the template determines any further fields."""
 
     model_config = ConfigDict(extra="allow")
 
     made_by: str | None = Field(None, description="the command that measured it")
-    truth: str | None = Field(None, description="with which solution the levels are compared")
-    truths: dict[str, str] = Field({}, description="the solutions that the levels name as their `truth`")
-    error: str | None = Field(None, description="what the errors are; of a profile: over its largest value")
-    cost: str | None = Field(None, description="what the costs are")
-    axes: list[Axis] = Field([], description="none where one cell covers the whole plane")
+    truth: str | None = Field(None, description="the solution with which the levels are compared")
+    truths: dict[str, str] = Field({}, description="the reference solutions that levels name in `truth`")
+    error: str | None = Field(
+        None, description="definition of the errors; for a profile, relative to its largest value"
+    )
+    cost: str | None = Field(None, description="definition of the costs")
+    axes: list[Axis] = Field([], description="axes of the plane; empty if one cell covers all of it")
     levels: dict[str, JsonValue] = Field(
-        description="cost, and by output `errors` by cell and the name of the `truth`"
+        description="for each level, its cost and for each output the `errors` by cell and the `truth` used"
     )

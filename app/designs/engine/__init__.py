@@ -1,4 +1,4 @@
-"""The engine calculates a design in any number of rows, judges it, shifts it by its errors, and decides it.
+"""The engine: calculates a design for any number of rows, judges it, propagates its errors, and decides it.
 
-A design is a function of rows. A single design is one row without varied values.
+A row is one set of values for the varied inputs. A single design is one row without varied values.
 """

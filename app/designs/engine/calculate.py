@@ -41,11 +41,11 @@ def calculate(
     assumed: Mapping[Reference, float] | None = None,
     broken: Iterable[Cell] = (),
 ) -> Calculation:
-    """Calculate all nodes in order.
+    """Return the calculation of all nodes, in dependency order.
 
-    `measured` returns the measurements of a model, or None if it is not built; `analysed` returns its
-    finite-element results; `assumed` are the SI values with which iterations continue; `broken` are faulty
-    cells.
+    `measured` returns the measurements of a model, or None if the model is not built. `analysed` returns the
+    finite-element results of a model. `assumed` holds the SI values of the current iteration round. `broken`
+    holds cells that are known to be faulty.
     """
     result = Calculation(graph, assumed or {}, broken=set(broken))
     calculate_nodes(result, graph.order, measured, analysed)
@@ -56,7 +56,7 @@ def calculate(
 
 
 def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
-    """Return a calculation without faults, continued: only pending values are calculated."""
+    """Return a calculation without faults, continued: only its pending values are calculated."""
     result = _copy(before)
     result.pending, result.deferred, result.faults = set(), set(), []
     result.shapes, result.measures = dict(before.shapes), dict(before.measures)
@@ -67,14 +67,14 @@ def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calcu
 
 
 def constants(calculation: Calculation) -> Calculation:
-    """Calculate the needed values that all rows share."""
+    """Calculate the needed values that all rows share, and return the calculation."""
     nodes = (node for node in calculation.graph.order if node not in calculation.moving)
     calculate_nodes(calculation, nodes, _unmeasured, _unmeasured)
     return calculation
 
 
 def rows(shared: Calculation, count: int, given: Mapping[Reference, Array]) -> Calculation:
-    """Calculate some rows, starting from the shared values."""
+    """Return the calculation of some rows, starting from the values that all rows share."""
     result = _copy(shared)
     result.count, result.given = count, given
     result.faults, result.broken = list(shared.faults), set(shared.broken)
@@ -90,10 +90,10 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """Recalculate with given outputs of steps [SI]; solids do not change.
+    """Return the calculation repeated with given step outputs [SI]; solids do not change.
 
-    Steps are calculated at the `levels` given by their names, so that no other level changes the result.
-    Steps in `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
+    Each step is calculated at its level in `levels`, so that no other level changes the result. Steps in
+    `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
     """
     result = _copy(before)
     result.changed, result.levels = changed, levels
@@ -115,7 +115,7 @@ def recalculated(
 
 
 def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -> None:
-    """Evaluate a step again, possibly for other outputs than those of the design."""
+    """Recalculate a step, possibly for other outputs than those that the design requests."""
     asked = block if outputs is None else replace(block, outputs=outputs)
     _block(result, asked)
     if asked in result.pending:
@@ -127,7 +127,7 @@ def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -
 def following(
     calculation: Calculation, changed: Collection[Reference], again: Collection[str] = ()
 ) -> list[Cell | Block]:
-    """Return the cells and steps that depend on some outputs, or on steps in `again`, in order."""
+    """Return, in order, the cells and steps that depend on the changed outputs or on the steps in `again`."""
     moved = dict[Node, None]()
     nodes = list[Cell | Block]()
     for node in calculation.graph.order:
@@ -149,7 +149,7 @@ def _is_disjoint(cell: Cell, changed: Collection[Reference]) -> bool:
 
 
 def _copy(before: Calculation) -> Calculation:
-    """Return a copy of the calculation to be continued; it shares the data of solids."""
+    """Return a copy of the calculation to continue; it shares the data of solids with the original."""
     return replace(
         before,
         values=dict(before.values),
@@ -162,13 +162,13 @@ def _copy(before: Calculation) -> Calculation:
 
 
 def _unmeasured(*_: object) -> None:
-    """Return no measurement, because rows build no solids."""
+    """Return None for every measurement, because rows build no solids."""
 
 
 def calculate_nodes(
     result: Calculation, nodes: Iterable[Node], measured: Measured, analysed: Analysed
 ) -> None:
-    """Calculate some nodes; earlier nodes are already calculated."""
+    """Calculate some nodes in order; nodes on which they depend are already calculated."""
     for node in nodes:
         if node in result.broken or not _is_needed(result, node):
             continue
@@ -184,7 +184,7 @@ def calculate_nodes(
 
 
 def _is_needed(result: Calculation, node: Node) -> bool:
-    """Return whether a node is needed; for rows, only assumed values of solids are known."""
+    """Return whether the requested values depend on a node; always true if everything is requested."""
     if (needs := result.needs) is None:
         return True
     return (
@@ -195,7 +195,7 @@ def _is_needed(result: Calculation, node: Node) -> bool:
 
 
 def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[Fault]:
-    """Return the faults of a value that needs a model with an unset parameter."""
+    """Return a fault if a value needs a model that has unset parameters."""
     models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
     unset = [f"{model}.{n}" for model in sorted(models) for n in result.missing.get(model, ())]
     return (
@@ -206,7 +206,7 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """Calculate a cell once its sources have values; a faulty literal is reported by its block."""
+    """Calculate a cell if its sources have values; its block reports a literal that cannot be read."""
     sources = result.graph.sources[cell]
     if cell.reference in result.given:
         column = Column(result.given[cell.reference], is_row=True)
@@ -230,25 +230,25 @@ def _cell(result: Calculation, cell: Cell) -> None:
 
 
 def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
-    """Return whether a cell uses a pending value; for rows, an unknown measure."""
+    """Return whether a cell uses a pending value or, in a calculation of rows, an unknown measurement."""
     if not result.pending.isdisjoint(sources):
         return True
     return result.needs is not None and not result.needs.waiting.isdisjoint(cell.uses.values())
 
 
 def literal(cell: Cell) -> TypedQuantity:
-    """Return a quantity as typed.
+    """Return the typed quantity of a cell.
 
     Raises
     ------
     FaultyText
-        If it is not a quantity.
+        If the text is not a quantity.
     """
     return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Calculate the value of relations; inside a block it has the declared unit."""
+    """Calculate the value of a cell from its relations; inside a block it gets the declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -258,7 +258,10 @@ def _related(result: Calculation, cell: Cell) -> None:
 
 
 def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
-    """Count the operations of relations with arrays; single values are few because the text is limited."""
+    """Add the operations of a cell's relations on arrays to the total, and refuse too many.
+
+    Relations between single values are not counted, because the limited text keeps them few.
+    """
     if any(column.rank for column in uses.values()):
         limit_values(count := spanned(column.places for column in uses.values()))
         result.operations += count * sum(relation.parts for relation in cell.relations)
@@ -266,10 +269,10 @@ def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
 
 
 def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
-    """Return the value of a relation in the form that the template of its block needs."""
+    """Return the value of a relation in the form that the template of its block accepts."""
     si = column.value
     if cell.declared is None:
-        return TypedQuantity(None, "", si, {})  # it is used in SI only
+        return TypedQuantity(None, "", si, {})  # a parameter of the design is used in SI only
     scale = cell.declared.meaning.scale
     block = result.graph.blocks.get(cell.reference.block)
     is_of_model = block is not None and block.is_model
@@ -278,7 +281,7 @@ def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:
-    """Return the value of a relation, or of a list that mixes relations and quantities."""
+    """Return the value of a relation, or of a list that contains relations."""
     if not isinstance(cell.raw, list):
         return related(cell.relations[0], uses)
     items = [_item(cell, item, uses) for item in cell.raw]
@@ -298,12 +301,12 @@ def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
 def _admitted(
     result: Calculation, cell: Cell, column: Column, uses: Mapping[str, Column], why: str
 ) -> Column:
-    """Return a column with NaN in the rows without a finite value, and refuse these rows.
+    """Return a column with NaN in the rows that have no finite value, and refuse these rows.
 
     Raises
     ------
     FaultyText
-        With code `not_finite`, if one value for all rows is not finite.
+        With code `not_finite`, if the column has one value for all rows and it is not finite.
     """
     if not column.is_row:
         if not np.all(np.isfinite(column.value)):
@@ -321,7 +324,7 @@ def _admitted(
 def _wrong_indices(
     cell: Cell, uses: Mapping[str, Column], rows: Iterable[int]
 ) -> Iterator[tuple[int, Refusal]]:
-    """Yield the rows in which a relation has no value because an index is outside its array."""
+    """Yield the rows in which a relation uses an index outside its array, each with its refusal."""
     for relation in cell.relations:
         for row in rows if relation.items and uses else ():
             if error := wrong_index(relation, uses, row):
@@ -333,7 +336,7 @@ def _refuse(result: Calculation, refusals: Mapping[int, Refusal]) -> None:
 
 
 def _block(result: Calculation, block: Block) -> None:
-    """Evaluate a step or check a model's parameters, as far as possible while a cell is pending."""
+    """Evaluate a step, or check the parameters of a model; while a cell is pending, check what is known."""
     cells = block.cells
     waiting = {n for n, cell in cells.items() if cell in result.pending} if result.pending else set()
     broken, typed, values = result.broken, result.typed, result.values
@@ -358,7 +361,7 @@ def _block(result: Calculation, block: Block) -> None:
 
 
 def _given(result: Calculation, cell: Cell) -> Column | Raw:
-    """Return the value of a cell for a step: a column if it differs from row to row."""
+    """Return the value of a cell as an input of a step: a column if it differs from row to row."""
     column = result.values.get(cell.name)
     if column is not None and column.is_row:
         return column
@@ -366,7 +369,7 @@ def _given(result: Calculation, cell: Cell) -> Column | Raw:
 
 
 def _rows_of(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or a model's own formulas, for all rows that have inputs."""
+    """Evaluate a step, or a model's own formulas, for all rows that have their inputs."""
     for states in (result.pending, result.broken):
         if not states.isdisjoint(block.cells.values()):
             states.add(block)
@@ -382,7 +385,7 @@ def _rows_of(result: Calculation, block: Block) -> None:
 
 
 def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: set[str]) -> list[Fault]:
-    """Evaluate a step or create a model's shape; check what can be checked while inputs are pending."""
+    """Evaluate a step or create a model's shape, and return the faults; pending inputs are not checked."""
     try:
         if waiting:
             block.cls.from_quantities(raw, pending=waiting)
@@ -405,12 +408,12 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: se
 
 
 def _outputs(result: Calculation, block: Block) -> tuple[str, ...] | None:
-    """Return the outputs of a step to compute; None for all."""
+    """Return the outputs that a step must compute; None for all."""
     return result.graph.computed(block) if result.needs is None else result.needs.outputs(block)
 
 
 def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None) -> None:
-    """Evaluate a step; check a deferred step as far as possible without formulas."""
+    """Evaluate a step; if it is deferred, only check its inputs."""
     try:
         evaluation = _prepared(result, block) or _evaluation(result, block, raw, wanted)
     except StepDeferred:
@@ -429,7 +432,7 @@ def _evaluation(
 ) -> Evaluation:
     """Return the evaluation of a step.
 
-    At the level of the design it may be cached; at a level for rows it is computed here.
+    The evaluation is taken from the cache where possible, except at a level chosen for rows.
     """
     if result.levels is None:
         return memory.evaluation(block, raw, wanted)
@@ -440,7 +443,7 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that was prepared for this calculation, or None."""
+    """Return the evaluation of a step that another calculation has prepared, or None."""
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:
         raise StepDeferred
@@ -472,7 +475,7 @@ def _solid(result: Calculation, model: Block, measured: Measured) -> None:
 
 
 def _analysis(result: Calculation, node: SolidAnalysis, model: Block, kind: str, analysed: Analysed) -> None:
-    """Use the results of an analysis that a relation needs; it waits for its solid, and then for its job."""
+    """Add the results of an analysis that relations use, or mark the analysis as pending."""
     wanted = result.graph.wanted(model.name, kind)
     if not wanted:
         return

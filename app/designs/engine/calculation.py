@@ -1,4 +1,4 @@
-"""The values of a design in some rows, as far as they are known, and the faults of the design."""
+"""The values of a design for some rows, as far as they are known, and the faults of the design."""
 
 from __future__ import annotations
 
@@ -26,61 +26,61 @@ from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity
 from templates.core.units.units import Value, unit
 
-Measures = Mapping[str, float]  # in the units of MEASURES
+Measures = Mapping[str, float]  # measurements of a solid, in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
-NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
+NOT_MEASURED = "the stored build lacks this measurement; change the design to rebuild it"
 DEFERRED: Literal["deferred"] = "deferred"
 DocumentCalculation = Evaluation | Literal["deferred"]
-"""The evaluation of a step that is shared with other designs, or that nobody waited for it."""
+"""The evaluation of a step that is shared with other designs, or a mark that the step is deferred."""
 
 
 @dataclass
 class Calculation:
-    """The values [SI] of a design in `count` rows; a design of its own is one row, of which nothing varies.
+    """The values [SI] of a design for `count` rows; a single design is one row without varied values.
 
     Attributes
     ----------
     assumed
-        Measures of solids [SI] that are known before: those with which iterations begin a round among them.
+        Measurements of solids [SI] that are known in advance, including the values assumed by iterations.
     needs
-        What is calculated; everything, if None.
+        The nodes to calculate; all, if None.
     moving
-        The nodes that differ from row to row.
+        The nodes whose values differ from row to row.
     levels
-        By step, the level that rows ask for; None where the levels and tolerances of the design count.
+        The level of each step in a calculation of rows; None if levels and tolerances of the design apply.
     started
-        By step, the level at which its first rows started, where none was asked for.
+        The level at which the first rows of each step started, for steps without a requested level.
     given
-        The columns of places that rows give.
+        The values of varied places, as columns.
     changed
-        Outputs of steps that have other values than those that are calculated.
+        Outputs of steps whose calculated values are replaced by these.
     values
-        Of cells, by their names.
+        The values of cells, by cell name.
     typed
-        Cells that are one for all rows, as the templates take them.
+        The cells that are equal in all rows, in the form that templates accept.
     prepared
-        Evaluations of steps still to come, taken when they do.
+        Evaluations made in advance for steps that are not calculated yet.
     evaluations, steps
-        Of steps that are one for all rows, and of those that differ from row to row.
+        The results of steps that are equal in all rows, and of steps that differ from row to row.
     shapes, measures
-        Of models whose parameters are all known, and of those that are built.
+        The models whose parameters are all known, and the measurements of the models that are built.
     analyses
-        By model and kind: outputs of analyses that are used and known.
+        The known outputs of analyses that relations use, by model and kind.
     missing
-        Parameters of models that are not set.
+        The unset parameters of models.
     pending
-        What waits for a solid, or for a deferred step.
+        The nodes that depend on an unfinished solid or a deferred step.
     deferred
-        Expensive steps that nobody waited for.
+        Expensive steps for which the caller does not wait.
     broken
-        What follows from a fault.
+        The faulty nodes, and the nodes that depend on them.
     faults
-        Those that concern all rows.
+        The faults that concern all rows.
     refusals
-        By row, the first reason why it has no value somewhere.
+        For each refused row, the first reason why a value is missing.
     operations
-        On single values, of the relations of one row so far.
+        The number of operations on single values that relations have needed so far for one row.
     """
 
     graph: Graph
@@ -114,7 +114,7 @@ class Calculation:
         return refusal_of(self.faults) if self.faults else None
 
     def value(self, reference: Reference) -> Value:
-        """Return the value [SI] of a name in a design of one row, once its node is calculated.
+        """Return the value [SI] of a name in a design of one row; its node must be calculated already.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Calculation:
         return self.used(reference).value
 
     def used(self, reference: Reference) -> Column:
-        """Return the value of a name as relations use it; raises like `value`."""
+        """Return the value of a name as relations use it; raise the same errors as `value`."""
         if reference in self.changed:
             return self.changed[reference]
         if cell := self.graph.cell(reference):
@@ -154,7 +154,7 @@ class Calculation:
             return Column(np.nan)
 
     def taken(self, reference: Reference) -> Column:
-        """Return the value of a parameter that the model uses; NaN if it has none."""
+        """Return the value that a model uses for a parameter; NaN if it has none."""
         if reference.block in self.steps:
             return self.steps[reference.block].column(reference.member)
         shape = self.shapes.get(reference.block)
@@ -163,7 +163,7 @@ class Calculation:
         return Column(getattr(shape, shape.inputs[reference.member].attribute))
 
     def step(self, name: str) -> StepRows | None:
-        """Return a step, or a model whose values are requested, as rows; None while it is pending."""
+        """Return the rows of a step, or of a model whose values are requested; None while pending."""
         if name in self.steps:
             return self.steps[name]
         evaluation = self.evaluations.get(name)
@@ -178,7 +178,7 @@ class Calculation:
         return {}
 
     def is_output(self, reference: Reference) -> bool:
-        """Return whether a name is an output of a step that the step calculates, and so may be off."""
+        """Return whether a name is a calculated output of a step, which may therefore have an error."""
         block = self.graph.blocks.get(reference.block)
         if block is None or block.is_model or reference in self.given or self.graph.cell(reference):
             return False
@@ -193,8 +193,8 @@ class Calculation:
         Raises
         ------
         FaultyText
-            With code `no_value`, if an analysis has a reason instead of a value, or a build lacks the
-            measurement.
+            With code `no_value`, if the analysis gives a reason instead of a value, or the build has no
+            such measurement.
         """
         scale = unit(measured_unit(reference))
         if reference.analysis is None:
@@ -209,7 +209,7 @@ class Calculation:
         return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
-        """Return the calculated outputs of an analysis that are used; empty while it is pending."""
+        """Return the known outputs of an analysis that relations use; empty while the analysis is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
     def _computed(self, reference: Reference, kind: str) -> object:
@@ -219,12 +219,14 @@ class Calculation:
         return result["value"]
 
     def instance(self, block: str) -> Template:
-        """Return the template of a step, or the model, with its values; for rows, that of the first row.
+        """Return the template of a step, or the model, with its values.
+
+        If the rows were evaluated in several parts, it is the template of the first part.
 
         Raises
         ------
         KeyError
-            If there is none, because it is pending or refused.
+            If there is none, because the block is pending or refused.
         """
         if block in self.steps:
             parts = self.steps[block].parts
@@ -234,7 +236,7 @@ class Calculation:
         return self.evaluations[block].template if block in self.evaluations else self.shapes[block]
 
     def waiting(self) -> list[SolidAnalysis]:
-        """Return the analyses that are waited for, of models that are built."""
+        """Return the pending analyses whose models are already built."""
         return [
             node
             for node in self.graph.order

@@ -1,8 +1,8 @@
-"""Values of many rows of a design, with their error bounds.
+"""Columns: values of a design for many rows, with their error bounds.
 
-Rows run along the first axis, places along a curve along the last. A value that is equal for all rows has no
-row axis. So each column states whether its first axis counts rows, and 360 rows are not mistaken for a curve
-of 360 places.
+Rows run along the first axis, and the points of a curve along the last. A value that is equal in all rows has
+no row axis. Each column therefore states whether its first axis counts rows, so that 360 rows are not
+mistaken for a curve of 360 points.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Column:
     Attributes
     ----------
     value
-        A number or an array. If `is_row`, its first axis is the row. Further axes are those of the value
-        itself, such as the places along a curve.
+        A number or an array. If `is_row`, its first axis is the row. Further axes belong to the value
+        itself, such as the points of a curve.
     """
 
     value: Value
@@ -47,38 +47,38 @@ class Column:
         return np.shape(self.value)[int(self.is_row) :]
 
     def of(self, rows: Indices | slice) -> Column:
-        """Return the column of some of the rows."""
+        """Return the column restricted to some rows."""
         return Column(self.value[rows], is_row=True) if self.is_row else self  # type: ignore[index]
 
     def padded(self, rank: int) -> Value:
-        """Return the value as an array that broadcasts with values of a larger rank."""
+        """Return the value as an array that broadcasts with arrays of a larger rank."""
         if not self.is_row or rank <= self.rank:
             return self.value
         value = np.asarray(self.value)
         return value.reshape(len(value), *(1,) * (rank - self.rank), *value.shape[1:])
 
     def spread(self, count: int) -> Array:
-        """Return the value in every row; a view if one value serves all rows."""
+        """Return the value for every row as an array; a view if all rows share one value."""
         value = np.asarray(self.value, dtype=float)
         if self.is_row:
             return value
         return value[None] if count == 1 else np.broadcast_to(value, (count, *value.shape))
 
     def finite_rows(self) -> Mask:
-        """Return a mask of the rows in which the value is finite at all places."""
+        """Return a mask of the rows in which the value is finite at all points."""
         finite: Mask = np.asarray(np.isfinite(self.value))
         whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
         return whole
 
     def unknown_rows(self, count: int) -> Mask:
-        """Return a mask of the rows in which the value is NaN at any place."""
+        """Return a mask of the rows in which the value is NaN at any point."""
         unknown = np.asarray(np.isnan(self.value))
         if not self.is_row:
             return np.full(count, unknown.any())
         return np.any(unknown, axis=tuple(range(1, unknown.ndim))) if unknown.ndim > 1 else unknown
 
     def without(self, refused: Mask) -> Column:
-        """Return the column with NaN in the rows that are refused."""
+        """Return the column with NaN in the refused rows."""
         if not refused.any():
             return self
         where = refused.reshape(-1, *(1,) * self.rank)
@@ -88,7 +88,7 @@ class Column:
 def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
     """Return values that broadcast row by row, and whether any of them has a row axis.
 
-    Axes within a row broadcast from the last one, as in a design without rows.
+    The other axes broadcast from the last one, as they do without rows.
     """
     rank = max((column.rank for column in columns.values()), default=0)
     values = {name: column.padded(rank) for name, column in columns.items()}
@@ -96,7 +96,7 @@ def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
 
 
 def stacked(items: Sequence[Column]) -> Column:
-    """Return a list of single values, some of which may differ from row to row, as one value of rank 1."""
+    """Return single values, some of which may differ from row to row, as one column of lists."""
     if not any(item.is_row for item in items):
         return Column(np.array([item.value for item in items], dtype=float))
     values = np.broadcast_arrays(*(item.value for item in items))
@@ -104,13 +104,13 @@ def stacked(items: Sequence[Column]) -> Column:
 
 
 UNEQUAL = (
-    "its curve has more places in some rows than in others, and rows of one table have curves of one length: "
+    "the length of its curve differs between rows, but all rows of a table need curves of one length: "
     "leave this output out, or vary something else"
 )
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column for this number of rows, assembled from columns of parts; NaN in other rows.
+    """Return one column for `count` rows, assembled from parts; rows outside all parts are NaN.
 
     Raises
     ------
@@ -130,14 +130,14 @@ def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Co
 
 @dataclass(frozen=True, slots=True)
 class RowEstimate:
-    """A value [SI] of every row and how far off it may be.
+    """The values [SI] of all rows and their errors.
 
     Attributes
     ----------
     one
-        The value and its error, which may have the row as their first axis.
+        The value and its error; the row may be their first axis.
     is_row, is_row_error, is_row_scale
-        Whether its value, its error, and that to which this is relative have this axis.
+        Whether the value, its error, and the scale of a relative error have a row axis.
     """
 
     one: Estimate
@@ -147,7 +147,7 @@ class RowEstimate:
 
     @classmethod
     def exact(cls, column: Column, axes: int = 0) -> RowEstimate:
-        """Return an exact value."""
+        """Return an estimate without error."""
         return cls(Estimate(column.value, axes=axes), column.is_row)
 
     @property
@@ -157,21 +157,21 @@ class RowEstimate:
 
     @property
     def error(self) -> Column:
-        """Return the relative error; 0 if exact, NaN if unknown."""
+        """Return the relative error; 0 for an exact value, NaN if unknown."""
         return Column(self.one.error, self.is_row_error)
 
     @property
     def has_rows(self) -> bool:
-        """Return whether any part of it differs from row to row."""
+        """Return whether the value or its error differs from row to row."""
         return self.is_row or self.is_row_error
 
     @property
     def rank(self) -> int:
-        """Return the number of axes of the value in a row, besides those of a curve."""
+        """Return the number of axes of the value in one row, not counting the axis of a curve."""
         return max(self.value.rank - self.one.axes, 0)
 
     def padded(self, rank: int) -> Estimate:
-        """Return an estimate whose arrays broadcast with those of a larger rank."""
+        """Return an estimate whose arrays broadcast with arrays of a larger rank."""
         if not (self.is_row or self.is_row_error or self.is_row_scale):
             return self.one
         one, value = self.one, self.value
@@ -181,7 +181,7 @@ class RowEstimate:
         return Estimate(value.padded(rank + one.axes), error, axes, scale)
 
     def bounds(self) -> tuple[Column, Column]:
-        """Return both ends of the band; the value itself if its error is unknown."""
+        """Return the lower and upper end of the error band; both equal the value if its error is unknown."""
         one = self.one
         error = np.nan_to_num(one.error, nan=0.0)
         scale = None if one.scale is None else np.nan_to_num(one.scale, nan=0.0)
@@ -190,9 +190,9 @@ class RowEstimate:
         return Column(low, self.has_rows), Column(high, self.has_rows)
 
     def missing(self, count: int) -> Mask:
-        """Return a mask of the rows that lack a value at some place."""
+        """Return a mask of the rows whose value is missing at any point."""
         return self.value.unknown_rows(count)
 
     def unknown(self, count: int) -> Mask:
-        """Return a mask of the rows whose error is unknown at some point."""
+        """Return a mask of the rows whose error is unknown at any point."""
         return self.error.unknown_rows(count)

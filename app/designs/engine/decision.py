@@ -1,8 +1,8 @@
-"""Decide criteria of a design: steps climb where a criterion is undecided, or its error unknown.
+"""Decide criteria of a design: raise the level of steps while a criterion is undecided or its error unknown.
 
-Each round calculates one step at its next level: the step that removes most of the error for its cost. It
-ends when all criteria are decided, when no level states a smaller error of the same truth, or when the budget
-is spent. Nothing is saved, and solids stay as they are.
+Each round calculates one step at its next level: the step that removes most of the error for its cost. The
+rounds end when all criteria are decided, when no level gives a smaller error against the same reference, or
+when the budget is spent. Nothing is saved, and solids stay as they are.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from templates.core.language.template import Template
 
 Stop = Literal["decided", "no_finer_level", "budget", "pending", "estimated"]
 STOPS: tuple[Stop, ...] = ("pending", "estimated", "budget", "no_finer_level", "decided")
-"""Most telling first, where several designs are decided together."""
+"""In order of priority, if several designs are decided together."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One step at one level: what it decided, what it took [s], and why it was of no use.
+    """One step at one level: which criteria it decided, its time [s], and the reason if it was of no use.
 
-    `expected` is the time that was estimated before [s]. `variant` is empty for the design itself.
+    `expected` is the estimated time [s]. `variant` is empty for the design itself.
     """
 
     step: str
@@ -51,9 +51,10 @@ class Trial:
 
 @dataclass(frozen=True)
 class ClimbResult:
-    """Criteria as far as they could be decided, worst first, and what that took.
+    """The criteria after refinement, worst first, with the levels that were tried and skipped.
 
-    `asked` are those of the `wanted` ones that a level might decide; all are wanted where it is None.
+    `wanted` names the requested criteria; None means all. `asked` names those of them that a level might
+    decide.
     """
 
     criteria: Sequence[Judgement]
@@ -70,14 +71,14 @@ class ClimbResult:
 
     @property
     def error_unknown(self) -> list[str]:
-        """Return the wanted criteria whose values still have an unknown error."""
+        """Return the requested criteria whose values still have an unknown error."""
         wanted = [j for j in self.criteria if self.wanted is None or j.name in self.wanted]
         return [j.name for j in wanted if j.is_open and j.verdict != "undecided"]
 
 
 @dataclass(frozen=True)
 class _Move:
-    """A step that could climb: to which level, from which error to which, and at what cost [s]."""
+    """A possible refinement of a step: its new level, the errors before and after, and its time [s]."""
 
     block: Block
     level: str
@@ -87,13 +88,13 @@ class _Move:
 
     @property
     def gain(self) -> float:
-        """Return the removed error divided by its cost."""
+        """Return the error removed per second."""
         return (min(self.before, 1e6) - min(self.after, 1e6)) / max(self.seconds, 1e-6)
 
 
 @dataclass
 class Climb:
-    """One design whose criteria are decided, or a variant of one; `budget` is in s."""
+    """Refines the levels of a design, or of one variant, to decide its criteria; `budget` is in s."""
 
     calculation: Calculation
     wanted: Collection[str] | None
@@ -104,7 +105,7 @@ class Climb:
     _tried: set[tuple[str, str]] = field(default_factory=set)
 
     def decide(self) -> ClimbResult:
-        """Refine levels until no step can improve a verdict."""
+        """Refine levels until no step can improve a verdict, and return the result."""
         start = time.monotonic()
         verdicts = Verdicts(self.calculation)
         judgements = {judgement.name: judgement for judgement in verdicts.all()}
@@ -120,7 +121,7 @@ class Climb:
         return replace(result, stopped="no_finer_level") if is_open else result
 
     def estimated(self) -> ClimbResult:
-        """Return the level that would be calculated first, as a trial that took no time; nothing is."""
+        """Return the level that would be calculated first, as a trial that is not carried out."""
         judgements = {judgement.name: judgement for judgement in Verdicts(self.calculation).all()}
         asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and self._is_asked(j))
         moves = list(self._moves(asked))
@@ -138,7 +139,7 @@ class Climb:
         return ClimbResult(ordered, self.wanted, asked, tuple(trials), skipped, stopped)
 
     def _is_asked(self, judgement: Judgement) -> bool:
-        """Return whether a criterion is undecided, or of an unknown error that a level would state."""
+        """Return whether a finer level could settle a criterion: it is undecided, or its error is unknown."""
         if judgement.verdict == "undecided":
             return True
         return judgement.is_open and next(self._moves([judgement.name]), None) is not None
@@ -147,7 +148,7 @@ class Climb:
         return self.wanted is None or name in self.wanted
 
     def _next(self, open_now: Sequence[str], left: float) -> Stop | None:
-        """Make the best move, or note why there is none."""
+        """Carry out the best refinement, or return why there is none."""
         if not open_now:
             return "decided"
         moves = [move for move in self._moves(open_now) if (move.block.name, move.level) not in self._tried]
@@ -162,7 +163,7 @@ class Climb:
         return self._climb(max(affordable, key=lambda move: move.gain), open_now)
 
     def _moves(self, open_now: Sequence[str]) -> Iterator[_Move]:
-        """Yield the next levels of each uncertain output of the open criteria, cheapest first."""
+        """Yield the possible refinements of each uncertain output that the open criteria use."""
         verdicts = Verdicts(self.calculation)
         for reference in sorted({r for name in open_now for r in verdicts.uncertain(name)}, key=str):
             block = self.calculation.graph.blocks[reference.block]
@@ -182,7 +183,7 @@ class Climb:
             yield _Move(block, finer.level, before, _largest(finer.error), seconds)
 
     def _note_levels(self, block: Block, reference: Reference) -> None:
-        """Note why levels are skipped: another truth, or an error that is not smaller or not stated."""
+        """Record why levels are skipped: their error has another reference, or is not smaller."""
         evaluation, measured = self.calculation.evaluations[block.name], accuracy(block.cls)
         if measured is None:
             return
@@ -192,7 +193,7 @@ class Climb:
             if level in useful or level == here or (block.name, level) in self._tried:
                 continue
             if measured.truth(level, output) != measured.truth(here, output):
-                reason = f"its error of {output} was measured against another truth"
+                reason = f"its error of {output} was measured against another reference"
             else:
                 reason = f"its stated error of {output} is not smaller"
             self._skip(block.name, level, reason)
@@ -203,7 +204,7 @@ class Climb:
         )
 
     def _trial(self, move: _Move) -> Trial:
-        """Return a step at a finer level before it is calculated."""
+        """Return the trial for a refinement before it is carried out."""
         rows = math.prod(self.calculation.evaluations[move.block.name].template.shape_of_points())
         return Trial(move.block.name, move.level, rows, 0.0, expected=move.seconds, variant=self.variant)
 
@@ -220,7 +221,7 @@ class Climb:
         return level_seconds(template, raw, level, self._needed(block, open_now))
 
     def _climb(self, move: _Move, open_now: Sequence[str]) -> Stop | None:
-        """Calculate a step at a finer level, and keep the result if its error is smaller."""
+        """Calculate a step at a finer level, and keep the result unless the step refuses or is pending."""
         name, level, start = move.block.name, move.level, time.perf_counter()
         self._tried.add((name, level))
         self.skipped.pop((name, level), None)
@@ -231,7 +232,7 @@ class Climb:
         finer = recalculated(self.calculation, {}, levels, again=[name], outputs=needed)
         trial = replace(trial, seconds=time.perf_counter() - start)
         if finer.deferred:
-            self.trials.append(replace(trial, reason="it is still calculated"))
+            self.trials.append(replace(trial, reason="it is still being calculated"))
             return "pending"
         if finer.faults or name not in finer.evaluations:
             refused = "; ".join(fault.detail for fault in finer.faults) or "it has no result"
@@ -244,17 +245,17 @@ class Climb:
         return None
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
-        """Return the criteria with these names, judged again."""
+        """Judge the named criteria again and return them by name."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
 
 
 def _announcement(trial: Trial) -> str:
-    """Return what is calculated next, and how long it is expected to take."""
+    """Return a progress message: the step and level to be calculated next, and the expected time."""
     points = f", {trial.rows} points" if trial.rows > 1 else ""
     return f"{trial.step} at level {trial.level}{points}, about {trial.expected:.2g} s"
 
 
 def _largest(error: object) -> float:
-    """Return the largest error of several points; infinite where it is unknown at any."""
+    """Return the largest error of several points; infinite if the error of any point is unknown."""
     errors = np.asarray(error if error is not None else np.nan, dtype=float)
     return float(np.max(np.where(np.isnan(errors), np.inf, errors)))

@@ -1,9 +1,9 @@
-"""A design as a function of N rows: built and checked once, calculated in array calls.
+"""A design as a function of N rows: built and checked once, then calculated in array calls.
 
 A row is one set of values for some parameters and inputs of the design. All values are in SI; arrays have the
-row first and the place along a curve last. Each step has one level for all rows of a call, so that a switch
-of levels makes no jump in a column. The engine calculates only what the requested values depend on. Between
-calls it keeps only values that are equal for all rows.
+row as first axis and the points of a curve as last axis. Each step has one level for all rows of a call, so
+that a change of level causes no jump in a column. The engine calculates only what the requested values depend
+on. Between calls it keeps only values that are equal for all rows.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ __all__ = ["MOST_ROWS", "DesignEngine", "JudgedColumn", "Refusal", "Rows", "Tabl
 
 @dataclass(frozen=True)
 class DesignEngine:
-    """A design of which some places vary.
+    """A design in which some parameters and inputs vary from row to row.
 
     Attributes
     ----------
     design
-        With a value at every varied place.
+        The checked design, with a placeholder value at every varied place.
     written
-        As its user wrote it.
+        The design as its user wrote it.
     """
 
     design: RowDesign
@@ -50,12 +50,12 @@ class DesignEngine:
 
     @property
     def varied(self) -> frozenset[Reference]:
-        """Return the places whose values the rows provide."""
+        """Return the names whose values the rows provide."""
         return self.design.varied
 
     @property
     def graph(self) -> Graph:
-        """Return the network of the design, with a value at every varied place."""
+        """Return the network of the design, with a placeholder value at every varied place."""
         return self.design.graph
 
     @classmethod
@@ -71,7 +71,7 @@ class DesignEngine:
         pending: bool = False,
         set_aside: Collection[Reference] = (),
     ) -> DesignEngine:
-        """Return a design whose places `varied` differ from row to row.
+        """Return an engine for a design whose places `varied` differ from row to row.
 
         Parameters
         ----------
@@ -80,8 +80,8 @@ class DesignEngine:
         catalogues
             Its templates and models.
         varied
-            Parameters, inputs of steps, parameters of models. A measurement of a solid may be among them, if
-            the rows provide it.
+            Parameters, inputs of steps, parameters of models; also measurements of solids if the rows provide
+            them.
         wanted
             The values that will be requested; if given, other parts of the design are not checked.
         criteria
@@ -89,9 +89,9 @@ class DesignEngine:
         measured
             Known measurements of solids, including those of iterations [SI].
         pending
-            Whether values that depend on a missing solid are NaN instead of being refused.
+            If true, values that depend on a missing solid are NaN; otherwise they are refused.
         set_aside
-            Varied places that a relation sets in the document: the rows replace it.
+            Varied places that a relation sets in the document; the values of the rows replace the relation.
 
         Raises
         ------
@@ -137,11 +137,12 @@ class DesignEngine:
         wanted
             Parameters, inputs and outputs of steps, parameters of models, known measurements.
         levels
-            Levels by step; an unnamed step uses the level or tolerance of the design, else the starting level
-            of its template.
+            Levels by step; a step not named here uses the level or tolerance of the design, else the starting
+            level of its template.
         judge
-            Whether criteria are judged with all numbers; all criteria, unless some are named. Errors are
-            propagated through relations at both ends, as in a single design.
+            Whether the result includes the numbers behind each verdict; this judges all criteria unless
+            `criteria` names some. Errors are propagated through relations at both ends of their bands, as for
+            a single design.
         criteria
             The criteria whose verdicts are requested.
         chunk
@@ -179,8 +180,9 @@ class DesignEngine:
     ) -> dict[str, str | None]:
         """Return one level for each step: the cheapest whose stated error is within the tolerance.
 
-        This must hold for a `share` of the rows that have values. A step with a level in the design keeps it,
-        and a step that states too few errors uses its starting level. A step without levels has None.
+        The error must be within the tolerance in a `share` of the rows that have values. A step with a level
+        in the design keeps it, and a step that states too few errors uses its starting level. A step without
+        levels has None.
         """
         raise_if(list(self.design.faults(wanted, {})))
         count, given = self.checked(rows)
@@ -198,9 +200,9 @@ class DesignEngine:
     ) -> float:
         """Estimate the time of a call for this number of rows [s].
 
-        It uses the processor time of the last similar call with enough rows. Before such a call it uses the
-        cost tables of the levels, which give an order of magnitude and ignore heat balances. `by_tables`
-        always uses the tables, so that equal questions give equal answers in any process.
+        The estimate uses the processor time of the last similar call with enough rows. Before such a call it
+        uses the cost tables of the levels, which give an order of magnitude and ignore heat balances.
+        `by_tables` always uses the tables, so that equal requests give equal answers in any process.
         """
         asked, seconds = self._wanted(wanted, criteria), 0.0
         if not by_tables and (pace := self.design.pace(asked, levels)) is not None:
@@ -229,7 +231,7 @@ class DesignEngine:
         return [name for name, one in subjects(self.graph).items() if one.is_due(self.graph)]
 
     def unit(self, reference: Reference) -> str:
-        """Return the declared unit of a place, an output or a measurement; for a parameter the typed unit."""
+        """Return the declared unit of an input, output or measurement; for a parameter the typed unit."""
         if cell := self.graph.parameters.get(str(reference)):
             typed = None if cell.relations else read_any(cell.raw).unit
             return typed or self.graph.kinds[str(reference)].unit
@@ -238,7 +240,7 @@ class DesignEngine:
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit that decides which units a user may type for a name."""
+        """Return the unit that determines which units a user may type for a name."""
         is_inside = str(reference) not in self.graph.parameters and is_member(self.graph, reference)
         return self.graph.accepted(reference) if is_inside else self.unit(reference)
 
@@ -267,7 +269,7 @@ class DesignEngine:
         Raises
         ------
         InvalidInputs
-            If the design has no criterion of a name.
+            If the design has no criterion with one of the names.
         """
         by_name = subjects(self.graph)
         unknown = (name for name in criteria if name not in by_name)
@@ -279,5 +281,5 @@ class DesignEngine:
 
 
 def _all_used(graph: Graph) -> list[Reference]:
-    """Return all references of all relations."""
+    """Return all references that relations use."""
     return [reference for cell in graph.cells() for reference in cell.uses.values()]

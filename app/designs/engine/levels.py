@@ -23,19 +23,19 @@ from templates.core.language.levels import Accuracy, accuracy
 S = TypeVar("S", bound=np.generic)
 
 Passes = Callable[[str | None], Iterable[Calculation]]
-"""The rows, calculated with a step at a level, in chunks."""
+"""A function that calculates the rows in chunks, with the step at a level."""
 
 
 @dataclass(frozen=True)
 class LevelChoice:
-    """The choice of levels for some rows.
+    """Chooses the levels of all steps for some rows.
 
     Attributes
     ----------
     rows
         A column for every varied place.
     wanted
-        What is going to be calculated.
+        The values that will be calculated.
     """
 
     design: RowDesign
@@ -44,7 +44,7 @@ class LevelChoice:
     wanted: Targets
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
-        """Return the given levels, and those of steps for which the design has a tolerance but no level."""
+        """Return the given levels, and levels for steps that have a tolerance but no level in the design."""
         chosen = dict(levels)
         for block in self.design.steps(self.wanted):
             if block.tolerance is not None and not (levels.get(block.name) or block.level):
@@ -52,9 +52,9 @@ class LevelChoice:
         return chosen
 
     def within(self, tolerance: float, share: float, starts: Levels) -> dict[str, str | None]:
-        """Return the level of each step, chosen after the steps on which it depends.
+        """Return the level of each step, chosen after the levels of the steps on which it depends.
 
-        `starts` are the starting levels of steps whose rows would start at different ones.
+        `starts` holds the starting levels of steps whose rows would start at different levels.
         """
         chosen = dict(starts)
         for block in self.design.steps(self.wanted):
@@ -79,14 +79,14 @@ class LevelChoice:
 
 @dataclass(frozen=True)
 class LevelSearch:
-    """The choice of one level for a step.
+    """Chooses one level for a step.
 
     Attributes
     ----------
     outputs
-        Whose errors have to be small enough.
+        The outputs whose errors must be within the tolerance.
     share
-        Of the rows, in which they have to be.
+        The share of rows in which they must be.
     """
 
     block: Block
@@ -96,7 +96,7 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """Return the cheapest sufficient level, or the finest within the budget (`level_choice`)."""
+        """Return the cheapest sufficient level, or the finest that the budget allows (`level_choice`)."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
             if measured is None:
@@ -107,13 +107,13 @@ class LevelSearch:
         return next(best_first(self.block.cls, self.ladder, self.start, count))
 
     def _may_serve(self, measured: Accuracy, level: str) -> bool:
-        """Return whether a level is worth calculating: a finer one must state small enough errors."""
+        """Return whether a level is worth calculating: a finer level must state small enough errors."""
         finer = level != self.start and self.ladder.index(level) > self._place
         return not finer or float(np.mean(self._expected(measured, level))) >= self.share
 
     @cached_property
     def _place(self) -> int:
-        """Return the position of the starting level on the ladder."""
+        """Return the position of the starting level on the ladder; -1 if it is not on it."""
         return self.ladder.index(self.start) if self.start in self.ladder else -1
 
     @cached_property
@@ -136,18 +136,21 @@ class LevelSearch:
 
     @cached_property
     def _exists(self) -> dict[str, Mask]:
-        """Return for each output the rows in which it has a value at the starting level."""
+        """Return, for each output, a mask of the rows in which it has a value at the starting level."""
         return {name: _joined(_has_value(step, name) for step in self._started) for name in self.outputs}
 
     def _met(self, measured: Accuracy, level: str) -> float:
-        """Return at which share of the rows all errors of a level are small enough."""
+        """Return the share of rows in which all errors of a level are small enough."""
         if level in self.block.cls.most_points:
             return float(np.mean(self._expected(measured, level)))
         steps = self._started if level == self.start else self._calculated(level)
         return self._share(steps, self.tolerance)
 
     def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
-        """Return the share of rows whose outputs all have a small error or no value at the first level."""
+        """Return the share of rows in which every output has a small error.
+
+        An output may also have no value, if it has none at the starting level either.
+        """
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
             there = _joined(_has_value(step, name) for step in steps)
@@ -156,12 +159,12 @@ class LevelSearch:
         return float(np.mean(met))
 
     def _calculated(self, level: str | None) -> list[StepRows]:
-        """Return the step in each chunk of rows; without chunks if it is pending or refused."""
+        """Return the step calculated in each chunk of rows; without parts where it is pending or refused."""
         nothing = StepRows(self.block, 1, has_rows=False)
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
     def _expected(self, measured: Accuracy, level: str) -> Mask:
-        """Return a mask of the rows for which an expensive level should suffice, by its stated errors."""
+        """Return a mask of the rows for which the stated errors of a level are small enough."""
         met = np.ones(sum(step.count for step in self._started), dtype=bool)
         for name in self.outputs:
             errors = _joined(_expected(measured, step, level, name) for step in self._started)
@@ -174,12 +177,12 @@ def _joined(chunks: Iterable[NDArray[S]]) -> NDArray[S]:
 
 
 def _has_value(step: StepRows, output: str) -> Mask:
-    """Return the rows in which an output has a value."""
+    """Return a mask of the rows in which an output has a value."""
     return Column(step.column(output).spread(step.count), is_row=True).finite_rows()
 
 
 def _expected(measured: Accuracy, step: StepRows, level: str, output: str) -> Array:
-    """Return the errors that another level states at the rows; infinite if it states none."""
+    """Return the errors that a level states for the rows of a step; infinite where it states none."""
     errors = np.full(step.count, np.inf)
     for part in step.parts:
         errors[part.rows] = measured.expected(part.template, level, [output])[output]

@@ -15,16 +15,16 @@ from templates.core.errors import Fault
 
 @dataclass(frozen=True)
 class Needs:
-    """The cells and blocks behind some values.
+    """The cells and blocks on which some values depend.
 
     Attributes
     ----------
     cells
         Cells whose values are used.
     members
-        By block, the inputs and outputs of it that are used beside its cells.
+        For each block, its inputs and outputs that are used and are not cells.
     waiting
-        What is measured on solids, or analysed, and not known.
+        Measurements of solids and outputs of analyses that are not known yet.
     """
 
     cells: set[Cell] = field(default_factory=set)
@@ -43,9 +43,9 @@ def needs(
     measured: Collection[Reference],
     inside: Iterable[Reference] = (),
 ) -> Needs:
-    """Return all nodes on which some values depend, except those behind `known` values.
+    """Return all nodes on which some values depend, without the nodes behind known (`measured`) values.
 
-    For inputs `inside` steps the steps themselves are needed too.
+    For the inputs in `inside`, the steps themselves are needed too.
     """
     result, seen = Needs(), set[Reference]()
     left = [*wanted, *(before for reference in inside for before in _of_member(graph, reference, result))]
@@ -61,7 +61,7 @@ def needs(
 def _before(
     graph: Graph, reference: Reference, measured: Collection[Reference], result: Needs
 ) -> Iterator[Reference]:
-    """Yield the values used by one value, and mark it as needed."""
+    """Mark a value as needed, and yield the values that it uses."""
     if cell := graph.cell(reference):
         result.cells.add(cell)
         if reference not in measured:
@@ -75,7 +75,7 @@ def _before(
 
 
 def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Reference]:
-    """Return the values used by an input or output of a block, and mark it as needed."""
+    """Mark an input or output of a block as needed, and return the values on which it depends."""
     block = graph.blocks[reference.block]
     result.members.setdefault(block.name, set()).add(reference.member)
     return [cell.reference for cell in block.cells.values()]
@@ -91,7 +91,7 @@ def is_member(graph: Graph, reference: Reference) -> bool:
 
 @dataclass(frozen=True)
 class MovingNodes:
-    """The nodes that depend on varied places, each with the node through which it does."""
+    """The nodes that depend on varied places; `because` gives for each the node through which it depends."""
 
     because: Mapping[Node, Node | None]
 
@@ -118,12 +118,12 @@ def varying(graph: Graph, varied: Collection[Reference]) -> MovingNodes:
 
 
 def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
-    """Return whether a cell is a varied place, or uses one, such as a measurement that rows provide."""
+    """Return whether a cell is varied, or uses a varied value such as a measurement that rows provide."""
     return any(reference in varied for reference in (cell.reference, *cell.uses.values()))
 
 
 def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: MovingNodes) -> list[Fault]:
-    """Return a fault for each measurement of a solid that differs from row to row, with its chain."""
+    """Return a fault for each measurement whose solid differs from row to row, with the chain of names."""
     solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
     return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]
 
@@ -132,7 +132,9 @@ def _in_the_way(graph: Graph, reference: Reference, chain: list[Node]) -> Fault:
     uses = [cell.name for cell in graph.cells() if reference in cell.uses.values()]
     names = [*map(_name, chain), str(reference), *uses[:1]]
     path = " → ".join(dict.fromkeys(filter(None, names)))
-    detail = f"{reference} is measured on a solid that differs from row to row ({path}); each needs its solid"
+    detail = (
+        f"{reference} is measured on a solid that differs from row to row ({path}); every row needs its own"
+    )
     return Fault(names[0], "needs_solids", detail)
 
 
@@ -141,4 +143,4 @@ def _name(node: Node) -> str:
         case Cell(name=name) | Block(name=name):
             return name
         case Solid() | SolidAnalysis():
-            return ""  # what is measured on it is named
+            return ""  # the measurement is named instead

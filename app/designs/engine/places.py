@@ -1,4 +1,4 @@
-"""The parameters and inputs that rows vary: which may vary, and the shape of their values."""
+"""The parameters and inputs that rows vary: which ones can vary, and the shape of their values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from templates.core.units.units import Value
 def with_places(document: Document, graph: Graph, varied: Collection[Reference]) -> Document:
     """Return the document with a literal at every varied place that has a default or a relation.
 
-    Only its shape matters: the rows give its values.
+    The literal only fixes the shape, because the rows provide the values.
     """
     plain = document.model_copy(deep=True)
     for reference in varied:
@@ -63,7 +63,7 @@ def _declared(graph: Graph, reference: Reference) -> Input | None:
 def place_faults(
     graph: Graph, varied: Collection[Reference], set_aside: Collection[Reference] = ()
 ) -> Iterator[Fault]:
-    """Yield the faults of the places that shall vary, and of those whose relations are overridden."""
+    """Yield the faults of places that cannot vary, and of places whose relation cannot be set aside."""
     for reference in set_aside:
         cell = graph.cell(reference)
         if reference not in varied:
@@ -78,7 +78,7 @@ def place_faults(
         name, cell = str(reference), graph.cell(reference)
         block = graph.blocks.get(reference.block)
         if block and block.is_model and is_measured(reference, block.analyses, block.cls):
-            continue  # measures of each row, from whoever knows them
+            continue  # the caller provides the measurements of each row
         if cell is None and _declared(graph, reference) is None:
             yield unknown_name(name, _places(graph), "place")
         elif isinstance(_declared(graph, reference), Choice):
@@ -88,10 +88,14 @@ def place_faults(
 
 
 def _followed(cell: Cell) -> str:
-    """Return the places that can vary instead of a relation."""
+    """Return a message that a relation sets a value, and which values can vary instead."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
-    instead = f"; vary {', '.join(sorted(cell.uses))} instead, or write a value there" if cell.uses else ""
-    return f"{cell.name} follows from others ({text.strip()}){instead}"
+    instead = (
+        f"; vary {', '.join(sorted(cell.uses))} instead, or replace the relation by a value"
+        if cell.uses
+        else ""
+    )
+    return f"{cell.name} is calculated ({text.strip()}){instead}"
 
 
 def _places(graph: Graph) -> list[str]:
@@ -101,14 +105,14 @@ def _places(graph: Graph) -> list[str]:
 
 @dataclass(frozen=True)
 class Ranks:
-    """Numbers of axes that values have in one row, as far as known before they are calculated."""
+    """The number of axes that each value has in one row, as far as known before the calculation."""
 
     graph: Graph
     moving: MovingNodes
     _ranks: dict[Cell, int] = field(default_factory=dict)
 
     def faults(self, blocks: Collection[str]) -> Iterator[Fault]:
-        """Yield lists of single values among the inputs of steps that differ from row to row."""
+        """Yield a fault for each single input that gets a list, in steps that differ from row to row."""
         for node in self.graph.order:
             if isinstance(node, Cell):
                 self._ranks[node] = self._of_cell(node)
@@ -119,7 +123,7 @@ class Ranks:
         for name, cell in block.cells.items():
             declared = block.cls.inputs[name]
             if not isinstance(declared, Table) and self._ranks[cell] > int(isinstance(declared, Curve)):
-                detail = "this is a list of its own; where rows vary, an input has one value in each row"
+                detail = "this is a list; if rows vary, an input has one value in each row"
                 yield Fault(cell.name, "shape", f"{detail}: give one value, or vary it too")
 
     def _of_cell(self, cell: Cell) -> int:
@@ -145,7 +149,7 @@ class Ranks:
         return own + (0 if block in self.moving else self._points(block))
 
     def _points(self, block: Block) -> int:
-        """Return the number of axes of the points of a step that are equal for all rows."""
+        """Return the number of axes of the points at which a step is calculated in every row."""
         inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
         return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
 
@@ -154,7 +158,7 @@ def _rank(cell: Cell) -> int:
     try:
         return np.ndim(literal(cell).si)
     except FaultyText:
-        return 0  # reported where it is read
+        return 0  # reported when the cell is read
 
 
 def checked_rows(
@@ -187,7 +191,9 @@ def checked_rows(
                 )
             )
         elif array.ndim and len(array) != count:
-            detail = f"all columns have one length, but this one has {len(array)} rows, another {count}"
+            detail = (
+                f"all columns must have the same length, but this one has {len(array)} rows, another {count}"
+            )
             faults.append(Fault(str(reference), "shape", detail))
     if faults:
         raise InvalidInputs(faults)
@@ -195,7 +201,7 @@ def checked_rows(
 
 
 def _ranks(graph: Graph, reference: Reference) -> set[int]:
-    """Return the number of axes that a varied value may have in one row."""
+    """Return the numbers of axes that a varied value may have in one row."""
     declared = _declared(graph, reference)
     if isinstance(declared, Curve):
         return {0, 1} if declared.constant else {1}

@@ -1,4 +1,4 @@
-"""Reasons of rows without values: the faults of array calls, and the points that templates mask."""
+"""Refusals of rows: made from the faults of array calls, and from the points that templates mask."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from templates.core.language.template import Template
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why a row has no values: where, a code for programs, and a sentence."""
+    """Why a row has no values: the place, a code for programs, and a sentence."""
 
     place: str
     code: str
@@ -46,7 +46,7 @@ def masked(step: str, template: Template, rows: Indices) -> dict[int, Refusal]:
 
 
 def _refusal(step: str, template: Template, mask: Mask) -> Refusal:
-    """Return a mask in the form of the fault that a single point would have."""
+    """Return the refusal for a mask, with the code that a single point would have."""
     attribute, *others = mask.names
     name = template.declarations[attribute].name
     code = BROKEN
@@ -58,7 +58,7 @@ def _refusal(step: str, template: Template, mask: Mask) -> Refusal:
 
 
 def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collection[str]) -> bool:
-    """Return whether a fault holds for all rows because it depends on no varied input."""
+    """Return whether a fault concerns all rows because it depends on no varied input."""
     attributes = {cls.inputs[name].attribute for name in varied}
     for fault in faults:
         beneath = _beneath(cls, fault)
@@ -68,7 +68,7 @@ def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collect
 
 
 def _beneath(cls: type[Template], fault: Fault) -> frozenset[str]:
-    """Return the attributes on which a fault depends; none if they are unknown."""
+    """Return the attributes on which a fault depends; empty if they are unknown."""
     declared = {**cls.formulas, **cls.inputs}
     if not all(name in declared for name in fault.names):
         return frozenset()

@@ -1,9 +1,9 @@
-"""Relations for many rows at once, evaluated row by row: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
+"""Evaluate relations for many rows at once: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
 
-Where no value differs from row to row, a relation is calculated once. A relation that is a value, or a value
-plus a constant, passes on the tolerance of that value. Other results of toleranced values also have an
-interval, but no part is made to it: a tolerance analysis reports it, and drawings and STEP files leave it
-out.
+A relation whose values are equal in all rows is calculated once. If a relation is a single name, or a name
+plus a constant, its result has the tolerance of that name. Other results of toleranced values also vary
+within an interval, which is no manufacturing tolerance: a tolerance analysis reports the interval, and
+drawings and STEP files omit it.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from templates.core.units.quantity import TypedQuantity
 from templates.core.units.relation import Relation
 from templates.core.units.tolerance import Tolerance
 
-MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
-MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
+MOST_VALUES = 100_000  # largest number of values of a relation, or of all outputs of a step
+MOST_OPERATIONS = 20_000_000  # largest number of operations on single values in all relations of a design
 
 _ADD, _SUBTRACT = OPERATORS["add"], OPERATORS["subtract"]
 
@@ -58,7 +58,7 @@ def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:
-    """Return why a row has no value, if an index is the cause."""
+    """Return the error if an index is the reason why a row has no value, else None."""
     alone = {name: np.asarray(c.value)[row] if c.is_row else c.value for name, c in uses.items()}
     try:
         for item in relation.items:
@@ -79,18 +79,19 @@ def _item(item: Item, uses: Mapping[str, Column]) -> Column:
     place = np.asarray(index.value)
     right = (place == np.floor(place)) & (place >= 1) & (place <= length)
     if not right.any():
-        item_of(item, values, rows)  # says what is wrong
+        item_of(item, values, rows)  # raises the error
     chosen = item_of(item, {**values, str(item.index): np.where(right, place, 1.0)}, rows)
     return Column(chosen, is_row=True).without(~right)
 
 
 def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
-    """Return the value of a tree in all rows, from the columns of its names and items.
+    """Return the value of an expression tree in all rows, given the columns of its names and items.
 
     Raises
     ------
     FaultyText
-        With code `shape`, if a single value occurs in place of a list or vice versa.
+        With code `shape`, if a single value is used where a list is needed, or a list where a single value
+        is needed.
     """
     match node:
         case Constant(value=value):
@@ -117,7 +118,7 @@ def _applied(operation: Operation, parts: list[Column]) -> Column:
 
 
 def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
-    """Return the number of axes of a tree in one row, from those of its names and items."""
+    """Return the number of axes of an expression tree in one row, given those of its names and items."""
     match node:
         case Constant() | Word():
             return 0
@@ -134,10 +135,10 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
 
 
 def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, TypedQuantity]) -> Tolerance | None:
-    """Return the tolerance that a cell gets from its relation; None if it has none.
+    """Return the tolerance that a cell gets through its relation; None if it has none.
 
-    `typed` are the values of cells as they were read. A zone of ISO 286 belongs to its nominal size: if a
-    constant is added, the limits stay and the zone is dropped.
+    `typed` holds the values of cells as read. A tolerance zone of ISO 286 belongs to its nominal size: if a
+    constant is added, the limits are kept and the zone is dropped.
     """
     is_moved = False
     while cell.relations:
@@ -154,7 +155,7 @@ def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, TypedQuantity]) -
 
 
 def _term(tree: Node) -> tuple[str, bool] | None:
-    """Return the only name of a relation, and whether a constant is added to it; None for other relations."""
+    """Return the only name of a relation, and whether a constant is added; None for any other relation."""
     match tree:
         case Name(name=name):
             return name, False
@@ -173,7 +174,7 @@ def _is_constant(tree: Node) -> bool:
 
 
 def limit_values(values: int) -> None:
-    """Refuse more values in one place than a design may have.
+    """Refuse a place that would have more values than a design may have in one place.
 
     Raises
     ------
@@ -181,12 +182,12 @@ def limit_values(values: int) -> None:
         With code `too_many_values`.
     """
     if values > MOST_VALUES:
-        message = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
+        message = f"this gives {values} values; one place of a design may have at most {MOST_VALUES}"
         raise FaultyText("too_many_values", message)
 
 
 def limit_operations(operations: int) -> None:
-    """Refuse relations with more operations in total than a design may have.
+    """Refuse a design whose relations need more operations in total than allowed.
 
     Raises
     ------
@@ -194,7 +195,5 @@ def limit_operations(operations: int) -> None:
         With code `too_many_values`.
     """
     if operations > MOST_OPERATIONS:
-        message = f"the relations up to here make {operations} operations on single values"
-        raise FaultyText(
-            "too_many_values", f"{message}; use shorter arrays, as the limit is {MOST_OPERATIONS}"
-        )
+        message = f"the relations up to here need {operations} operations on single values"
+        raise FaultyText("too_many_values", f"{message}; use shorter arrays; the limit is {MOST_OPERATIONS}")

@@ -1,4 +1,4 @@
-"""A checked design with varied parameters: what to calculate, and in which chunks of rows."""
+"""A checked design with varied parameters: determine what to calculate, and in which chunks of rows."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from templates.core.errors import Fault, unknown_name, unknown_names
 from templates.core.language import spec
 
 Rows = Mapping[Reference, Array]
-"""SI values by place: of shape (N,), or (N, K) of a curve."""
+"""SI values by place: of shape (N,), or (N, K) for a curve."""
 
 Levels = Mapping[str, str | None]
-"""Levels by step; None where the design, or its template, says which."""
+"""Levels by step; None if the design or the template determines the level."""
 
 T = TypeVar("T")
 
 MOST_ROWS = 4096
-"""In one array call. Results of arrays of other lengths differ in their last bits."""
+"""Largest number of rows in one array call. Results differ in the last bits with the length of the arrays."""
 MOST_VALUES = 2_000_000
-"""Of all columns of a chunk together; the places of curves count."""
-MOST_PREPARED = 32  # questions whose constants are kept
-FEWEST_TIMED = 64  # rows of a call from which the time of others is estimated
+"""Largest number of values in all columns of a chunk; a curve counts with all its points."""
+MOST_PREPARED = 32  # number of requests whose shared values are cached
+FEWEST_TIMED = 64  # smallest number of rows whose time is used for estimates
 
 
 @dataclass(frozen=True)
 class Targets:
-    """The values that the caller wants, by name, and the inputs with which steps are evaluated."""
+    """The values that the caller requests, and the inputs that are read from evaluated steps (`inside`)."""
 
     references: frozenset[Reference]
     inside: frozenset[Reference] = frozenset()
 
     @classmethod
     def of(cls, references: Iterable[Reference], judged: Iterable[Subject] = ()) -> Targets:
-        """Return the requested values, and those that criteria name."""
+        """Return the targets for requested values and for the values that criteria name."""
         subjects = [subject for subject in judged if subject.block is None or not subject.block.is_model]
         subjects += [other for one in subjects for _, other in one.instead]
         used = [(one, r) for one in subjects for r in one.references.values()]
@@ -56,7 +56,7 @@ class Targets:
 
 @dataclass(frozen=True)
 class RowDesign:
-    """A network, the places of which rows give the values, and measures of solids that are known [SI]."""
+    """A network with the places that rows vary, and the known measurements of solids [SI]."""
 
     graph: Graph
     varied: frozenset[Reference]
@@ -65,11 +65,11 @@ class RowDesign:
 
     @cached_property
     def moving(self) -> MovingNodes:
-        """Return the values that differ from row to row."""
+        """Return the nodes whose values differ from row to row."""
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Targets) -> Needs:
-        """Return the cells on which some values depend; cached for the next call."""
+        """Return the nodes on which some values depend; cached for the next call."""
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
                 self._needs.clear()
@@ -82,13 +82,13 @@ class RowDesign:
         return {}
 
     def steps(self, wanted: Targets) -> list[Block]:
-        """Return the steps that are calculated for some values, in order."""
+        """Return, in order, the steps that some values need."""
         due = self.needs(wanted).members
         blocks = (node for node in self.graph.order if isinstance(node, Block))
         return [block for block in blocks if block.name in due and not block.is_model]
 
     def faults(self, wanted: Collection[Reference], levels: Levels) -> Iterator[Fault]:
-        """Yield the faults of requested names and of levels."""
+        """Yield the faults in requested names and in levels."""
         unknown = [str(r) for r in wanted if r not in self.varied and self.graph.node(r) is None]
         yield from unknown_names(unknown, self.graph.names(), "name")
         for reference in wanted:
@@ -119,7 +119,7 @@ class RowDesign:
             shared = Calculation(self.graph, given, needs=due, moving=self.moving, levels=dict(pinned))
             self._prepared[key] = constants(shared)
         shared = self._prepared[key]
-        return replace(shared, started=dict(shared.started))  # no row has started at any level yet
+        return replace(shared, started=dict(shared.started))  # this call chooses its own starting levels
 
     def passes(
         self,
@@ -129,12 +129,12 @@ class RowDesign:
         levels: Levels,
         chunk: int = MOST_ROWS,
     ) -> Iterator[tuple[int, Calculation]]:
-        """Yield the rows in chunks, each with the number of its first row.
+        """Calculate the rows in chunks; yield the number of each chunk's first row and its calculation.
 
         Raises
         ------
         LevelMoved
-            If rows of a step whose level is not given start at different ones.
+            If a step has no given level and its rows start at different levels.
         """
         shared = self.constants(wanted, levels)
         size = self.rows_at_once(wanted, levels, chunk)
@@ -152,16 +152,16 @@ class RowDesign:
         self._paces[wanted, self._pinned(wanted, levels)] = seconds
 
     def pace(self, wanted: Targets, levels: Levels) -> float | None:
-        """Return the processor time of a row in the last similar call [s]; None before the first call."""
+        """Return the processor time per row of the last similar call [s]; None before the first call."""
         return self._paces.get((wanted, self._pinned(wanted, levels)))
 
     def _pinned(self, wanted: Targets, levels: Levels) -> frozenset[tuple[str, str | None]]:
-        """Return the given levels of the steps that are calculated."""
+        """Return the given level of each needed step."""
         due = self.needs(wanted).members
         return frozenset((name, levels.get(name) or self.graph.blocks[name].level) for name in due)
 
     def settled(self, calculate: Callable[[Levels], T], levels: Levels) -> T:
-        """Return a result with one level for each step: the finest at which any of its rows starts."""
+        """Return a result with one level for each step: the finest level at which any of its rows starts."""
         pinned = dict(levels)
         with np.errstate(all="ignore"):
             while True:
@@ -172,12 +172,12 @@ class RowDesign:
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
     def nominal(self, wanted: Targets, levels: Levels) -> Calculation:
-        """Return the design as written, without varied values."""
+        """Return the calculation of the design as written, without varied values."""
         with np.errstate(all="ignore"):
             return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 
     def rows_at_once(self, wanted: Targets, levels: Levels, chunk: int = MOST_ROWS) -> int:
-        """Return the number of rows in one array call."""
+        """Return the number of rows to calculate in one array call."""
         values = sum(self.sizes(wanted).values())
         return max(1, min([chunk, MOST_VALUES // max(values, 1), *self._most_points(wanted, levels)]))
 
@@ -201,7 +201,7 @@ class RowDesign:
         return {}
 
     def _most_points(self, wanted: Targets, levels: Levels) -> Iterator[int]:
-        """Return the largest number of points that the levels of the steps allow at once."""
+        """Yield the largest number of points that the level of each varied step allows in one call."""
         for block in self.steps(wanted):
             level = levels.get(block.name) or block.level or block.cls.default_level
             if block in self.moving and level in block.cls.most_points:

@@ -28,25 +28,25 @@ from templates.core.criteria.evaluation import Absent
 from templates.core.units.quantity import TypedQuantity
 
 MOST_SHIFTED = 12
-"""Uncertain outputs of a design that are shifted; each takes two calculations of what follows from it."""
+"""Largest number of outputs that are shifted; each needs two calculations of all values that depend on it."""
 LONGEST_SHIFTING = 1.0
-"""What all these calculations may take together, by their estimates for one row [s]."""
-PER_OPERATION = 2e-8  # of a relation on a single value of an array [s]
+"""Largest total time of these calculations, by their estimates for one row [s]."""
+PER_OPERATION = 2e-8  # time of one operation of a relation on a single value of an array [s]
 
 Shifted = tuple[dict[str, Column], dict[str, Column]]
-"""The values of names with something upstream at the lower, and at the upper end of its band."""
+"""The values of names with an upstream output at the lower and at the upper end of its band."""
 
 
 @dataclass(frozen=True)
 class Origins:
-    """The outputs of steps from which a value follows.
+    """The step outputs on which a value depends.
 
     Attributes
     ----------
     carried
-        Those whose errors are carried on.
+        Outputs whose errors are propagated to the value.
     stopped
-        Those behind something through which no error is carried.
+        Outputs whose errors are not propagated, because an expensive step or a solid lies in between.
     """
 
     carried: frozenset[Reference] = frozenset()
@@ -56,22 +56,22 @@ class Origins:
         return Origins(self.carried | other.carried, self.stopped | other.stopped)
 
     def without(self) -> Origins:
-        """Return the same errors after a barrier through which no error is propagated."""
+        """Return the same outputs as stopped, because their errors are not propagated any further."""
         return Origins(stopped=self.carried | self.stopped)
 
 
 @dataclass(frozen=True)
 class Upstream:
-    """Outputs of steps from which a value follows, by what is known of their errors.
+    """The step outputs on which a value depends, sorted by what is known of their errors.
 
     Attributes
     ----------
     uncertain
-        Of a stated error in some row, which can be carried on.
+        Outputs with a stated error in some row, which can be propagated.
     unknown
-        Of an error that is not known in some row.
+        Outputs whose error is unknown in some row.
     stopped
-        Of an error that is not carried on.
+        Outputs whose error is not propagated.
     """
 
     uncertain: frozenset[Reference] = frozenset()
@@ -84,20 +84,20 @@ NONE, NOTHING = Origins(), Upstream()
 
 @dataclass
 class Shifts:
-    """The errors of a calculated design; `estimate` returns the value of a name with its step's error."""
+    """Propagates the errors of a calculated design; `estimate` returns a value with its step's own error."""
 
     calculation: Calculation
     estimate: Callable[[Reference], RowEstimate | Absent]
     _beneath: dict[Reference, Origins] = field(default_factory=dict)
     _ends: dict[Reference, tuple[Calculation, Calculation]] = field(default_factory=dict)
-    _seconds: float = 0.0  # that the calculations so far were estimated to take of one row
+    _seconds: float = 0.0  # estimated total time for one row of the recalculations so far
 
     def upstream(self, references: Iterable[Reference]) -> Upstream:
-        """Return the origins of some values, without the errors of their own steps."""
+        """Return the outputs on which some values depend, without the errors of the values' own steps."""
         return self.by_error(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:
-        """Return the origins of a value for its users: the error of its own step, and those upstream."""
+        """Return the outputs that make a value uncertain: the value itself, and outputs upstream."""
         return self.by_error(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
@@ -112,14 +112,20 @@ class Shifts:
     def shifts(
         self, references: Mapping[str, Reference], upstream: Upstream
     ) -> tuple[list[Shifted], Upstream]:
-        """Return values of names with each uncertain origin at either end; omitted origins are blocked."""
+        """Return the values of names with each uncertain output at the lower and the upper end of its band.
+
+        Uncertain outputs that are too expensive to propagate are returned as stopped.
+        """
         carried = [origin for origin in sorted(upstream.uncertain, key=str) if self._is_carried(origin)]
         shifts = [self._shift(origin, references) for origin in carried]
         left_out = upstream.uncertain.difference(carried)
         return shifts, replace(upstream, stopped=upstream.stopped | left_out)
 
     def _shift(self, origin: Reference, references: Mapping[str, Reference]) -> Shifted:
-        """Return values of names at both ends; the origin keeps its value: its band counts elsewhere."""
+        """Return the values of names at both ends of an output's band.
+
+        The output itself keeps its value, because its own band is counted separately.
+        """
         low, high = self._ends[origin]
         return self._at(low, origin, references), self._at(high, origin, references)
 
@@ -132,7 +138,7 @@ class Shifts:
         }
 
     def by_error(self, origins: Origins) -> Upstream:
-        """Return origins grouped by the knowledge of their errors; exact ones are left out."""
+        """Return outputs sorted by what is known of their errors; exact outputs are left out."""
         if origins == NONE:
             return NOTHING
         kinds = {origin: self._kinds(origin) for origin in origins.carried | origins.stopped}
@@ -143,7 +149,7 @@ class Shifts:
         return Upstream(uncertain, unknown, frozenset(one for one in origins.stopped if kinds[one]))
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """Return the indices of an output in an `Upstream`; with rows there may be several."""
+        """Return the groups of `Upstream` to which an output belongs; with many rows it may be several."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()
@@ -157,20 +163,22 @@ class Shifts:
         if not self._is_carried_on:
             return NONE
         if not self._beneath:
-            for node in self.calculation.graph.order:  # in order, so that no chain is too long to follow
+            for (
+                node
+            ) in self.calculation.graph.order:  # in dependency order, so that the recursion stays shallow
                 if isinstance(node, Cell):
                     self._origins(node.reference)
         return self._origins(reference)
 
     @cached_property
     def _is_carried_on(self) -> bool:
-        """Return whether any relation uses a calculated or measured value; typed values are exact."""
+        """Return whether any relation uses a calculated or measured value; typed values have no error."""
         graph = self.calculation.graph
         return any(graph.cell(used) is None for cell in graph.cells() for used in cell.uses.values())
 
     def _origins(self, reference: Reference) -> Origins:
         if reference not in self._beneath:
-            self._beneath[reference] = NONE  # an iteration comes back to where it began
+            self._beneath[reference] = NONE  # ends the recursion around an iteration
             self._beneath[reference] = self._followed(reference)
         return self._beneath[reference]
 
@@ -191,27 +199,27 @@ class Shifts:
         return self._origins(reference) | self._own(reference)
 
     def _own(self, reference: Reference) -> Origins:
-        """Return an output of a step that is calculated, and so may be off."""
+        """Return a name as an origin of error if it is a calculated output of a step, else nothing."""
         return Origins(frozenset({reference})) if self.calculation.is_output(reference) else NONE
 
     def _of_block(self, block: Block, member: str) -> Origins:
-        """Return the origins of an input or output of a block: the cells on which it depends."""
+        """Return the origins of an input or output of a block, traced through the block's cells."""
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         try:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
         except KeyError:
-            return NONE  # it waits, or is refused
+            return NONE  # the block is pending or refused
         related = [cell for cell in block.cells.values() if cell.relations and cell.declared]
         used = [cell for cell in related if cell.declared and cell.declared.attribute in beneath]
         origins = _joined(self._origins(cell.reference) for cell in used) if used else NONE
         return origins.without() if origins != NONE and self._is_expensive(block) else origins
 
     def _is_expensive(self, block: Block) -> bool:
-        """Return whether a step takes too long to be recalculated repeatedly, by its estimate."""
+        """Return whether the estimated time of a step is too long for repeated recalculation."""
         return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
 
     def _estimated_seconds(self, block: Block) -> float:
-        """Estimate the time of a step for a single row [s], as a separate design."""
+        """Estimate the time of a step for one row [s], as in a separate design."""
         raw = {name: self._first(cell) for name, cell in block.cells.items()}
         level, evaluation = self._levels[block.name], self.calculation.evaluations.get(block.name)
         outputs = list(evaluation.outputs) if evaluation else self.calculation.graph.computed(block)
@@ -222,7 +230,7 @@ class Shifts:
         return self.calculation.levels_used()
 
     def _first(self, cell: Cell) -> Raw:
-        """Return the value of a cell in the first row."""
+        """Return the value of a cell in the first row, as an input for an estimate of time."""
         column = self.calculation.values.get(cell.name)
         if column is None or cell.declared is None or not column.is_row:
             return self.calculation.typed.get(cell.name, cell.raw)
@@ -230,7 +238,7 @@ class Shifts:
         return TypedQuantity(None, cell.declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _is_carried(self, origin: Reference) -> bool:
-        """Return whether the values that depend on an output are recalculated at both ends; do so once."""
+        """Return whether the error of an output is propagated; the first call recalculates both ends."""
         if origin in self._ends:
             return True
         seconds = 2 * self._following_seconds(origin)
@@ -244,7 +252,7 @@ class Shifts:
         return True
 
     def _following_seconds(self, origin: Reference) -> float:
-        """Estimate the time of all steps that depend on an output for a single row [s]."""
+        """Estimate the time of all steps and relations that depend on an output, for one row [s]."""
         nodes = following(self.calculation, {origin})
         steps = (node for node in nodes if isinstance(node, Block) and node.name in self._levels)
         relations = self.calculation.operations * PER_OPERATION

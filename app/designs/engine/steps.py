@@ -41,11 +41,11 @@ from templates.core.units.units import Value
 NO_VALUE = "there is no value here"
 
 Given = Mapping[str, Column | Raw]
-"""Inputs of a step by name: those that differ from row to row as columns, all others as they were read."""
+"""Inputs of a step by name: columns if they differ from row to row, else the values as read."""
 
 
 class LevelMoved(Exception):
-    """Some rows start at another level than those before them; one level has to serve all rows."""
+    """Raised if some rows start at another level than the rows before them; all rows must share one level."""
 
     def __init__(self, step: str, before: str, level: str) -> None:
         self.step, self.before, self.level = step, before, level
@@ -54,7 +54,7 @@ class LevelMoved(Exception):
 
 @dataclass(frozen=True)
 class Part:
-    """A template with the answers for some of the rows."""
+    """An evaluated template with the answers for some of the rows."""
 
     rows: Indices
     template: Template
@@ -63,7 +63,7 @@ class Part:
 
     @cached_property
     def is_array(self) -> bool:
-        """Return whether its template has a point for each of its rows."""
+        """Return whether the template of the part has one point for each of its rows."""
         return self.template.shape_of_points() == self.rows.shape
 
 
@@ -74,13 +74,13 @@ class StepRows:
     Attributes
     ----------
     has_rows
-        Whether any input differs from row to row. If not, there is one row, which stands for all.
+        Whether any input differs from row to row. If not, there is a single result for all rows.
     level
-        At which it was evaluated.
+        The level at which the step was evaluated.
     refusals
-        By row.
+        The refused rows.
     evaluation
-        Of a step that is one for all rows.
+        The evaluation of a step that is equal in all rows.
     """
 
     block: Block
@@ -94,7 +94,7 @@ class StepRows:
 
     @classmethod
     def of(cls, block: Block, evaluation: Evaluation) -> StepRows:
-        """Return a step without varied values."""
+        """Return the results of a step without varied inputs."""
         part = Part(_ONE_ROW, evaluation.template, evaluation.outputs, evaluation.error)
         level = evaluation.level if isinstance(evaluation.level, str) else None
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
@@ -111,7 +111,7 @@ class StepRows:
         Raises
         ------
         InvalidInputs
-            If its curve has different lengths in some rows.
+            If it is a curve whose length differs between rows.
         """
         if name not in self._columns:
             values = [(part.rows, self._value(part, name)) for part in self.parts]
@@ -126,14 +126,16 @@ class StepRows:
         return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
 
     def absence(self, output: str) -> str | None:
-        """Return why an output does not exist in rows that are not refused: the first reason."""
+        """Return the first reason why an output has no value in a row that is not refused, else None."""
         for part in self.parts:
             answer = part.answers[output]
             if answer.value is None:
                 return answer.reason or NO_VALUE
             if answer.reasons is not None:
                 reasons = answer.reasons.ravel().tolist()
-                if len(reasons) != part.rows.size:  # one for all rows, or those of a list in one row
+                if (
+                    len(reasons) != part.rows.size
+                ):  # the reasons apply to all rows, or to the items of a list in one row
                     reasons = [next(filter(None, reasons), None)] * part.rows.size
                 for row, reason in zip(part.rows.tolist(), reasons, strict=True):
                     if reason is not None and row not in self.refusals:
@@ -141,7 +143,7 @@ class StepRows:
         return None
 
     def _joined(self, columns: list[tuple[Indices, Column]]) -> Column:
-        """Return one column of all parts, without refused rows."""
+        """Return the column that combines all parts, with NaN in refused rows."""
         if not columns:
             return Column(np.nan)
         if len(columns) == 1 and columns[0][0].size == self.count:
@@ -168,7 +170,7 @@ class StepRows:
         return Column(error, is_row=self.has_row_axis(part) and bool(np.ndim(error)))
 
     def has_row_axis(self, part: Part) -> bool:
-        """Return whether the values of a part may have an axis of rows: a single row is a single value."""
+        """Return whether the values of a part may have a row axis; a single row has none."""
         return self.has_rows and part.is_array
 
 
@@ -204,7 +206,7 @@ def step_rows(
 
 
 def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iterator[Indices]:
-    """Yield groups of rows for one array call; rows share those inputs that must be equal for all points."""
+    """Yield groups of rows for one array call; the rows of a group agree in inputs that cannot be arrays."""
     if not rows.size:
         return
     shared = [
@@ -227,7 +229,7 @@ def _is_one_for_all(block: Block, name: str) -> bool:
 
 @dataclass(frozen=True)
 class _Evaluator:
-    """The array calls of one step."""
+    """Evaluates one step by array calls."""
 
     step: StepRows
     given: Given
@@ -250,7 +252,7 @@ class _Evaluator:
             self.step.refusals |= masked(self.step.block.name, part.template, part.rows)
 
     def _varied(self) -> list[str]:
-        """Return the inputs that differ from row to row."""
+        """Return the names of the inputs that differ from row to row."""
         return [name for name, value in self.given.items() if isinstance(value, Column)]
 
     def _part(self, rows: Indices) -> Part:
@@ -290,7 +292,7 @@ class _Evaluator:
         return TypedQuantity(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
-        """Return the number of places of the other curves along the same axis."""
+        """Return the number of points of the other curves along the same axis."""
         lengths = [1]
         for name, value in self.given.items():
             other = self.step.block.cls.inputs[name]
@@ -301,11 +303,14 @@ class _Evaluator:
 
 
 Evaluations = Sequence[tuple[Part, EvaluatedValues]]
-"""The parts of a step as the criteria of its template see them."""
+"""The parts of a step, each with its evaluated values for criteria."""
 
 
 def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowEstimate | Absent:
-    """Return the value of an input or output of a step with its error, or the reason if no row has one."""
+    """Return the value of an input or output of a step with its error.
+
+    If no row has a value, return the reason.
+    """
     estimates = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
     present = [(part, one) for part, one in estimates if isinstance(one, Estimate)]
     if not present:
@@ -325,7 +330,7 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
 def _column(
     step: StepRows, parts: Sequence[tuple[Part, Estimate]], of: Callable[[Estimate], Value], axes: int
 ) -> Column:
-    """Return one column of all parts; NaN in rows that are refused."""
+    """Return the column that combines all parts; NaN in refused rows."""
     columns: list[tuple[Indices, Column]] = []
     for part, estimate in parts:
         value = of(estimate)
@@ -339,11 +344,11 @@ def _column(
 
 class _StepState(NamedTuple):
     evaluation: Evaluation
-    values: int  # that its template had computed: it computes further ones when asked, and grows
+    values: int  # number of values that the template had computed; it grows when further values are requested
 
 
 class Memory:
-    """The latest evaluations of steps, so that a change recomputes only what depends on it."""
+    """A cache of the latest evaluations of steps, so that a change recomputes only what depends on it."""
 
     def __init__(self, cache: Cache = results) -> None:
         self._cache = cache

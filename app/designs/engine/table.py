@@ -1,4 +1,4 @@
-"""The results of many rows of a design: columns, errors, levels, and the reasons of rows without values."""
+"""The results of many rows of a design: columns, errors, levels, and the reasons for missing values."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from templates.core.errors import Fault, InvalidInputs
 
 @dataclass
 class Table:
-    """The values of `count` rows.
+    """The results of `count` rows.
 
     Attributes
     ----------
     columns
-        By name, in SI: of shape (N,), or (N, K) of a curve. NaN where a row is refused, where an output does
-        not exist, and where it waits for a solid. A value that is one for all rows is a read-only view.
+        Values in SI by name, of shape (N,), or (N, K) for a curve. NaN where a row is refused, an output does
+        not exist, or a value is pending. A value that is equal in all rows is a read-only view.
     errors
-        The own relative error of an output of a step, of shape (N,); NaN where none is stated.
+        The relative error that a step states for its output, of shape (N,); NaN where it states none.
     refusals
-        By row, the first reason why some of its values are missing.
+        For each refused row, the first reason why values are missing.
     absent
-        Outputs that do not exist in some rows that are not refused, and the first reason.
+        Outputs without a value in some rows that are not refused, each with the first reason.
     levels
-        By step, the one level of all rows.
+        The level of each step, which is the same for all rows.
     verdicts
-        By criterion, the verdict of each row: an index into `criteria.comparison.VERDICTS`.
+        The verdict of each row by criterion, as an index into `criteria.comparison.VERDICTS`.
     judged
-        By criterion, what was compared in each row, where that was asked for.
+        The compared numbers of each row by criterion, if they were requested.
     """
 
     count: int
@@ -51,11 +51,11 @@ class Table:
 
     @classmethod
     def of(cls, count: int, wanted: Iterable[Reference]) -> Table:
-        """Return a table to which chunks are added; without rows its columns are complete."""
+        """Return an empty table for `count` rows; if `count` is 0, its columns are complete."""
         return cls(count) if count else cls(0, {reference: np.empty(0) for reference in wanted})
 
     def add(self, start: int, rows: Calculation, wanted: Iterable[Reference]) -> None:
-        """Add a chunk that begins at a row."""
+        """Add the results of a chunk that begins at row `start`."""
         chunk = slice(start, start + rows.count)
         for reference in wanted:
             column = rows.column(reference)
@@ -74,7 +74,7 @@ class Table:
     def judge(
         self, start: int, rows: Calculation, subjects: Mapping[str, Subject], *, with_columns: bool
     ) -> None:
-        """Judge a chunk that begins at a row."""
+        """Judge the rows of a chunk that begins at row `start`, and add their verdicts."""
         verdicts, chunk = Verdicts(rows), slice(start, start + rows.count)
         for name, subject in subjects.items():
             codes, column = verdicts.rows(subject)
@@ -86,7 +86,10 @@ class Table:
                 self.judged[name] = column.within(whole, chunk, self.count)
 
     def _filled(self, whole: Array | None, chunk: slice, column: Column, reference: Reference) -> Array:
-        """Return a column with the values of a chunk; allocated once, unless one value serves all rows."""
+        """Return a column with the values of a chunk filled in; allocate it at the first chunk.
+
+        If one value serves all rows, the column is a view of it.
+        """
         if not column.is_row and chunk == slice(0, self.count):
             return column.spread(self.count)
         if whole is None or (whole.ndim == 1 and column.rank):

@@ -1,4 +1,4 @@
-"""The criteria of a calculated design: those of its templates and its own, with errors carried downstream."""
+"""The criteria of a calculated design: those of its templates and its own, with propagated errors."""
 
 from __future__ import annotations
 
@@ -41,30 +41,33 @@ from templates.core.language.levels import accuracy
 from templates.core.units.relation import Relation
 
 RowCodes = NDArray[np.int8]
-"""The verdict of each row as a place in `templates.core.criteria.comparison.VERDICTS`."""
+"""The verdict of each row, as an index into `templates.core.criteria.comparison.VERDICTS`."""
 
 COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
 
 def judged(calculation: Calculation) -> list[Judgement]:
-    """Return every criterion of a design, worst first; those that wait for a value are not checked."""
+    """Return the judgement of every criterion, worst first.
+
+    A criterion with a pending value is not checked.
+    """
     return worst_first(Verdicts(calculation).all())
 
 
 @dataclass(frozen=True)
 class JudgedColumn:
-    """The sides of a criterion [SI] in each row, at its worst place; NaN where there is none.
+    """The two sides of a criterion [SI] in each row, at its worst point; NaN where there is none.
 
     Attributes
     ----------
     low, high
-        The band of the value as far as its error is known; infinite where it is open.
+        The error band of the value as far as known; infinite at an unknown end.
     utilisation
-        Limit over value, or value over limit; NaN unless both are positive, and of temperatures.
+        Limit over value, or value over limit; NaN for temperatures, and if either is not positive.
     margin
-        Positive is safe.
+        The difference between value and limit; positive is safe.
     is_known
-        Whether every error behind it is known, in all rows.
+        Whether all errors that affect the criterion are known, in all rows.
     """
 
     value: Array
@@ -76,7 +79,7 @@ class JudgedColumn:
     is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column for this number of rows, of which this is a chunk; other rows come from `whole`."""
+        """Return a column of `count` rows with this chunk filled in; the other rows come from `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)
@@ -91,16 +94,16 @@ def _columns(whole: JudgedColumn | None, count: int) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class _Sides:
-    """The values that a criterion names, with the errors that reach them from upstream.
+    """The values that a criterion names, with the errors propagated to them.
 
     Attributes
     ----------
     shifts
-        All values, with something upstream at either end of its band.
+        All values, for each uncertain upstream output at either end of its band.
     unknown
-        What is upstream whose error is not known, or not carried on.
+        Upstream outputs whose error is unknown or not propagated.
     is_known
-        Where the errors of all that is upstream are known, beside the values.
+        Where the errors of all upstream outputs are known, in the shape of the values.
     """
 
     estimates: Mapping[str, Estimate]
@@ -111,18 +114,18 @@ class _Sides:
 
 @dataclass(frozen=True)
 class Verdicts:
-    """A calculated design with its verdicts."""
+    """The verdicts of a calculated design."""
 
     calculation: Calculation
     _steps: dict[str, Evaluations] = field(default_factory=dict)
     _estimates: dict[Reference, RowEstimate | Absent] = field(default_factory=dict)
 
     def all(self) -> Iterator[Judgement]:
-        """Return every criterion, in no order."""
+        """Yield the judgement of every criterion, in no particular order."""
         return self.some(self._subjects)
 
     def some(self, names: Iterable[str]) -> Iterator[Judgement]:
-        """Yield the criteria of these names."""
+        """Yield the judgements of the named criteria."""
         for name in names:
             subject = self._subjects[name]
             if subject.block is not None:
@@ -135,15 +138,15 @@ class Verdicts:
         return list(self._subjects)
 
     def subject(self, name: str) -> Subject:
-        """Return a criterion by name, and the place of its declaration."""
+        """Return a criterion by name, with the block or the design that declares it."""
         return self._subjects[name]
 
     def references(self, name: str) -> Mapping[str, Reference]:
-        """Return the values that a criterion names, without limits."""
+        """Return the values that a criterion names, without typed limits."""
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """Return the outputs of steps whose errors, known or not, widen the band of a criterion."""
+        """Return the step outputs whose errors, known or not, widen the band of a criterion."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
@@ -176,7 +179,7 @@ class Verdicts:
         return Shifts(self.calculation, self._estimate)
 
     def _of_template(self, block: Block, subject: Subject) -> Iterator[Judgement]:
-        """Yield the criteria of a step's template, unless the step does not compute the required outputs."""
+        """Yield the judgement of a template's criterion, unless the step omits a required output."""
         criterion, evaluated = subject.criterion, self._evaluated(block.name)
         if evaluated is None:
             absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
@@ -189,7 +192,7 @@ class Verdicts:
         yield _named(judgement, block, subject.demand)
 
     def _instead(self, block: Block, evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None:
-        """Return the judgement of the alternative comparison if a side has no value, with upstream errors."""
+        """Return the judgement of the alternative comparison if a value is missing, else None."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
             return None
@@ -214,9 +217,9 @@ class Verdicts:
         return self._judged(subject, rows, along, more, instead)
 
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
-        """Return the limits whose relations have no value yet.
+        """Return the limits whose relations have no value yet, each with that reason.
 
-        A library row does not replace them.
+        A library row does not replace such a limit.
         """
         related = (block.related[name] for name in criterion.limits_by_name if name in block.related)
         waiting = [cell for cell in related if cell.name not in self.calculation.values]
@@ -226,7 +229,7 @@ class Verdicts:
         }
 
     def _of_design(self, subject: Subject, demand: Demand) -> Judgement:
-        """Return a criterion declared in the design."""
+        """Return the judgement of a criterion that the design declares itself."""
         values = {name: self._estimate(reference) for name, reference in demand.uses.items()}
         estimates = {name: one for name, one in values.items() if isinstance(one, RowEstimate)}
         absent = {name: one for name, one in values.items() if isinstance(one, Absent)}
@@ -237,14 +240,14 @@ class Verdicts:
         return self._judged(subject, estimates, along, more, None)
 
     def _stated_by(self, demand: Demand) -> dict[str, str | None]:
-        """Return level and truth, if an output of a step is judged directly."""
+        """Return the level and the error reference of a step's output that a criterion judges directly."""
         subject = demand.criterion.subject if demand.criterion else None
         reference = demand.uses[subject] if subject else None
         evaluated = self._evaluated(reference.block) if reference and reference.output else None
         return level_and_truth(evaluated, reference.output) if reference and evaluated else {}
 
     def _along(self, demand: Demand) -> Along | None:
-        """Return the places of the first curve that a criterion uses."""
+        """Return the axis of the first curve that a criterion uses; None if it uses none."""
         for reference in demand.uses.values():
             evaluated = self._evaluated(reference.block) if reference.output else None
             along = along_of(evaluated.template, [reference.member]) if evaluated else None
@@ -260,7 +263,7 @@ class Verdicts:
         more: Mapping[str, str | None],
         instead: Instead | None,
     ) -> Judgement:
-        """Return a judged criterion, all of whose names have values."""
+        """Return the judgement of a criterion whose values all exist."""
         criterion = subject.criterion
         try:
             sides = self._sides(subject, estimates)
@@ -285,7 +288,7 @@ class Verdicts:
         Raises
         ------
         FaultyText
-            If that needs too many operations.
+            If the comparison needs too many operations.
         """
         criterion = subject.criterion
         references = {name: one for name, one in subject.references.items() if name in estimates}
@@ -303,7 +306,7 @@ class Verdicts:
         return _Sides(fitted, shifts, unknown, self._is_known(estimates, upstream, rank))
 
     def _is_known(self, estimates: Mapping[str, RowEstimate], upstream: Upstream, rank: int) -> Truth:
-        """Return where the errors of all upstream values are known."""
+        """Return where the errors of all upstream outputs are known."""
         if not (upstream.unknown or upstream.stopped):
             return True
         certain = ~self._shifts.unknown(upstream)
@@ -342,12 +345,12 @@ class Verdicts:
         return Absent((), f"{reference} is not computed; name it in the outputs of the step")
 
     def _evaluated(self, step: str) -> EvaluatedValues | None:
-        """Return a step as its criteria see it; None for a model, and while it is pending."""
+        """Return the evaluated values of a step for its criteria; None for a model or a pending step."""
         parts = self._parts(step)
         return parts[0][1] if parts else None
 
     def _parts(self, name: str) -> Evaluations:
-        """Return the parts of a step as its criteria see them; none for a model, and while it is pending."""
+        """Return each part of a step with its evaluated values; none for a model or a pending step."""
         if name not in self._steps:
             step = self.calculation.step(name)
             self._steps[name] = []
@@ -367,7 +370,7 @@ class Verdicts:
     def _limits(self, block: Block) -> Mapping[str, GivenLimit]:
         """Return the limits of a step.
 
-        Limits set by relations are included once they have values, with the relation as their source.
+        A limit set by a relation is included once it has a value, with the relation as its source.
         """
         if not block.related:
             return block.limits
@@ -377,7 +380,7 @@ class Verdicts:
         return {**block.limits, **given}
 
     def _of_rows(self, subject: Subject) -> dict[str, RowEstimate]:
-        """Return the values that a criterion names in the rows, as far as they exist."""
+        """Return the existing values among those that a criterion names in the rows."""
         block = subject.block
         if block is not None and block.is_model:
             return {}
@@ -394,7 +397,7 @@ class Verdicts:
         return estimates
 
     def _limit(self, subject: Subject, limit: Limit, others: Mapping[str, RowEstimate]) -> RowEstimate | None:
-        """Return a limit of the user: one for all rows, or a curve beside a curve."""
+        """Return a limit set by the user or by default: one for all rows, or a curve beside another curve."""
         assert subject.block is not None
         given = subject.block.limits.get(limit.name)
         if given is not None:
@@ -414,7 +417,7 @@ class Verdicts:
         return RowEstimate.exact(Column(end, column.is_row))
 
     def _compared(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> tuple[Array, JudgedColumn]:
-        """Return the verdicts of rows, and the numbers behind them."""
+        """Return the verdict of each row, and the numbers behind it."""
         sides = self._sides(subject, estimates)
         compared = compare(subject.criterion, sides.estimates, sides.shifts, is_known=sides.is_known)
         if not any(one.has_rows for one in estimates.values()) and np.ndim(compared.codes):
@@ -423,7 +426,7 @@ class Verdicts:
         return codes, _column(subject.criterion, numbers)
 
     def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
-        """Return verdicts; where a value is missing, those of the alternative comparison."""
+        """Return verdicts; rows with a missing value get the verdict of the alternative comparison."""
         for missing, instead in subject.instead:
             if not instead.is_due(self.calculation.graph) or subject.block is None:
                 continue
@@ -438,7 +441,7 @@ class Verdicts:
     def _not_checked(
         self, criterion: Criterion, estimates: Mapping[str, RowEstimate]
     ) -> tuple[RowCodes, JudgedColumn]:
-        """Return "not checked" for every row, with the value of a side that has a single one."""
+        """Return "not checked" for every row, with the sides that have single values."""
         count = self.calculation.count
         nothing = np.full(count, np.nan)
         value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
@@ -447,7 +450,7 @@ class Verdicts:
         return np.full(count, NOT_CHECKED, dtype=np.int8), column
 
     def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
-        """Return the value of a side, if it has one for each row."""
+        """Return the value of one side of a criterion in each row; NaN if it is a curve or incomplete."""
         count = self.calculation.count
         if side.names <= estimates.keys() and not any(estimates[n].value.rank for n in side.names):
             value = side_of(side, {name: estimates[name].padded(0) for name in side.names})
@@ -466,7 +469,7 @@ def _padded(
 
 
 def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
-    """Return the numbers of each row, as in a report of a single design."""
+    """Return the two sides, utilisation and margin of a criterion in each row."""
     value, limit, low, high, *_, certain = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
@@ -478,14 +481,14 @@ def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:
-    """Return a judgement that names the upstream place where its error is lost."""
+    """Return a judgement with a reason that names the upstream outputs of unknown error."""
     if sides.unknown and not result.error_known and result.margin is not None:
         return replace(result, reason=unknown_error(map(in_words, map(str, sides.unknown)), result.verdict))
     return result
 
 
 def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upstream: Upstream) -> int:
-    """Count the operations on single values that a criterion needs in one row, with its shifted sides."""
+    """Count the operations on single values that judging a criterion takes in one row, shifts included."""
     points = spanned(estimate.value.places for estimate in estimates.values())
     limit_values(points)
     times = 1 + 2 * (len(estimates) + len(upstream.uncertain))
@@ -493,7 +496,7 @@ def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upst
 
 
 def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
-    """Return a criterion of a template under its name in the design, with the design's changes."""
+    """Return a judgement under the criterion's name in the design, with the design's changes."""
     written = demand.written if demand else None
     return replace(
         judgement,

@@ -17,13 +17,17 @@ router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=Stric
 Id = Annotated[str, Path(max_length=64)]
 Number = Annotated[
     int | None,
-    Query(ge=1, le=10**9, description="of this design; its newest, or the one before `with`, if not given"),
+    Query(
+        ge=1, le=10**9, description="revision of this design; by default the newest, or the one before `with`"
+    ),
 ]
 With = Annotated[
     int | None,
-    Query(alias="with", ge=1, le=10**9, description="of the other side; its newest, if not given"),
+    Query(alias="with", ge=1, le=10**9, description="second revision; by default the newest"),
 ]
-Other = Annotated[str | None, Query(max_length=64, description="another design; this one, if not given")]
+Other = Annotated[
+    str | None, Query(max_length=64, description="design of the second revision; by default this design")
+]
 
 
 @router.get("/{id}/compare", responses=refusals(404))
@@ -35,6 +39,6 @@ def compare_revisions(
     design: Other = None,
     units: Units = "si",
 ) -> Comparison:
-    """Compare a revision of this design with another one, or with a revision of another design."""
+    """Compare a revision of this design with another revision of it, or with one of another design."""
     with database.read() as session:
         return compare(session, Pair(id, revision, design or None, number)).in_units(units)

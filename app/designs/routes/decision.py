@@ -1,4 +1,4 @@
-"""`/designs/{id}/decide`: refine levels where a criterion is undecided, or its error unknown."""
+"""`/designs/{id}/decide`: refine the levels of steps whose criteria are undecided or of unknown error."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ async def decide_criteria(
 ) -> Response:
     """Decide the criteria of the newest revision and of its variants; nothing is saved.
 
-    Finer levels are calculated where a criterion is undecided, or met or not met by a value of unknown error.
+    The service calculates finer levels where a criterion is undecided, or where the error of its value is
+    unknown.
     """
     wanted = body or DecideIn()
     asked = DecisionQuestion(

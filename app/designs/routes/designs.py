@@ -66,13 +66,17 @@ Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")
 IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
 Within = Annotated[
     float | None,
-    Query(ge=0, le=LONGEST, description="leave pending what takes longer [s], instead of queueing a job"),
+    Query(
+        ge=0,
+        le=LONGEST,
+        description="longest wait [s]; longer calculations are left pending and no job is queued",
+    ),
 ]
 CHANGED = {**later(Design), **refusals(404, 429)}
 
 
 def seconds_waited(prefer: str | None) -> float:
-    """Return how long a request waits for expensive steps [s]; at most until the deadline."""
+    """Return how long a request waits for expensive steps [s]; never longer than its deadline."""
     return patience(prefer, math.inf)
 
 
@@ -96,35 +100,40 @@ async def answer_saved(
 
 
 def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """Return a design as a response; the ETag is its revision."""
+    """Return a design as a response whose ETag is the revision."""
     return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})
 
 
-PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of designs
+PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # text without control characters, as in names of designs
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
 )
 saves = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=PlainRoute)
-"""What is called most: create and PATCH."""
+"""The most frequent routes: create and PATCH."""
 
 Explained = Annotated[str, Path(max_length=140, description="`model.width`; `film.film`, a criterion")]
 NamePart = Annotated[
     str | None,
-    Query(max_length=200, pattern=PRINTABLE, description="part of the name, in upper or lower case"),
+    Query(max_length=200, pattern=PRINTABLE, description="part of the name; case is ignored"),
 ]
 InState = Annotated[State | None, Query(description="state of the newest revision")]
 WithTags = Annotated[
-    list[Tag], Query(alias="tag", max_length=MOST_TAGS, description="a tag that it has; repeat it for more")
+    list[Tag],
+    Query(
+        alias="tag",
+        max_length=MOST_TAGS,
+        description="a tag that the design has; repeat the parameter for more tags",
+    ),
 ]
 Archived = Annotated[
     Literal["false", "true", "any"],
-    Query(description="`false`: without archived designs; `true`: these alone; `any`: these as well"),
+    Query(description="`false`: without archived designs; `true`: only archived designs; `any`: both"),
 ]
 UsedTemplate = Annotated[
     str | None,
     Query(
-        description="a template or model that the newest revision uses, in any version or in one: "
+        description="a template or model that the newest revision uses, in any version or in a given one: "
         "`oil_film`, `oil_film/2`",
         json_schema_extra={"pattern": TEMPLATE},
     ),
@@ -181,7 +190,7 @@ def list_designs(
 
 @router.get("/{id}", response_model=Design, responses=refusals(404))
 def show_design(id: Id, designs: TheDesigns) -> Response:
-    """Return a design at its newest revision; the ETag is that revision."""
+    """Return a design at its newest revision, which is also the ETag."""
     return shown(designs.show(id))
 
 
@@ -196,7 +205,7 @@ async def change_design(
 ) -> Response:
     """Create a new revision; models are rebuilt only if one of their parameters changed.
 
-    A new name alone keeps all results: nothing is calculated.
+    If only the name changes, the new revision keeps all results.
     """
     patch, note = noted(body)
     change = services_of(request).designs.change
@@ -206,7 +215,7 @@ async def change_design(
 async def _saved(
     request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], SaveResult]
 ) -> Response:
-    """Save a design in a thread that may wait for the pool; return the answer."""
+    """Save a design in a thread that may wait for the pool, and return the response."""
     services, client = services_of(request), await get_client(request)
     once = await get_once(request, client, key)
     await expensive_steps(request, client)
@@ -234,7 +243,9 @@ async def preview_design(
     threads: TheThreads,
     client: TheClient,
     request: Request,
-    worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
+    worksheet: Annotated[
+        bool, Query(description="also return every step with its formulas written out")
+    ] = False,
     units: Units = "si",
     within: Within = None,
     prefer: Prefer = None,
@@ -258,10 +269,10 @@ async def map_design(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """Propose relations for unset model parameters, to quantities of the same kind and role.
+    """Propose relations that link unset model parameters to quantities of the same kind and role.
 
-    A quantity fits if it has the same kind, a name of the parameter, and belongs to the same part. Each
-    proposal gives its reason. With `apply` all are saved as a new revision.
+    A quantity fits if it has the same kind and a name of the parameter, and belongs to the same part. Each
+    proposal gives its reason. With `apply`, the service saves all proposals as a new revision.
     """
     proposals, saved = await threads.run_within(
         seconds_waited(prefer), request, designs.auto_map, id, apply, if_match, once
@@ -291,7 +302,7 @@ async def copy_design(
 
 @router.get("/{id}/measurements", responses=refusals(404))
 def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
-    """Return measurements of the newest valid models, with dimensions read back from the STEP files."""
+    """Return measurements of the newest valid models, and the dimensions measured on their STEP files."""
     with database.read() as session:
         measured = views.measurements(session, id)
         return {name: model.in_units(units) for name, model in measured.items()}
@@ -320,17 +331,17 @@ async def explain_name(
 
 
 def document_of(body: DesignIn) -> tuple[JsonObject, str | None]:
-    """Return the document of a new design, and its note."""
-    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
+    """Return the document of a new design without its note, and the note."""
+    raw = body.model_dump()  # Python mode, because JSON mode turns NaN into null
     note = raw.pop("note")
     raw.pop("model")
     return raw, note
 
 
 def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
-    """Return a patch and its note."""
+    """Return a patch without its note, and the note."""
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
-        raise InvalidInputs([Fault("note", "string", f"a note has at most {LONGEST_NOTE} letters")])
+        raise InvalidInputs([Fault("note", "string", f"a note has at most {LONGEST_NOTE} characters")])
     return patch, note

@@ -17,7 +17,7 @@ from app.storage.database import Database
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
-# How a design names the events of its job.
+# Names that a design's stream gives to the events of its job.
 NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current", "cancelled": "failed"}
 
 
@@ -25,10 +25,10 @@ NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current",
 async def watch_design(
     id: Id, database: TheDatabase, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:
-    """Stream the state first, then `revision`, `regenerating`, `progress`, `current` and `failed` events.
+    """Stream the state of a design, then its events.
 
-    A client that reconnects gets the events after its last one instead of the state, if they are still
-    stored.
+    The events are `revision`, `regenerating`, `progress`, `current` and `failed`. A client that reconnects
+    gets the events after its last one instead of the state, if they are still stored.
     """
     async with listening(jobs.events, f"design:{id}") as events:
         now = await run_in_threadpool(_start, database, id, last)
@@ -44,6 +44,6 @@ async def watch_design(
 
 
 def _start(database: Database, id: str, last: int | None) -> RegenerationState | None:
-    """Return the state of a design; None if the reader can continue after its last event."""
+    """Return the state of a design; None if the client can continue after its last event."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

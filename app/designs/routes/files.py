@@ -40,9 +40,10 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
-from cad.deflection import with_deflection
 from cad.drafting.paper import TYPESETTER
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.file_kinds import with_deflection, with_part
+from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -60,27 +61,36 @@ FILES: RouteOptions = {
 }
 
 PRINTED = {"drawing.pdf": "drawing.svg"}
-"""Kinds that are typeset of another one with its stamp: nothing can be written into a finished PDF."""
+"""Kinds that are typeset from another kind, stamp included, because a finished PDF cannot be stamped."""
 
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
 Deflection = Annotated[
     str | None,
     Query(
         max_length=60,
-        description="of GLB and STL, how far a facet may lie from the true surface: a length of 1/10 000 "
+        description="for GLB, STL and 3MF, the largest distance of a facet from the true surface: 1/10 000 "
         "to 1/10 of the diagonal of the largest body's box",
         examples=["0.05 mm"],
+    ),
+]
+PartName = Annotated[
+    str | None,
+    Query(
+        max_length=120,
+        description="of GLB, STL, 3MF and BREP, the one part of an assembly that the file holds, in its own "
+        "coordinates; without it the file holds all parts at their positions",
+        examples=["upper_shell"],
     ),
 ]
 BuildSeen = Annotated[
     str | None,
     Query(
         max_length=64,
-        description="changes nothing: a page writes the key of the build that it shows, so that a browser "
+        description="has no effect; a page adds the key of the build that it shows, so that a browser "
         "fetches the file of another build again",
     ),
 ]
-IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
+IfNoneMatch = Annotated[str | None, Header(description="ETags of the files that the client has")]
 
 
 @dataclass(frozen=True)
@@ -99,23 +109,24 @@ class FileRequest:
     prefer: str | None
     if_none_match: str | None
     deflection: str | None
+    part: str | None
     title_block: TitleBlock
 
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
-        """Return a file of the model that `find` finds, of the kind in the path or the preferred kind.
+        """Return a file of the model that `find` returns, of the kind in the path or the preferred kind.
 
         Raises
         ------
         NotFound
             If there is no such kind, or no such model.
         InvalidInputs
-            If the deflection is not a length, the kind has no facets or no title block, or a typed text
-            contradicts the approval.
+            If the deflection is not a length, the kind has no facets, no single part or no title block, or a
+            typed text contradicts the approval.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
-            raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
+            raise NotFound(f"there is no file model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
         key, stored_kind, stamp, old = await run_in_threadpool(self._lookup, find, wanted)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
         if answer is None and (
@@ -131,7 +142,7 @@ class FileRequest:
     def _lookup(
         self, find: Callable[[Session], RevisionModelRow], wanted: str
     ) -> tuple[str, str, Stamp, File | None]:
-        """Return the key of the model's build, the stored kind, its stamp, and an older file."""
+        """Return the key of the model's build, the stored kind, its stamp, and the existing file if any."""
         with self.database.read() as session:
             model = find(session)
             kind = self._stored_kind(wanted)
@@ -141,13 +152,14 @@ class FileRequest:
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
-        """Return the stored kind of file for a requested one."""
-        if self.deflection is not None:
-            return with_deflection(wanted, self.deflection)
-        return PRINTED.get(wanted, wanted)
+        """Return the stored kind of file from which the requested kind is made."""
+        kind = wanted if self.deflection is None else with_deflection(wanted, self.deflection)
+        if self.part is not None:
+            kind = with_part(kind, self.part)
+        return PRINTED.get(kind, kind)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
-        """Return None once a file exists, 202 if the client stops waiting, or why it cannot be created."""
+        """Return None once the file exists, 202 if the client stops waiting, or why it cannot be created."""
         job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
         if not await finished(self.jobs, job, prefer):
             return accepted(job)
@@ -155,8 +167,9 @@ class FileRequest:
         return problems.answer(problem) if problem and not has_older else None
 
     def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
-        """Return a file under its name, or 304; with its stamp, if its kind has one."""
-        plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
+        """Return a file under its name, or 304; if its kind has a stamp, the file is stamped."""
+        part = "" if self.part is None else f"_{plain_name(self.part)}"
+        plain, wide = f"{stamp.stem}{part}.{kind}", f"{stamp.wide_stem}{part}.{kind}"
         headers = {
             "Design-Revision": str(stamp.revision),
             "Vary": "Accept",
@@ -190,7 +203,7 @@ async def plain_file_request(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> FileRequest:
-    """Return the parts of a request that all routes of files have in common."""
+    """Return the parts that all requests for files have in common."""
     return FileRequest(
         database,
         store,
@@ -204,6 +217,7 @@ async def plain_file_request(
         prefer,
         if_none_match,
         deflection=None,
+        part=None,
         title_block=TitleBlock({}),
     )
 
@@ -215,10 +229,11 @@ async def file_request(
     plain: ThePlainFileRequest,
     title_block: TheTitleBlock,
     deflection: Deflection = None,
+    part: PartName = None,
     build: BuildSeen = None,
 ) -> FileRequest:
-    """Return the same request with the options of a mesh and of a drawing."""
-    return replace(plain, deflection=deflection, title_block=title_block)
+    """Return the request with the options of a mesh and of a drawing."""
+    return replace(plain, deflection=deflection, part=part, title_block=title_block)
 
 
 TheFileRequest = Annotated[FileRequest, Depends(file_request)]
@@ -241,21 +256,21 @@ async def read_model_file(
 ) -> Response:
     """Return a file of a model, named after its design, model and revision.
 
-    Other kinds than STEP are created at the first request. The answer waits for that, and is 202 if it takes
-    longer than the client waits. STEP files and drawings also contain the name of their design, and drawings
-    the signatures.
+    STEP files exist at once; other kinds are created at the first request. If that takes longer than the
+    client waits, the answer is 202. STEP files and drawings also contain the name of the design, and drawings
+    contain the signatures.
     """
     return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
-    """Return whether a drawing comes from an older program without room for a stamp; it is drawn again."""
+    """Return whether a drawing by an older program has no room for a stamp and must be drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 
 
 def _accepted(accept: str | None) -> str:
-    """Return the kind that the client prefers, the first of several equal ones; STEP by default."""
+    """Return the kind that the client prefers, the first of equal ones; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
     liked = [(weight, kinds[media]) for media, weight in accepted_weights(accept).items() if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]

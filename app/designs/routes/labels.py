@@ -25,7 +25,7 @@ def show_labels(id: Id, labelling: TheLabelling) -> Labels:
 
 @router.post("/designs/{id}/labels", responses=refusals(404))
 def change_labels(id: Id, body: LabelsIn, labelling: TheLabelling) -> Labels:
-    """Add and remove tags, archive or restore a design; this creates no revision and calculates nothing."""
+    """Add and remove tags, archive or restore a design; this creates no revision."""
     return labelling.label(id, body)
 
 

@@ -19,5 +19,5 @@ Id = Annotated[str, Path(max_length=64)]
 
 @router.get("/{id}/network", response_model=DesignNetwork, responses=refusals(404))
 def show_network(id: Id, designs: TheDesigns) -> Response:
-    """Return the dependencies of a design: blocks in calculation order, relations, and names for them."""
+    """Return the dependencies of a design: blocks in calculation order, relations, and usable names."""
     return written(designs.network(id))

@@ -41,7 +41,7 @@ async def restore_revision(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """Create a revision equal to an old one."""
+    """Create a revision with the document of an old one."""
     note = body.note if body else None
     saved = await threads.run_within(
         seconds_waited(prefer), request, designs.restore, id, number, note, if_match, once
@@ -55,7 +55,7 @@ def list_revisions(
     database: TheDatabase,
     limit: Limit = 50,
     cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
-    steps: Annotated[bool, Query(description="with steps, models and results of each")] = True,
+    steps: Annotated[bool, Query(description="include steps, models and results of each revision")] = True,
 ) -> RevisionList:
     """Return the revisions of a design, newest first."""
     with database.read() as session:
@@ -67,6 +67,6 @@ def list_revisions(
 
 @router.get("/{id}/revisions/{number}", responses=refusals(404))
 def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
-    """Return a revision: its inputs never change, its results are attached once."""
+    """Return a revision: its inputs never change, and its results are added once."""
     with database.read() as session:
         return views.revision(session, repository.lean(session, id, number))

@@ -1,4 +1,4 @@
-"""Sheets of variants in HTTP: media types, and how requests and routes choose one."""
+"""Media types of variant sheets: how requests and routes choose between JSON, CSV and XLSX."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ BODIES: JsonDict = {
         }
     }
 }
-"""Media types that a route takes beside JSON."""
+"""Media types that a route accepts besides JSON."""
 ANSWERS: dict[str, object] = {media: {"schema": _FILE} for media in MEDIA.values()}
-"""Media types that a route answers beside JSON."""
+"""Media types that a route returns besides JSON."""
 
 
 class SheetRoute(StrictRoute):
-    """A route of a path that another one answers in JSON: it matches only where the client names a sheet."""
+    """A route that shares its path with a JSON route; it matches only if the client names a sheet type."""
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Return whether path, method and media type fit."""
+        """Return whether the path, the method and the media type match."""
         match, child_scope = super().matches(scope)
         if match is Match.FULL and sheet_kind(Request(scope)) is None:
             return Match.NONE, {}
@@ -46,7 +46,7 @@ class SheetRoute(StrictRoute):
 
 
 def sheet_kind(request: Request) -> Kind | None:
-    """Return the kind of sheet that a client sends, or likes best; None for JSON."""
+    """Return the kind of sheet that a client sends or prefers; None for JSON."""
     if request.method == "PUT":
         sent = request.headers.get("content-type", "").partition(";")[0]
         return KINDS.get(sent.strip().lower())

@@ -1,4 +1,4 @@
-"""`…/models/{name}/fields`: fields that can be painted on a crankshaft, as GLB and as a picture."""
+"""`…/models/{name}/fields`: fields on the surface of a crankshaft, as GLB and as a picture."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ PAINTED: RouteOptions = {
 def list_solid_fields(
     id: Id, number: Number, name: Id, database: TheDatabase, catalogues: TheCatalogues
 ) -> schemas.SolidFieldList:
-    """Return the fields that can be painted on a model: utilisation of fillets, torsional mode shapes.
+    """Return the fields that can be shown on a model: utilisation of fillets, torsional mode shapes.
 
-    A `fatigue_life` that uses the tensors of the model's `unit_loads`, and has the output `load_use`,
-    provides the first; a `forced_torsion` that uses the stiffnesses of its `chain` provides the others.
+    The utilisation needs a `fatigue_life` step that uses the tensors of the model's `unit_loads` and computes
+    `load_use`. The mode shapes need a `forced_torsion` step that uses the stiffnesses of its `chain`.
     """
     with database.read() as session:
         fields = fields_of(session, catalogues.models, id, number, name)
@@ -73,16 +73,16 @@ async def read_painted_solid(
     request: ThePlainFileRequest,
     catalogues: TheCatalogues,
 ) -> Response:
-    """Return a model with a field as the colours of its surface: a GLB file, or a picture.
+    """Return a model whose surface colours show a field, as a GLB file or a picture.
 
-    Where the field has no value the part is grey. The GLB file's root node and the list of fields contain the
+    The part is grey where the field has no value. The GLB file's root node and the list of fields contain the
     title of the field and the values of the first and the last colour.
     """
     database, store = request.database, request.store
     chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)
     plain = replace(request, if_none_match=None)
     answer = await plain.answer(lambda session: views.good_model(session, id, name, number), "glb")
-    if answer.status_code != 200:  # it is still being made, or cannot be
+    if answer.status_code != 200:  # the file is still being created, or cannot be created
         return answer
     painted = await run_in_threadpool(_painted, database, store, (id, number, name), chosen, kind)
     called = f"{name}_r{number}_{field}.{kind}"

@@ -1,4 +1,4 @@
-"""`/designs/{id}/solve`: find the value of one parameter or input that gives a wanted output."""
+"""`/designs/{id}/solve`: find the values of one parameter or input that give a requested output."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ async def solve_design(
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
-    """Find every value of one parameter or input that gives a wanted output; nothing is saved."""
+    """Find every value of one parameter or input that gives a requested output; nothing is saved."""
     asked = DesignQuestion(id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units)
     return await answered(solving, asked, request, client, patience(prefer, solving.steps.deadline))

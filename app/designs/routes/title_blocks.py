@@ -1,4 +1,4 @@
-"""Title-block fields that a client sets for one download; an approval's entries have priority."""
+"""Title-block fields that a client sets for one download; entries of an approval have priority."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from cad.export import DRAWINGS, VALIDATED
 from cad.stamp import Stamp
 from templates.core.errors import Fault, InvalidInputs
 
-LONGEST = 80  # letters; a field shows what has room in it
+LONGEST = 80  # characters; a field shows as many as fit
 STEP = ("step", VALIDATED)
 _ON_PARTS = {"drawing_number", "drawing_revision"}
-"""What a STEP file has of them: the number of its product, and the revision of that."""
+"""The fields that a STEP file has: the number of its product, and its revision."""
 
 Typed = Annotated[str, Query(max_length=LONGEST)]
 
 _SIGNED = {"author": "created_by", "checker": "checked_by", "approver": "approved_by"}
-"""Names that steps of an approval give, and the parameters that type them."""
+"""Steps of an approval that set a name, and the parameters with which a client may type it."""
 _ONLY_SIGNED = {"checker", "approver"}
-"""Those that nobody types: a drawing would say on a client's word that it was checked or approved."""
+"""Names that a client may not type, because a drawing must not claim an approval that did not happen."""
 
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """The typed texts by parameter; an empty text leaves a field as it is."""
+    """The typed texts by parameter; an empty text leaves its field unchanged."""
 
     texts: dict[str, str]
 
@@ -62,39 +62,34 @@ class TitleBlock:
 
 
 def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
-    """Return names and states that only an approval may set."""
+    """Return a fault for each typed name or state that contradicts the approval."""
     faults = []
     for field, name in _SIGNED.items():
         signed = getattr(stamp, field)
         if typed.get(name, signed) == signed:
             continue
         if signed:
-            detail = f"this revision has {signed!r} here, from its record; leave it out"
+            detail = f"the record of this revision sets {signed!r} here; leave the typed text out"
             faults.append(Fault(name, "signed_otherwise", detail))
         elif field in _ONLY_SIGNED:
-            detail = "nobody has signed here; only a step of the approval gives this name: leave it out"
+            detail = "nobody has signed here, and only a step of the approval sets this name; leave it out"
             faults.append(Fault(name, "signed_otherwise", detail))
     status = typed.get("document_status", stamp.status)
     if status != stamp.status and (stamp.status in ORDER or _letters(status) in ORDER):
-        detail = (
-            f"the approval of this revision says {stamp.status!r}; only a step of the approval changes it"
-        )
+        detail = f"the approval sets {stamp.status!r} here, which only a step of the approval can change"
         faults.append(Fault("document_status", "signed_otherwise", detail))
     return faults
 
 
 def _shown(text: str) -> str:
-    """Return a text as a drawing shows it, without surrounding blanks.
-
-    Unprintable characters become spaces.
-    """
+    """Return a text as a drawing shows it: trimmed, with unprintable characters as spaces."""
     return "".join(sign if sign.isprintable() else " " for sign in text).strip()
 
 
 def _letters(text: str) -> str:
-    """Return the small Latin letters of a text.
+    """Return a text reduced to small Latin letters.
 
-    `Released.` and `ｒeleased` also look like `released` to a reader.
+    This finds texts such as `Released.` and `ｒeleased`, which look like `released` to a reader.
     """
     return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
 
@@ -109,7 +104,7 @@ def title_block(
     approved_by: Typed = "",
     document_status: Typed = "",
 ) -> TitleBlock:
-    """Return the texts of the request: fields of ISO 7200; of a STEP file number and revision."""
+    """Return the typed texts of a request: fields of ISO 7200; for a STEP file, number and revision."""
     return TitleBlock(
         {
             "legal_owner": legal_owner,

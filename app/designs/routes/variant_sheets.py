@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants` as CSV and XLSX: write and read the table of variants."""
+"""`/designs/{id}/variants` as CSV and XLSX: download and upload the table of variants."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cad.file_names import plain_name
 by_type = APIRouter(
     prefix="/api/v1/designs", route_class=SheetRoute, dependencies=[ExpensiveSteps], include_in_schema=False
 )
-"""Sheets by media type, on the path that is described with its JSON; include it before that."""
+"""Routes of sheets, on the paths of the JSON routes; include this router before the JSON router."""
 router = APIRouter(prefix="/api/v1/designs", tags=["variants"], route_class=StrictRoute)
 
 
@@ -35,17 +35,17 @@ def _described(kind: Kind) -> Responses:
 
 @router.get("/{id}/variants.csv", response_class=Response, responses=_described("csv"))
 def download_variants_as_csv(id: Id, designs: TheDesigns) -> Response:
-    """Return the variants of the newest revision as CSV: inputs, which `PUT` reads back, then results.
+    """Return the variants of the newest revision as CSV: inputs, which `PUT` accepts, then results.
 
     Row 1 has the headings, row 2 the units. A relation is in a column whose heading ends with ` =`, without
-    its equals sign. Columns whose headings begin with `results:` are ignored when the file is read.
+    its equals sign. When a file is uploaded, columns whose headings begin with `results:` are ignored.
     """
     return _file(designs, id, "csv")
 
 
 @router.get("/{id}/variants.xlsx", response_class=Response, responses=_described("xlsx"))
 def download_variants_as_xlsx(id: Id, designs: TheDesigns) -> Response:
-    """Return the variants of the newest revision as XLSX: like CSV, with the numbers as numbers."""
+    """Return the variants of the newest revision as XLSX: like CSV, but with numeric cells."""
     return _file(designs, id, "xlsx")
 
 
@@ -66,7 +66,7 @@ async def replace_variants_by_sheet(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """Create a revision with the variants of a sheet; every faulty cell is named by its address."""
+    """Create a revision with the variants of a sheet; an error names every faulty cell by its address."""
     kind, content = sheet_kind(request) or "csv", await request.body()
     save = partial(save_sheet, designs, id, content, kind, if_match, once)
     saved = await threads.run_within(patience(prefer, math.inf), request, save)

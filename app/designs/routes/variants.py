@@ -1,4 +1,4 @@
-"""`/designs/{id}/variants`: the table of a design's variants, and their files, singly or as a ZIP."""
+"""`/designs/{id}/variants`: the table of a design's variants, and their files, one by one or as a ZIP."""
 
 from __future__ import annotations
 
@@ -61,19 +61,19 @@ router = APIRouter(
 
 VariantName = Annotated[str, Path(max_length=64, examples=["main_2"])]
 MISSING = "Variants-Missing"
-"""A header: models of variants that have no finished solid, and so no file in the ZIP."""
+"""The header that lists models without a finished solid, which are missing in the ZIP."""
 Outputs = Annotated[
     list[str],
     Query(
         alias="output",
         max_length=100,
-        description="an output of a step to show, by its name in relations; repeat it for more",
+        description="name of a step output to return; repeat the parameter for more outputs",
     ),
 ]
 
 
 class VariantsIn(Bounded):
-    """The whole table of a design's variants."""
+    """The complete table of a design's variants."""
 
     model_config = ConfigDict(
         strict=True,
@@ -84,7 +84,7 @@ class VariantsIn(Bounded):
     )
 
     variants: Annotated[dict[Word, Overrides], Field(max_length=MOST_VARIANTS), at_most(MOST_VARIANTS)] = (
-        Field(description="by name; whatever is not named here is removed")
+        Field(description="variants by name; variants that are not named here are removed")
     )
     note: str | None = Note
 
@@ -100,9 +100,9 @@ def show_variants(
     output: Outputs = [],  # noqa: B006 - FastAPI copies it
     units: Units = "si",
 ) -> VariantsOut:
-    """Return the variants of a design: their overrides, verdicts and models; the worst one governs.
+    """Return the variants of a design: their overrides, verdicts and models, and the governing variant.
 
-    The ETag is the revision, which `PUT` requires as If-Match.
+    The ETag is the revision; `PUT` expects it as If-Match.
     """
     out = variants_of(id, number, database, catalogues, output, units)
     response.headers["ETag"] = f'"{out.revision}"'
@@ -117,7 +117,7 @@ def variants_of(
     outputs: Sequence[str] = (),
     units: System = "si",
 ) -> VariantsOut:
-    """Return the variants of a revision, by default the newest, with selected outputs of steps."""
+    """Return the variants of a revision, by default the newest, with the selected outputs of steps."""
     with database.read() as session:
         return views.variants(session, id, number, catalogues, dict.fromkeys(outputs)).in_units(units)
 
@@ -141,8 +141,8 @@ async def replace_variants(
 ) -> Response:
     """Create a revision with this table of variants; an unchanged table creates none.
 
-    Solids are built once for each distinct set of parameters. A variant whose solid fails states the reason;
-    the others are not affected.
+    Solids are built once for each distinct set of parameters. If the solid of a variant fails, that variant
+    gives the reason and the others are not affected.
     """
     save = partial(replaced, designs, id, body.variants, body.note, if_match, once)
     saved = await threads.run_within(patience(prefer, math.inf), request, save)
@@ -150,7 +150,7 @@ async def replace_variants(
 
 
 async def answer_table(designs: Designs, jobs: Jobs, saved: SaveResult, prefer: str | None) -> Response:
-    """Return the saved table: 200, or 202 while solids are built."""
+    """Return the saved table with status 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
@@ -209,7 +209,8 @@ async def read_variant_file(
 ) -> Response:
     """Return a file of a variant's model, named after its design, variant and revision.
 
-    Without a revision, it comes from the newest one in which the variant has a finished solid.
+    Without a revision number, the file comes from the newest revision in which the variant's solid is
+    finished.
     """
     return await request.answer(lambda session: variant_model(session, id, variant, name, number), kind)
 
@@ -222,7 +223,7 @@ ZIPPED: Responses = {
             MISSING: {"description": "models without a finished solid", "schema": {"type": "string"}}
         },
     },
-    304: {"description": "as it was when the ETag of If-None-Match was sent"},
+    304: {"description": "unchanged since the ETag in If-None-Match"},
     **UNAVAILABLE,
     **refusals(404),
 }
@@ -242,8 +243,8 @@ async def read_variants_file(
 ) -> Response:
     """Return the STEP files of all variants in a ZIP, each named after its design, variant and revision.
 
-    Equal files give equal bytes. Models that have no finished solid are left out, and named in the header
-    `Variants-Missing`.
+    Equal files give a ZIP of equal bytes. Models without a finished solid are left out, and are named in the
+    header `Variants-Missing`.
     """
 
     def find() -> tuple[int, list[Entry], list[str], str]:
@@ -278,7 +279,7 @@ def _file(store: Artifacts, entry: Entry) -> bytes:
 
 
 def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
-    """Return a strong ETag: the ZIP is a pure function of these values."""
+    """Return a strong ETag, because the ZIP depends only on these values."""
     parts = (
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)

@@ -1,1 +1,1 @@
-"""Answers of the interface about designs, their revisions and questions about them."""
+"""Response models of designs, their revisions, and requests about them."""

@@ -23,14 +23,14 @@ class Side(Answer):
 
 
 class ComparedValue(Measured):
-    """A value of one side; an array of more than 20 numbers by its range."""
+    """A value of one revision; an array of more than 20 numbers is shown by its range."""
 
     value: Value = Field(None, description="absent for a long array")
     unit: str | None = Field(None, description="absent for a text")
     reason: str | None = Field(None, description="why there is no value")
-    count: int | None = Field(None, description="numbers in a long array")
-    least: float | None = Field(None, description="of a long array, in `unit`")
-    largest: float | None = Field(None, description="of a long array, in `unit`")
+    count: int | None = Field(None, description="number of values in a long array")
+    least: float | None = Field(None, description="limit of the values in a long array, in `unit`")
+    largest: float | None = Field(None, description="limit of the values in a long array, in `unit`")
 
     def in_units(self, system: System) -> Self:
         """Return the value, or the range, in a system of units."""
@@ -43,21 +43,22 @@ class ComparedValue(Measured):
 
 
 class ValueDifference(Answer):
-    """A value that is not the same on both sides; null where a side has none."""
+    """A value that differs between the revisions; null on a side that lacks it."""
 
     name: str = Field(description="as in relations: `film.minimum_film_thickness`")
     old: ComparedValue | None
     new: ComparedValue | None
     change: float | None = Field(
         None,
-        description="(new − old) / |old|; of an array the largest change by the largest value; absent for "
+        description="(new − old) / |old|; for an array, the largest change divided by the largest value; "
+        "absent for "
         "temperatures, texts and a value of 0",
     )
-    difference: Quantity | None = Field(None, description="new − old, of single numbers of one kind")
+    difference: Quantity | None = Field(None, description="new − old, for two single numbers of one kind")
 
 
 class TextChange(Answer):
-    """A text that is not the same: a relation, a version; null where a side has none."""
+    """A text that differs, such as a relation or a version; null on a side that lacks it."""
 
     name: str
     old: str | None
@@ -65,14 +66,14 @@ class TextChange(Answer):
 
 
 class VerdictOf(Answer):
-    """Verdict on a criterion, and the values that it compares."""
+    """The verdict on a criterion, and its utilisation."""
 
     verdict: str
-    utilisation: float | None = Field(None, description="absent where there is none")
+    utilisation: float | None = Field(None, description="absent if it is not defined")
 
 
 class VerdictChange(Answer):
-    """A criterion that is not judged alike; null where a side has no such criterion."""
+    """A criterion whose verdicts differ; null on a side that lacks the criterion."""
 
     name: str
     old: VerdictOf | None
@@ -80,7 +81,7 @@ class VerdictChange(Answer):
 
 
 class Comparison(Answer):
-    """All that differs between two revisions; what is equal is left out."""
+    """All differences between two revisions; equal values are left out."""
 
     old: Side
     new: Side

@@ -1,4 +1,4 @@
-"""Designs and revisions as the interface shows them."""
+"""Response models of designs and revisions."""
 
 from __future__ import annotations
 
@@ -27,25 +27,25 @@ from app.solids.schemas.models import Measurements
 from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]
-"""`current`: the results belong to the inputs; `regenerating`: a job is at work; `failed`: see `problem`."""
+"""`current`: the results match the inputs; `regenerating`: a job is running; `failed`: see `problem`."""
 
 
 class DesignStep(Answer):
-    """A template at work in a design."""
+    """A template used in a design."""
 
     template: str
     version: int
     level: str | None = None
     tolerance: float | None = None
     inputs: dict[str, Given]
-    outputs: list[str] | None = Field(None, description="only these are computed; null for all")
-    limits: dict[str, Given] = Field({}, description="of criteria; absent where none are given")
+    outputs: list[str] | None = Field(None, description="outputs to compute; null for all")
+    limits: dict[str, Given] = Field({}, description="limits of criteria; absent if none are set")
 
 
 class AnalysisOptions(Answer):
-    """Options of an analysis of which a relation uses an output."""
+    """Options of an analysis whose outputs relations may use."""
 
-    kind: str | None = Field(None, description="absent where the name says it")
+    kind: str | None = Field(None, description="kind of analysis; absent if the name is the kind")
     boundary: str = "free_end"
     level: str | None = None
     tolerance: float | None = None
@@ -58,25 +58,25 @@ class DesignModel(Answer):
     id: str
     version: int
     parameters: dict[str, Given]
-    analyses: dict[str, AnalysisOptions] = Field({}, description="absent where there are none")
+    analyses: dict[str, AnalysisOptions] = Field({}, description="absent if there are none")
 
 
 class DesignIteration(Answer):
-    """A loop that the design allows."""
+    """An iteration loop that the design allows."""
 
-    through: str = Field(description="the measure or analysis output of a solid, such as `model.mass`")
+    through: str = Field(description="the measurement or analysis output of a solid, such as `model.mass`")
     start: Given
-    tolerance: float = Field(description="relative")
-    limit: int = Field(description="rounds")
+    tolerance: float = Field(description="relative tolerance")
+    limit: int = Field(description="largest number of rounds")
 
 
 class DesignCriterion(Answer):
     """A criterion of the design itself, or changes to a criterion of one of its templates."""
 
-    require: str | None = Field(None, description="absent where that of the template holds")
+    require: str | None = Field(None, description="absent if the template's comparison applies")
     words: str | None = None
     source: str | None = None
-    waived: str | None = Field(None, description="why it does not count")
+    waived: str | None = Field(None, description="why the criterion is waived")
 
 
 class DesignSummary(Answer):
@@ -89,8 +89,8 @@ class DesignSummary(Answer):
     created: str
     changed: str
     tags: list[str] = Field([], description="in alphabetical order")
-    archived: bool = Field(False, description="whether lists leave it out unless they name `archived`")
-    released: int | None = Field(None, description="the newest released revision; absent where there is none")
+    archived: bool = Field(False, description="if true, lists omit it unless they filter by `archived`")
+    released: int | None = Field(None, description="the newest released revision; absent if there is none")
 
 
 class DesignList(Page[DesignSummary]):
@@ -98,7 +98,7 @@ class DesignList(Page[DesignSummary]):
 
 
 class Design(Answer):
-    """A design as of its newest revision: what its user wrote, and how its regeneration stands."""
+    """A design at its newest revision: what its user wrote, and the state of its regeneration."""
 
     id: str
     name: str
@@ -108,9 +108,9 @@ class Design(Answer):
     steps: dict[str, DesignStep]
     models: dict[str, DesignModel]
     iterations: list[DesignIteration]
-    criteria: dict[str, DesignCriterion] = Field({}, description="absent where there are none")
+    criteria: dict[str, DesignCriterion] = Field({}, description="absent if there are none")
     variants: dict[str, dict[str, Given]] = Field(
-        {}, description="what each variant overrides, by place; absent where there are none"
+        {}, description="values that each variant overrides, by name; absent if there are none"
     )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
@@ -132,17 +132,17 @@ class Proposals(Answer):
 
 
 class MappedDesign(Design, Proposals):
-    """A design with the proposals that were applied."""
+    """A design after its proposals were applied."""
 
 
 InputOrGiven = Annotated[UsedInput | Given, Field(union_mode="left_to_right")]
-"""An input as it was used, or as typed while its step waits."""
+"""An input as used in the calculation, or as typed while its step waits."""
 
 
 class RevisionStep(Answer):
-    """A step with its results, or as typed while it waits for a solid or its job."""
+    """A step with its results; while it waits for a solid or its job, the step as typed."""
 
-    model_config = ConfigDict(extra="allow")  # older programs stored more
+    model_config = ConfigDict(extra="allow")  # older programs stored more members
 
     template: CalculatedBy
     inputs: dict[str, InputOrGiven] = {}
@@ -150,16 +150,18 @@ class RevisionStep(Answer):
     level: Level = None
     error: dict[str, Error] = {}
     warnings: list[Warning] = []
-    assumed: list[Assumption] = Field([], description="defaults that make a part look safer, and stand")
-    relations: dict[str, Given] = Field({}, description="inputs that are relations, as typed")
-    state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
-    pending: bool = Field(False, description="whether it waits; absent if it does not")
+    assumed: list[Assumption] = Field([], description="defaults in use that make a part look safer")
+    relations: dict[str, Given] = Field({}, description="relations of the inputs, as typed")
+    state: str | None = Field(
+        None, description="`pending` in a preview, for a step that is not calculated yet"
+    )
+    pending: bool = Field(False, description="true if the step is not calculated yet, else absent")
     record: Annotated[Record | None, SkipJsonSchema()] = Field(None, exclude=True)
-    """The record from which formulas are written; not served, and None in revisions older than records."""
+    """The record from which formulas are written; not part of the response, and None in older revisions."""
 
 
 class RevisionModel(Answer):
-    """A model with its parameters resolved."""
+    """A model with resolved parameters."""
 
     id: str
     version: int
@@ -174,14 +176,14 @@ class Round(Answer):
     """One round of an iteration."""
 
     round: int
-    through: str = Field(description="the measure or analysis output through which it runs")
+    through: str = Field(description="the measurement or analysis output that is iterated")
     assumed: float
     measured: float
     unit: str
 
 
 class Revision(Answer):
-    """A revision: its inputs never change, its results are attached once."""
+    """A revision: its inputs never change, and its results are added once."""
 
     design: str
     number: int
@@ -194,17 +196,22 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
-    warnings: list[Warning] = Field([], description="about the design's own parameters and its models'")
+    warnings: list[Warning] = Field(
+        [], description="warnings about parameters of the design and of its models"
+    )
     criteria: list[Criterion] | None = Field(
         None,
-        description="as judged when it was calculated, worst first; absent in revisions of older programs",
+        description="criteria as judged at calculation, worst first; absent in revisions of older programs",
     )
-    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
+    verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
     author: Author | None = Field(
-        None, description="who saved it; `local` without keys, null in revisions of older programs"
+        None,
+        description="who saved it; `local` if no access keys are used, null in revisions of older programs",
     )
-    supersedes: int | None = Field(None, description="the released revision that it replaces, where it does")
-    approval: ApprovalState | None = Field(None, description="the last step taken; absent before the first")
+    supersedes: int | None = Field(None, description="the released revision that this one replaces")
+    approval: ApprovalState | None = Field(
+        None, description="the latest step of the approval; absent before the first"
+    )
 
 
 class RevisionList(Page[Revision]):
@@ -212,7 +219,7 @@ class RevisionList(Page[Revision]):
 
 
 class ModelMeasurements(Measurements):
-    """Measurements of the newest good solid of a model."""
+    """Measurements of the newest valid solid of a model."""
 
     revision: int
     build: str
@@ -224,7 +231,7 @@ Result = Annotated[Output | AnalysisOutput, Field(union_mode="left_to_right")]
 
 
 class Change(Answer):
-    """A value before and after a change; null where there is none."""
+    """A value before and after a change; null if it does not exist."""
 
     old: Result | None
     new: Result | None
@@ -239,7 +246,7 @@ class ParameterChange(Answer):
     old: Shown | None
     new: Shown | None
     status: Status
-    detail: str | None = Field(None, description="what is wrong with its unit")
+    detail: str | None = Field(None, description="why its unit does not fit")
 
 
 class PreviewedStep(RevisionStep):
@@ -257,29 +264,30 @@ class RevisionWorksheet(Revision):
 class Preview(Answer):
     """The effect of a change; nothing is saved."""
 
-    revision: int = Field(description="with which revision it is compared")
+    revision: int = Field(description="the revision with which the change is compared")
     outputs: dict[str, Change]
     warnings: list[Warning]
     model_parameters: dict[str, ParameterChange]
     steps: dict[str, PreviewedStep] | None = None
-    parameters: dict[str, Shown] | None = Field(None, description="values of the design's own parameters")
-    criteria: list[Criterion] | None = Field(None, description="worst first; absent where there are none")
-    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
+    parameters: dict[str, Shown] | None = Field(None, description="values of the design's parameters")
+    criteria: list[Criterion] | None = Field(None, description="worst first; absent if there are none")
+    verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
 
 
 class Sensitivity(Answer):
-    """Change of a value with a quantity that its user wrote; local to the design."""
+    """The change of a value with a quantity that the user typed, valid near the design point."""
 
     name: str
-    slope: Quantity | None = Field(None, description="change of the value by that of the place")
+    slope: Quantity | None = Field(None, description="change of the value per change of the quantity")
     elasticity: float | None = Field(
-        None, description="relative change by relative change; null where either is 0 or a temperature"
+        None, description="relative change per relative change; null if either is 0 or a temperature"
     )
     helps: Literal["increase", "decrease"] | None = Field(
         None,
-        description="of a criterion: which change of the place enlarges its margin; absent where none does",
+        description="for a criterion: the change of the quantity that increases the margin; absent if none "
+        "does",
     )
-    reason: str | None = Field(None, description="why there is no slope, or only that of one side")
+    reason: str | None = Field(None, description="why the slope is missing or one-sided")
 
 
 class Explanation(Answer):
@@ -296,11 +304,13 @@ class Explanation(Answer):
     mathml: str | None = None
     source: str | None = None
     analysis: AnalysisOptions | None = None
-    criterion: Criterion | None = Field(None, description="of a criterion: as it was judged")
-    side: Literal["value", "limit"] | None = Field(None, description="of the comparison of a criterion")
-    library: str | None = Field(None, description="the table of the row `typed` that gives a limit")
+    criterion: Criterion | None = Field(None, description="for a criterion, its judgement")
+    side: Literal["value", "limit"] | None = Field(None, description="side of a criterion's comparison")
+    library: str | None = Field(
+        None, description="for a limit from a library, the table with the row `typed`"
+    )
     because: list[Explanation] | None = None
     sensitivities: list[Sensitivity] | None = Field(
-        None, description="of the name that was asked for, to quantities as typed; largest elasticity first"
+        None, description="sensitivities of the explained name to typed quantities; largest elasticity first"
     )
     reason: str | None = Field(None, description="why all or some sensitivities are missing")

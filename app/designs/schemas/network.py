@@ -1,4 +1,4 @@
-"""The dependencies in a design, as the interface shows them."""
+"""Response models of the dependencies in a design."""
 
 from __future__ import annotations
 
@@ -10,21 +10,23 @@ from app.schemas.answers import Answer
 
 
 class NetworkBlock(Answer):
-    """A parameter, step or model of a design, in its place in the order of calculation."""
+    """A parameter, step or model of a design, and its column in the order of calculation."""
 
     name: str
     kind: Literal["parameter", "step", "model"]
-    column: int = Field(description="from 0; a block stands in a later column than all that drives it")
+    column: int = Field(
+        description="counted from 0; a block is in a later column than all blocks on which it depends"
+    )
 
 
 class NetworkRelation(Answer):
     """One name that a relation uses."""
 
-    target: str = Field(description="what the relation sets, such as `model.inner_diameter`")
-    source: str = Field(description="what it uses, such as `film.bearing_diameter`")
+    target: str = Field(description="the value that the relation sets, such as `model.inner_diameter`")
+    source: str = Field(description="the value that the relation uses, such as `film.bearing_diameter`")
     relation: str = Field(description="as typed")
     forward: bool = Field(
-        description="false where the source stands in the same or a later column: an iteration, or an input "
+        description="false if the source is in the same or a later column: an iteration, or an input "
         "of a block that is calculated later"
     )
 

@@ -1,4 +1,4 @@
-"""Answers of `solve` on a design: values of the unknown that reach the target, and the curve."""
+"""Response models of `solve` for designs: values of the unknown that reach the target, and the curve."""
 
 from __future__ import annotations
 
@@ -10,16 +10,14 @@ from app.schemas.criteria import Word
 
 
 class DesignRoot(Root):
-    """A value of the unknown that gives the target, and what the criteria of the design say there."""
+    """A value of the unknown that gives the target, and the verdicts of the design's criteria there."""
 
     verdicts: dict[str, Word] = Field(description="verdict of every criterion at this value, by its name")
-    error_unknown: list[str] = Field(
-        [], description="those that are met or not met by values whose error is unknown"
-    )
+    error_unknown: list[str] = Field([], description="criteria that are judged from values of unknown error")
 
 
 class Target(Measured):
-    """The output and the value that is wanted of it."""
+    """The output and its requested value."""
 
     name: str
     value: float
@@ -27,20 +25,20 @@ class Target(Measured):
 
 
 class DesignSolution(Answer):
-    """Every value of one parameter or input that gives a wanted output; nothing is saved."""
+    """Every value of one parameter or input that gives a requested output; nothing is saved."""
 
     revision: int = Field(description="the revision that was solved")
     unknown: str = Field(description="the parameter or input that was varied")
     target: Target
     roots: list[DesignRoot] = Field(description="every crossing of the target within the bounds, ascending")
     touching: list[DesignRoot] = Field(description="extrema that just reach the target, ascending")
-    jumps: list[Jump] = Field(description="where the output jumps across the target")
+    jumps: list[Jump] = Field(description="points at which the output jumps across the target")
     curve: TracedCurve = Field(description="the curve that was searched")
     finer: list[TracedCurve] = Field(
-        [], description="the curve at the levels at which solutions were confirmed, where these are finer"
+        [], description="the curve at the levels that confirmed the solutions, if these are finer"
     )
     warnings: list[Warning]
     levels: dict[str, str | None] = Field(description="the level of each step along the curve")
     finer_levels: dict[str, str | None] = Field(
-        {}, description="those along the finer curve, if there is one"
+        {}, description="the level of each step along the finer curve, if there is one"
     )

@@ -1,6 +1,7 @@
 """CSV files: UTF-8 with or without a byte-order mark, columns separated by tabs, semicolons or commas.
 
-The first line that is not blank shows the separator. A decimal comma is read where it is not a comma.
+The first line that is not blank determines the separator. A decimal comma is accepted unless the separator is
+a comma.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from templates.core.errors import Fault, InvalidInputs
 MOST_BYTES = 2_000_000
 SEPARATORS = "\t;,"
 _DECIMAL_COMMA = re.compile(r"([+-]?[0-9]*),([0-9]+(?:[eE][+-]?[0-9]{1,3})?(?:\s.*)?)")
-"""A number, alone or before a blank and its unit."""
+"""A number, alone or followed by a space and its unit."""
 _LINE = re.compile(r"\r\n|\r|\n")
 
 
 def read_csv(content: bytes) -> Grid:
-    """Return the cells of a CSV file. Linear in its length, which is at most `MOST_BYTES`.
+    """Return the cells of a CSV file. The time is linear in its length, which is at most `MOST_BYTES`.
 
     Raises
     ------
@@ -41,7 +42,7 @@ def read_csv(content: bytes) -> Grid:
 
 
 def write_csv(rows: Sequence[Sequence[Value]]) -> bytes:
-    """Return rows as a CSV file; a text that a spreadsheet would read as a formula gets an apostrophe."""
+    """Return rows as a CSV file; a text that a spreadsheet would evaluate as a formula gets an apostrophe."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerows([_escaped(cell) for cell in row] for row in rows)
@@ -59,10 +60,10 @@ def _rows(text: str, separator: str) -> list[list[str]]:
     try:
         for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator):
             if len(rows) > LAST_ROW and not any(row):
-                continue  # blank rows at the end are not variants
+                continue  # blank rows at the end are no variants
             rows.append(row)
             if len(rows) > 2 * LAST_ROW:
-                break  # enough to refuse
+                break  # enough rows to refuse the file
     except csv.Error:
         message = "this row cannot be read; close its quotes, and shorten its cells"
         raise _wrong(f"A{len(rows) + 1}", "not_a_row", message) from None
@@ -70,7 +71,7 @@ def _rows(text: str, separator: str) -> list[list[str]]:
 
 
 def _meant(cell: str, separator: str) -> str:
-    """Return a cell without the apostrophe against formulas, and with a decimal point."""
+    """Return a cell with a decimal point, and without the apostrophe that guards against formulas."""
     plain = cell.strip()
     if plain.startswith("'") and plain.lstrip("'").startswith(DANGEROUS):
         return plain[1:]
@@ -80,7 +81,7 @@ def _meant(cell: str, separator: str) -> str:
 
 
 def _escaped(cell: Value) -> Value:
-    """Return a text that `_meant` reads back unchanged and that no spreadsheet runs."""
+    """Return a text that no spreadsheet evaluates, and that `_meant` converts back."""
     if isinstance(cell, str) and cell.startswith("'") and cell.lstrip("'").startswith(DANGEROUS):
         return f"'{cell}"
     return harmless(cell)

@@ -1,4 +1,4 @@
-"""The cells of a sheet as texts, with their addresses: `D4` is the fourth column of the fourth row."""
+"""The cells of a sheet as texts, with their addresses: `D4` is column 4 of row 4."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from templates.core.errors import Fault, InvalidInputs
 
 LAST_ROW, MOST_COLUMNS, LONGEST_CELL = 1000, 400, 32_000
 MOST_FAULTS = 500
-"""Of one table; nobody reads more."""
+"""Largest number of faults reported for one table."""
 
 _ADDRESS = re.compile(r"(?P<column>[A-Z]{1,4})(?P<row>[0-9]{1,7})")
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of a sheet, row by row, without the empty ones at the ends; `faults` are those of its cells."""
+    """The cells of a sheet by row, without empty cells at the ends; `faults` are the faults of its cells."""
 
     rows: tuple[tuple[str, ...], ...]
     faults: tuple[Fault, ...] = ()
 
     def cell(self, row: int, column: int) -> str:
-        """Return the text of a cell, numbered from 0; empty if the sheet has none."""
+        """Return the text of a cell, counted from 0; empty if the sheet does not have the cell."""
         inside = 0 <= row < len(self.rows) and 0 <= column < len(self.rows[row])
         return self.rows[row][column] if inside else ""
 
@@ -34,12 +34,12 @@ class Grid:
 
 
 def grid_of(rows: Sequence[Sequence[str]], faults: Sequence[Fault] = ()) -> Grid:
-    """Return a grid of trimmed texts; cells that are too long or outside the allowed area are refused.
+    """Return a grid of trimmed texts.
 
     Raises
     ------
     InvalidInputs
-        If a cell lies beyond `LAST_ROW` or `MOST_COLUMNS`, is too long, or none has a text.
+        If a cell lies beyond `LAST_ROW` or `MOST_COLUMNS` or is too long, or all cells are empty.
     """
     trimmed = [_trimmed([cell.strip() for cell in row]) for row in rows]
     while trimmed and not trimmed[-1]:
@@ -75,19 +75,19 @@ def _refuse_large(rows: Sequence[Sequence[str]]) -> None:
 
 
 def refuse(faults: Sequence[Fault]) -> None:
-    """Refuse a table that has faults.
+    """Raise InvalidInputs if there are faults.
 
     Raises
     ------
     InvalidInputs
-        With up to `MOST_FAULTS` of them.
+        With at most `MOST_FAULTS` of them.
     """
     if faults:
         raise InvalidInputs(faults[:MOST_FAULTS])
 
 
 def address(row: int, column: int) -> str:
-    """Return the address of a cell whose row and column are numbered from 0: `address(3, 3)` is `D4`."""
+    """Return the address of a cell whose row and column are counted from 0: `address(3, 3)` is `D4`."""
     letters, rest = "", column + 1
     while rest:
         rest, place = divmod(rest - 1, 26)
@@ -96,7 +96,7 @@ def address(row: int, column: int) -> str:
 
 
 def column_of(letters: str) -> int:
-    """Return the number of a column, from 0: 0 for `A`, 26 for `AA`."""
+    """Return the number of a column, counted from 0: 0 for `A`, 26 for `AA`."""
     number = 0
     for letter in letters:
         number = 26 * number + ord(letter) - ord("A") + 1
@@ -104,6 +104,6 @@ def column_of(letters: str) -> int:
 
 
 def cell_of(address: str) -> tuple[int, int] | None:
-    """Return row and column of an address, from 0: (3, 3) for `D4`; None if it is not an address."""
+    """Return row and column of an address, counted from 0: (3, 3) for `D4`; None if it is no address."""
     match = _ADDRESS.fullmatch(address)
     return (int(match["row"]) - 1, column_of(match["column"])) if match else None

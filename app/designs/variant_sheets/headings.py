@@ -1,4 +1,4 @@
-"""Read a heading of a sheet, or the name of a row, as people write it: `Radial load`, `main 1`."""
+"""Match a heading of a sheet, or the name of a row, as people write it: `Radial load`, `main 1`."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from app.reference import Reference
 
 
 def place_named(heading: str, places: Collection[str]) -> str:
-    """Return the place that a heading names, by its full name or the words of its input.
+    """Return the place that a heading refers to, by its full name or by the words of its input.
 
-    Otherwise it returns the heading. `Radial load` is `film.radial_load` if no other step has an input with
-    these words.
+    If there is none, or more than one, return the heading. `Radial load` refers to `film.radial_load` if no
+    other step has an input with these words.
     """
     if heading in places:
         return heading
@@ -21,5 +21,5 @@ def place_named(heading: str, places: Collection[str]) -> str:
 
 
 def joined(words: str) -> str:
-    """Return words as a name: each space is an underscore."""
+    """Return words joined to a name by underscores."""
     return "_".join(words.split())

@@ -16,7 +16,7 @@ from templates.core.units.units import require_same_kind, unit
 
 FIRST, RESULTS, RELATION = "variant", "results:", "="
 UNITS = ("", "unit", "units")
-"""What may stand in the first cell of the row of units."""
+"""Words that mark the row of units in its first cell."""
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[]*)\[(?P<unit>[^\]]*)\]")
 _FAULT = re.compile(r"variants\.(?P<variant>[^.]+)(?:\.(?P<place>.+))?")
@@ -28,28 +28,30 @@ Units = Mapping[str, str | None]
 
 @dataclass(frozen=True)
 class Column:
-    """A column of inputs; counted from 0."""
+    """A column of input values; `number` is counted from 0."""
 
     number: int
     place: str
     unit: str
     is_relation: bool
-    is_sound: bool  # whether its unit is right; else its values are read for their faults alone
+    is_sound: bool  # whether its unit is valid; if not, its values are only checked
 
 
 @dataclass(frozen=True)
 class SheetVariants:
-    """The variants of a sheet, each with its place in the sheet."""
+    """The variants of a sheet, each with its address in the sheet."""
 
     variants: dict[str, dict[str, Raw]]
-    addresses: Mapping[tuple[str, str], str]  # of values by variant and place, of names by variant and ""
+    addresses: Mapping[
+        tuple[str, str], str
+    ]  # addresses of values by variant and place; of names by variant and ""
 
     def named(self, error: InvalidInputs) -> InvalidInputs:
-        """Return the faults of a save, located at the addresses of the variants' cells."""
+        """Return the faults of a save, with the addresses of the variants' cells as places."""
         return InvalidInputs(self._named(fault) for fault in error.faults)
 
     def without(self, faults: Iterable[Fault]) -> SheetVariants:
-        """Return the cells without these faults; a variant with a faulty name is removed."""
+        """Return the variants without the values of these faults; a variant with a faulty name is removed."""
         wrong = {fault.name for fault in faults}
         variants = {
             name: {place: v for place, v in row.items() if self.addresses[name, place] not in wrong}
@@ -70,7 +72,7 @@ class SheetVariants:
 def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
     """Return the variants in a sheet, and the faults of all cells that cannot be read.
 
-    A value whose meaning has not changed keeps its typed form. Rows without a unique name are left out.
+    A value whose meaning is unchanged keeps its typed form. Rows without a unique name are left out.
 
     Raises
     ------
@@ -99,10 +101,10 @@ def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVari
 
 
 def _refuse_many(grid: Grid, skipped: Collection[int]) -> None:
-    """Refuse more variants or values than a design may have, before any of them is read."""
+    """Raise InvalidInputs if there are more variants or values than a design may have."""
     filled = [[at for at, cell in enumerate(row) if cell and at not in skipped] for row in grid.rows]
     if (count := sum(map(bool, filled[2:]))) > MOST_VARIANTS:
-        message = f"a design has at most {MOST_VARIANTS} variants, these are {count}"
+        message = f"a design has at most {MOST_VARIANTS} variants, not {count}"
         refuse([Fault("A1", "too_many_rows", message)])
     if sum(map(len, filled)) > MOST_OVERRIDES:
         message = f"the variants of a design override at most {MOST_OVERRIDES} values together"
@@ -119,7 +121,7 @@ def _columns(
 ) -> Iterator[Column]:
     """Yield the columns of inputs; add faults of their headings and units to the list."""
     if grid.cell(0, 0).lower() != FIRST:
-        message = f"the first column holds the names of the variants; its heading is {FIRST!r}"
+        message = f"the first column contains the names of the variants; its heading is {FIRST!r}"
         faults.append(Fault("A1", "missing_name", message))
     headings: dict[tuple[str, bool], int] = {}
     unknown: list[tuple[str, str]] = []
@@ -133,7 +135,7 @@ def _columns(
         elif place not in units:
             unknown.append((address(0, at), place))
         elif (other := headings.setdefault((place, is_relation), at)) != at:
-            message = f"{place} has a column already: {address(0, other)}"
+            message = f"{place} already has a column: {address(0, other)}"
             faults.append(Fault(address(0, at), "named_twice", message))
         else:
             below, count = grid.cell(1, at) if has_units else "", len(faults)
@@ -144,7 +146,10 @@ def _columns(
 
 
 def _heading(text: str) -> tuple[str, str, bool]:
-    """Place, unit in brackets (`clearance [um]`) and whether a relation stands below."""
+    """Return the place, the unit in brackets, and whether the column contains relations.
+
+    `clearance [um]` is the place `clearance` in the unit `um`.
+    """
     is_relation = text.endswith(RELATION)
     bare = text.removesuffix(RELATION).strip()
     match = _IN_BRACKETS.fullmatch(bare)
@@ -152,7 +157,7 @@ def _heading(text: str) -> tuple[str, str, bool]:
 
 
 def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fault]) -> str:
-    """Return the unit of a column, empty if it has none; add a fault if it is wrong."""
+    """Return the unit of a column, empty if it has none; a wrong unit adds a fault."""
     where = address(1, at) if below else address(0, at)
     text = below or named
     if text in ("", "-"):
@@ -167,27 +172,27 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
 
 
 def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> tuple[str, bool]:
-    """Return the name of the variant in a row, and whether it is valid; otherwise add a fault."""
+    """Return the name of the variant in a row, and whether it is valid; an invalid name adds a fault."""
     before = len(faults)
     name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
         faults.append(Fault(where, "missing_name", "this row has no name; name its variant, such as main_1"))
     elif not NAME.fullmatch(name):
-        message = f"{excerpt(name)} is not a name; write letters, digits and _, a letter first: main_1"
+        message = (
+            f"{excerpt(name)} is not a name; begin with a letter, then use letters, digits and _: main_1"
+        )
         faults.append(Fault(where, "ill_named", message))
     elif name in RESERVED:
         faults.append(Fault(where, "reserved", RESERVED[name]))
     elif name in variants:
-        faults.append(
-            Fault(where, "named_twice", f"{plain(name)} has a row already; give this one another name")
-        )
+        faults.append(Fault(where, "named_twice", f"{plain(name)} already has a row; rename this one"))
     return name, len(faults) == before
 
 
 def _values(
     grid: Grid, row: int, columns: list[Column], units: Units, wrong: Collection[str], faults: list[Fault]
 ) -> dict[str, tuple[int, Raw]]:
-    """Return column and value of every parameter that a row sets; add faults to the list."""
+    """Return column and value of every parameter that a row sets; unreadable cells add faults."""
     values: dict[str, tuple[int, Raw]] = {}
     for column in columns:
         text, where = grid.cell(row, column.number), address(row, column.number)
@@ -213,5 +218,5 @@ def _given(text: str, column: Column, units: Units) -> Raw:
 
 
 def _kept(old: Raw, value: Raw) -> Raw:
-    """Return the previously typed value, if it means the same."""
+    """Return the previously typed value if it means the same as the new one, else the new one."""
     return old if old is not None and same(old, value) else value

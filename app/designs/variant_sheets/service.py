@@ -1,4 +1,4 @@
-"""Sheets of variants: a design's table written as a file, and a file saved as the table of a design."""
+"""Write a design's table of variants as a sheet, and save a sheet as the table of a design."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from app.storage.idempotency import Once
 from templates.core.errors import Fault, InvalidInputs
 
 Kind = Literal["csv", "xlsx"]
-TRIES = 3  # to find what a save would refuse: links, values, results
+TRIES = 3  # rounds to find what a save would refuse: links, values, results
 
 
 def write_sheet(out: VariantsOut, kind: Kind) -> bytes:
@@ -46,7 +46,7 @@ def read_sheet(content: bytes, kind: Kind) -> Grid:
 def save_sheet(
     designs: Designs, id: str, content: bytes, kind: Kind, expected: str | None, once: Once
 ) -> SaveResult:
-    """Return a new revision with the variants of a sheet; an unchanged sheet creates none.
+    """Save the variants of a sheet as a new revision and return it; an unchanged sheet creates none.
 
     Raises
     ------
@@ -74,11 +74,11 @@ def save_sheet(
 def _faults_of_save(
     designs: Designs, raw: JsonObject, sheet: SheetVariants, listed: Sequence[Fault]
 ) -> Iterator[Fault]:
-    """Yield the faults that would make a save refuse the remaining cells.
+    """Yield the faults for which a save would refuse the remaining cells.
 
-    A cell that cannot be linked prevents the calculation of its variant, and a refused value prevents that of
-    later steps. So refused cells are removed, and the rest is tried once more. In a row with removed cells,
-    only faults of single cells count: the complete row may be valid.
+    A cell with an invalid relation prevents the calculation of its variant, and a refused value prevents that
+    of later steps. So refused cells are removed, and the rest is checked again. In a row with removed cells,
+    only faults of single cells count, because the complete row may be valid.
     """
     incomplete = {cell[0] for fault in listed if (cell := cell_of(fault.name))}
     for _ in range(TRIES):

@@ -1,4 +1,4 @@
-"""Every parameter and input that a variant may override, with its declared unit."""
+"""The declared unit of every parameter and input that a variant may override."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from templates.core.units.relation import is_relation
 def units_of(network: Network) -> Units:
     """Return units by place; None for a choice, and for a parameter that a relation sets.
 
-    A radial clearance has a place beside the diametral one, which a save makes of it.
+    A radial clearance is included besides the diametral one, to which a save converts it.
     """
     declared = {place: _unit(network, Reference.parse(place)) for place in places(network)}
     sizes = (
@@ -35,7 +35,7 @@ def _unit(network: Network, place: Reference) -> str | None:
 
 
 def _typed_unit(cell: Cell) -> str | None:
-    """Return the unit in which a parameter was typed; a relation has none."""
+    """Return the unit in which a parameter was typed; None for a relation."""
     if is_relation(cell.raw) or cell.relations:
         return None
     try:

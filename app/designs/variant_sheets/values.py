@@ -1,4 +1,4 @@
-"""A value of a variant as a cell: a number in the column's unit, a relation without `=`, or a text."""
+"""Convert a value of a variant to a cell and back: a number in the column's unit, a relation, or a text."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from templates.core.units.units import unit
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _QUANTITY = re.compile(rf"({NUMBER.pattern})(?:\s*([^\s0-9.+-].*|1))?", re.DOTALL)
 FORMULA = (
-    "this is a formula; put its value there. A relation of the design stands in a column whose heading ends "
+    "this is a formula; type its value. Write a relation of the design in a column whose heading ends "
     "with ' =', without its equals sign"
 )
 _DIGITS = 1e-15
-"""Relative: two numbers that differ by less are one number that went through a spreadsheet."""
+"""Relative tolerance: a spreadsheet may round a number by less than this."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class Shape:
     """The form of a value in a cell: a number with its unit, a relation, or a text."""
 
     value: Value
-    unit: str = ""  # of a number
+    unit: str = ""  # unit of a number
     is_relation: bool = False
 
 
 def shape(raw: Raw) -> Shape:
-    """Return the cell of a typed value."""
+    """Return the form in which a typed value is written to a cell."""
     if is_relation(raw):
         return Shape(str(raw).strip().removeprefix("=").strip(), is_relation=True)
     number = _number(raw)
@@ -89,7 +89,7 @@ def relation(text: str) -> str:
 
 
 def given(text: str, column: str, declared: str | None) -> Raw:
-    """Return the value in a cell of a column with unit `column`, which may be empty.
+    """Return the value of a cell, given the unit `column` of its column, which may be empty.
 
     `declared` is the declared unit of the place; None for a choice, or if it is unknown.
 

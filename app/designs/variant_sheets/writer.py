@@ -1,4 +1,4 @@
-"""The table of variants as rows of a sheet: inputs, which can be read back, then results, which cannot."""
+"""The table of variants as rows of a sheet: inputs, which are read back, then results, which are not."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from app.presentation.input_text import text_of
 from app.presentation.spreadsheets import Value
 from app.schemas.criteria import Criterion
 
-DIGITS = 4  # of a utilisation, behind the point
+DIGITS = 4  # decimals of a utilisation
 UNIT = "unit"
 
 
 @dataclass(frozen=True)
 class SheetColumn:
-    """Heading, unit, and the cell of every variant."""
+    """Heading and unit of a column, and its cell for every variant."""
 
     heading: str
     unit: str
@@ -37,13 +37,13 @@ def sheet_columns(out: VariantsOut) -> list[SheetColumn]:
 
 
 def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
-    """Return headings, units, and a row for each variant."""
+    """Return the rows of a sheet: headings, units, then one row for each variant."""
     head: list[list[Value]] = [[column.heading for column in columns], [column.unit for column in columns]]
     return head + [list(cells) for cells in zip(*(column.cells for column in columns), strict=True)]
 
 
 def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
-    """Yield a column for the values of a place, and one for its relations if it has any."""
+    """Yield a column for the values of a place, and another one if it has relations."""
     raws = [overrides.get(about.place) for overrides in out.variants.values()]
     shapes = [None if raw is None else shape(raw) for raw in raws]
     if any(one and not one.is_relation for one in shapes):
@@ -56,7 +56,7 @@ def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
 
 
 def page_columns(out: VariantsOut) -> list[SheetColumn]:
-    """Return the columns of inputs on a page: texts, relations with their sign, one column for a place."""
+    """Return the columns of inputs for a web page: texts, relations with `=`, one column for each place."""
     names = list(out.variants)
     return [SheetColumn(FIRST, UNIT, names), *(_on_page(out, about) for about in out.columns)]
 
@@ -80,14 +80,14 @@ def _text(one: Shape | None, raw: object, unit: str) -> str:
 
 
 def _unit(shapes: Sequence[Shape | None], about: VariantColumn) -> str:
-    """Return the unit that most of the numbers have; none for a choice."""
+    """Return the unit that most of the numbers have; empty for a choice."""
     units = Counter(one.unit for one in shapes if one and one.unit)
     most = max(units, key=lambda unit: units[unit], default="")
     return "" if about.unit is None and most == "1" else most
 
 
 def _cell(one: Shape | None, raw: object, unit: str) -> Value:
-    """Return a number in the unit of its column, else the value with its own unit."""
+    """Return a number in the unit of its column, or any other value with its own unit."""
     if one is None or one.is_relation:
         return None
     is_plain = one.unit == unit or (one.unit == "1" and not unit)
@@ -95,7 +95,7 @@ def _cell(one: Shape | None, raw: object, unit: str) -> Value:
 
 
 def _results(out: VariantsOut, names: Sequence[str]) -> Iterable[SheetColumn]:
-    """Yield verdict and governing criterion of variants, then verdict and utilisation of criteria."""
+    """Yield the columns of results: verdict and governing criterion of variants, then each criterion."""
     rows = {row.name: row for row in out.rows}
     results = [rows.get(name) for name in names]
     if any(row and row.problem for row in results):

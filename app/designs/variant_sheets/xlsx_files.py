@@ -1,7 +1,7 @@
-"""XLSX files: the sheet named `variants`, else the first that is not hidden.
+"""XLSX files: the sheet named `variants`, else the first visible sheet.
 
-The file is an untrusted zip archive of XML: the sizes of its parts are checked before any part is read. A
-cell that holds a formula, a date or an error is refused by its address.
+The file is an untrusted zip archive of XML, so the sizes of its parts are checked before any part is read. A
+cell that contains a formula, a date or an error is refused, and the message gives its address.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 SHEET = "variants"
 MOST_BYTES, MOST_UNPACKED, MOST_PARTS = 2_000_000, 4_000_000, 500
-"""Of a file: as it comes, unpacked [bytes], and the files within it."""
+"""Limits of a file: its size as sent and unpacked [bytes], and the number of files in it."""
 LAST_ROW_OF_ALL = 1_048_576
-NARROWEST, WIDEST = 9, 40  # columns [characters]
+NARROWEST, WIDEST = 9, 40  # widths of columns [characters]
 RESULT_FILL, HEAD_ROWS = "E9EDF1", 2
 DAMAGED = "this file cannot be read as XLSX; open it in a spreadsheet and save it again, or send CSV"
 
@@ -40,7 +40,7 @@ class _Cell(Protocol):
 
     @property
     def data_type(self) -> str:
-        """Return `f` for a formula, `e` for an error."""
+        """Return the type of the cell: `f` for a formula, `e` for an error."""
 
 
 def read_xlsx(content: bytes) -> Grid:
@@ -59,13 +59,13 @@ def read_xlsx(content: bytes) -> Grid:
         rows, faults = _cells(_sheet(book))
     except InvalidInputs:
         raise
-    except Exception:  # openpyxl raises whatever a damaged file makes of it
+    except Exception:  # a damaged file can make openpyxl raise any exception
         raise _wrong("damaged", DAMAGED) from None
     return grid_of(rows, faults)
 
 
 def _check_size(content: bytes) -> None:
-    """Refuse a file whose unpacked size exceeds that of any table of variants.
+    """Raise InvalidInputs if the unpacked size exceeds that of any table of variants.
 
     `zipfile` never unpacks more of a part than the archive states, so the stated sizes can be added up.
     """
@@ -92,7 +92,7 @@ def _sheet(book: Workbook) -> Worksheet:
 
 def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
     """Return the texts of all cells, and the faults of those without a value."""
-    sheet.reset_dimensions()  # what the file says of its own size may be wrong
+    sheet.reset_dimensions()  # the dimensions stated in the file may be wrong
     rows: list[list[str]] = []
     faults: list[Fault] = []
     for number, row in enumerate(_first(sheet.iter_rows(max_row=LAST_ROW_OF_ALL))):
@@ -108,7 +108,7 @@ def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
 
 
 def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
-    """Yield rows up to the last allowed one, then the first row below it that has a value, to be refused."""
+    """Yield the allowed rows, then the first row below them that has a value, which will be refused."""
     for number, row in enumerate(rows):
         if number < LAST_ROW:
             yield row
@@ -118,7 +118,7 @@ def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
 
 
 def _text(value: object, kind: str) -> str:
-    """Return a value of a cell as text.
+    """Return the value of a cell as text.
 
     Raises
     ------
@@ -130,7 +130,9 @@ def _text(value: object, kind: str) -> str:
     if kind == "e":
         raise FaultyText("error_value", f"{excerpt(str(value))} is an error of the spreadsheet")
     if isinstance(value, (date, time, timedelta)):
-        message = "the spreadsheet made a date of this cell; format it as a number, and type it again"
+        message = (
+            "the spreadsheet has converted this cell to a date; format it as a number, and type it again"
+        )
         raise FaultyText("date", message)
     if isinstance(value, bool):
         raise FaultyText("not_a_number", f"{str(value).upper()} is not a quantity; write a number")
@@ -138,7 +140,7 @@ def _text(value: object, kind: str) -> str:
 
 
 def number_text(number: float) -> str:
-    """Return a number with all its digits, as short as possible: `60`, `0.05`."""
+    """Return a number with all its digits in the shortest form: `60`, `0.05`."""
     if isinstance(number, float) and not math.isfinite(number):
         raise FaultyText("not_finite", "the value must be finite")
     whole = isinstance(number, int) or (number.is_integer() and abs(number) < 1e15)
@@ -146,7 +148,7 @@ def number_text(number: float) -> str:
 
 
 def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: str) -> bytes:
-    """Return rows as an XLSX file with frozen headings; `results` marks the columns with results."""
+    """Return rows as an XLSX file with frozen headings; `results` marks the columns of results."""
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 
@@ -168,7 +170,7 @@ def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: 
 
 
 def _style(sheet: Worksheet, place: int, cells: Sequence[Value], *, is_result: bool) -> None:
-    """Set the width, headings and background of a column."""
+    """Set the width, heading and background of a column."""
     from openpyxl.styles import Alignment, Font, PatternFill  # type: ignore[import-untyped]
     from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]
 

@@ -27,7 +27,7 @@ MOST_ROWS = 4096
 
 @dataclass(frozen=True)
 class StepInputs:
-    """The inputs of a step for one variant, as they were read, by name."""
+    """The inputs of a step for one variant by name, as read."""
 
     block: Block
     raw: Mapping[str, Raw]
@@ -39,10 +39,10 @@ class StepInputs:
         return self.graph.computed(self.block)
 
     def form(self) -> Hashable:
-        """Return the key that variants must share to use one array call; None for a variant that is alone.
+        """Return the key of an array call, equal for variants that can share it.
 
         The key has the step, the names of the inputs, the shapes of curves, and the values of choices, tables
-        and inputs that must be equal for all points.
+        and inputs that must be equal for all points. It is None for a variant that must be calculated alone.
         """
         parts = [(name, _form(self.block, name, raw)) for name, raw in sorted(self.raw.items())]
         if any(form is None for _, form in parts):
@@ -62,9 +62,9 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
 
 
 def evaluations(asked: Sequence[StepInputs]) -> list[DocumentCalculation | None]:
-    """Return the evaluation of each variant, `DEFERRED` if no caller waits for it.
+    """Return the evaluation of each variant; `DEFERRED` if the caller does not wait for it.
 
-    It is None if the variant must be calculated alone.
+    The entry is None if the variant must be calculated alone.
     """
     results: list[DocumentCalculation | None] = [None] * len(asked)
     groups: dict[Hashable, list[int]] = {}
@@ -80,7 +80,7 @@ def evaluations(asked: Sequence[StepInputs]) -> list[DocumentCalculation | None]
 
 
 def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
-    """Yield places in parts that one array call takes."""
+    """Yield the numbers of variants in chunks, each small enough for one array call."""
     level = block.level or block.cls.default_level
     most = [block.cls.most_points.get(level, MOST_ROWS)]
     most += block.cls.most_points.values() if block.tolerance is not None else []
@@ -90,9 +90,9 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
 
 
 def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]:
-    """Return the rows of one array call; if the call refuses, those of its halves."""
+    """Return the evaluations of one array call; if it is refused, of two calls for its halves."""
     if len(asked) < 2:
-        return [None] * len(asked)  # alone it is calculated as it always is
+        return [None] * len(asked)  # a single variant is calculated in the normal way
     first = asked[0]
     try:
         whole = memory.evaluation(first.block, _stacked(asked), first.wanted)
@@ -102,13 +102,13 @@ def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]
         half = len(asked) // 2
         return [*_shared(asked[:half]), *_shared(asked[half:])]
     if not whole.template.shape_of_points():
-        return [whole] * len(asked)  # all ask the same
+        return [whole] * len(asked)  # all inputs are equal
     rows = _Rows(whole, len(asked))
     return [rows.evaluation(number, one) for number, one in enumerate(asked)]
 
 
 def _stacked(asked: Sequence[StepInputs]) -> dict[str, Raw]:
-    """Return inputs for all rows: one value if all are equal, else an array with the row first."""
+    """Return each input for all rows: one value if all are equal, else an array with the row first."""
     return {name: _column(asked, name) for name in asked[0].raw}
 
 
@@ -124,7 +124,7 @@ def _column(asked: Sequence[StepInputs], name: str) -> Raw:
 
 @dataclass(frozen=True)
 class _Rows:
-    """An array call, row by row."""
+    """The result of an array call, read row by row."""
 
     whole: Evaluation
     count: int
@@ -142,7 +142,7 @@ class _Rows:
     def _template(self, row: int, asked: StepInputs) -> Template:
         """Return the template of one variant with the values that the array call has computed.
 
-        Missing values of a row are left out: the template then determines the reason.
+        Values that are missing in the row are left out, so that the template itself determines the reason.
         """
         cls, level = asked.block.cls, self.whole.level
         template = cls.from_quantities(asked.raw)

@@ -1,4 +1,4 @@
-"""Calculate all variants of a design, and report everything that is wrong with its table at once."""
+"""Calculate all variants of a design, and report all faults of its table at once."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from app.designs.variants.table import faulty_cells, sound
 from app.designs.variants.together import Available, row_arrays, together
 from templates.core.errors import Fault
 
-MOST_CELLS = 50_000  # values of a design, times its variants; a cell takes some 20 us
+MOST_CELLS = 50_000  # number of values in a design times its variants; each takes about 20 us
 
 
 def checked(document: Document, base: Calculation, available: Available) -> tuple[list[Outcome], list[Fault]]:
-    """Return the variants of a document that can be calculated now, and the faults of the table."""
+    """Return the variants of a document, calculated as far as possible, and the faults of the table."""
     if faults := list(too_many_cells(document)):
         return [], faults
     cells = faulty_cells(document, base.graph)
@@ -26,7 +26,7 @@ def checked(document: Document, base: Calculation, available: Available) -> tupl
 
 
 def too_many_cells(document: Document) -> Iterator[Fault]:
-    """Yield a fault if there is more to calculate than a save allows.
+    """Yield a fault if the variants together have more values to calculate than a save allows.
 
     Every variant has every value of the design.
     """
@@ -42,5 +42,5 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
 
 
 def row_faults(base: Calculation) -> list[Fault]:
-    """Return a fault for every step that has several points in a design with variants."""
+    """Return a fault for every step of a design with variants that is calculated at several points."""
     return [fault.within("variants") for fault in row_arrays(base)]

@@ -18,7 +18,7 @@ from templates.core.units.quantity import TypedQuantity, read, read_any
 
 
 def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
-    """Return the columns of a stored document.
+    """Return the columns of a stored document's table.
 
     Parameters come first, then steps and models, in declaration order.
     """
@@ -56,7 +56,7 @@ def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -
 
 
 def _nominal(cell: Cell | None) -> Shown | None:
-    """Return the design's own value, as typed; None for a relation, or if it is not set."""
+    """Return the design's own value as typed; None if a relation sets it, or nothing does."""
     if cell is None or cell.relations:
         return None
     if isinstance(cell.declared, Choice):
@@ -68,5 +68,5 @@ def _nominal(cell: Cell | None) -> Shown | None:
 def _typed(cell: Cell) -> TypedQuantity | None:
     try:
         return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
-    except FaultyText:  # an older program took it
+    except FaultyText:  # an older program accepted it
         return None

@@ -1,6 +1,7 @@
 """One variant with every output of its steps, curves included, calculated on request.
 
-A revision keeps the single outputs of its variants; the curves of 200 variants would fill the database.
+A revision stores the single outputs of its variants only, because the curves of 200 variants would fill the
+database.
 """
 
 from __future__ import annotations
@@ -31,15 +32,15 @@ from app.storage.errors import NotFound
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault, InvalidInputs, unknown_names
 
-WAITS = "it waits for a solid that is not built, or for a step that waits for one"
-ITERATED = "a design that iterates does so only as it is saved: make the variant a design of its own"
+WAITS = "it depends on a solid that is not built yet"
+ITERATED = "a design iterates only when it is saved; create a separate design for the variant"
 
 
 @dataclass(frozen=True)
 class WantedVariant:
-    """The wanted variant of a design, `base` for the design itself, and its wanted outputs; none means all.
+    """Request for a variant of a design, or `base` for the design itself, and for some or all of its outputs.
 
-    `revision` is the newest, if it is None.
+    If `outputs` is empty, all are returned. If `revision` is None, it is the newest.
     """
 
     design: str
@@ -52,7 +53,7 @@ class WantedVariant:
 def detailed(
     wanted: WantedVariant, database: Database, catalogues: Catalogues
 ) -> Reply[WantedVariant, VariantDetail]:
-    """Return the variant, if the caller waits long enough.
+    """Return the variant, or the request to continue if a step is deferred.
 
     Raises
     ------
@@ -73,11 +74,11 @@ def detailed(
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
-    """Return the document with only one of its variants."""
+    """Return the document with only the requested variant."""
     variants = {BASE: {}, **document.variants}
     if wanted.variant not in variants:
         there = f"there are {', '.join(variants)}"
-        raise NotFound(f"design {wanted.design}: no variant is called {wanted.variant!r}; {there}")
+        raise NotFound(f"design {wanted.design}: there is no variant {wanted.variant!r}; {there}")
     if document.iterations:
         raise InvalidInputs([Fault("iterations", "iterated", ITERATED)])
     return document.model_copy(update={"variants": {wanted.variant: variants[wanted.variant]}})
@@ -102,7 +103,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
 
 
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Yield every output of every step by its name in relations.
+    """Yield name and value of every step output.
 
     The value is null with its reason while the step is pending.
     """

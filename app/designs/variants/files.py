@@ -1,4 +1,4 @@
-"""Serve the models of variants: each at its newest valid revision, or at a given one."""
+"""Serve the models of variants: each from its newest valid revision, or from a given one."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ STEP = "step"
 
 @dataclass(frozen=True)
 class Entry:
-    """A STEP file of a ZIP: the hash of its bytes, and whose it is."""
+    """A STEP file in a ZIP: the hash of its bytes, and its stamp."""
 
     sha256: str
     stamp: Stamp
 
     @property
     def name(self) -> str:
-        """Return its name in the ZIP, in the letters of its user."""
+        """Return the name of the file in the ZIP, in the user's own letters."""
         return f"{self.stamp.wide_stem}.{STEP}"
 
 
 def variant_model(
     session: Session, id: str, variant: str, model: str | None, number: int | None
 ) -> RevisionModelRow:
-    """Return the model of a variant to serve: of one revision, or the newest valid one of the design.
+    """Return the model of a variant to serve: from one revision, or the newest valid one of the design.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def variant_model(
 
 
 def entries(session: Session, id: str, number: int | None) -> tuple[int, list[Entry], list[str]]:
-    """Return the revision, the STEP files of all its variants in order, and the models without one.
+    """Return the revision, the STEP files of all its variants in order, and the models without a file.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def _revision(session: Session, id: str, number: int | None) -> RevisionRow:
 
 
 def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> str:
-    """Return the requested model: the named one, or the only one."""
+    """Return the name of the requested model, or of the only one."""
     names = list(row.document["models"])
     wanted = model or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
@@ -97,7 +97,7 @@ def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> 
 def _good(
     session: Session, row: RevisionRow, variant: str, model: str, number: int | None
 ) -> RevisionModelRow | None:
-    """Return the model of a variant if it is built: of one revision, or of the newest with a solid."""
+    """Return the model of a variant if it is built: in one revision, or in the newest with a solid."""
     name = dotted(variant, model)
     if number is None:
         return repository.newest_good(session, row.design_id, name, row.number)

@@ -1,4 +1,4 @@
-"""Names of variants and of the parameters that they override, and the order of these names."""
+"""Names of variants and of the values that they override, and the order of these names."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ BASE = "base"
 """The design without any override; no variant has this name."""
 RESERVED = {
     BASE: f"{BASE!r} is the design itself; give the variant another name, such as main_1",
-    "report": "'report' is where the report of all variants stands; give the variant another name",
+    "report": "'report' is the address of the report of all variants; give the variant another name",
 }
-"""Names that no variant may take, and why."""
+"""Names that a variant must not have, and why."""
 
 MOST_VARIANTS = 200
-MOST_OVERRIDES = 10_000  # values that all variants of a design override together
+MOST_OVERRIDES = 10_000  # largest number of values that all variants of a design override together
 PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 """A parameter of the design, an input of a step, or a parameter of a model: `film.bearing_width`."""
 
@@ -31,8 +31,8 @@ def natural(name: str) -> NaturalKey:
 
 
 def dotted(variant: str, model: str) -> str:
-    """Return the name of a variant's model among the models of a revision.
+    """Return the name of a variant's model as stored with the revision: `main_2.shell`.
 
-    A model of the design has no dot.
+    The name of a model of the design itself has no dot.
     """
     return f"{variant}.{model}"

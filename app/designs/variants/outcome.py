@@ -23,19 +23,19 @@ from templates.core.units.units import compatible, unit
 
 
 def refused(name: str, faults: Sequence[Fault]) -> Outcome:
-    """Return a variant that cannot be calculated; the faults are those of a design."""
+    """Return the outcome of a variant that cannot be calculated, with its faults."""
     return Outcome(name, faults=tuple(fault.within(f"variants.{name}") for fault in faults))
 
 
 def units_of(document: Document, places: Collection[str]) -> dict[str, str]:
-    """Return places with the typed units of the design's parameters; empty for other places."""
+    """Return the typed unit of each overridden parameter; empty for other places."""
     return {place: _typed_unit(document.parameters.get(place)) for place in places}
 
 
 def _typed_unit(raw: Raw) -> str:
     try:
         return "" if raw is None or is_relation(raw) else read_any(raw).unit
-    except FaultyText:  # a list with relations
+    except FaultyText:  # the value is a list with relations
         return ""
 
 
@@ -59,7 +59,7 @@ def outcome_of(name: str, places: Mapping[str, str], document: Document, calcula
 
 
 def values(calculation: Calculation, places: Mapping[str, str]) -> dict[str, JsonObject]:
-    """Return overridden places as quantities, without pending ones."""
+    """Return the overridden values as quantities, without pending ones."""
     shown = {place: _value(calculation, place, unit) for place, unit in places.items()}
     return {place: value for place, value in shown.items() if value is not None}
 
@@ -82,5 +82,5 @@ def _value(calculation: Calculation, place: str, typed_unit: str) -> JsonObject 
 
 
 def base_unit(graph: Graph, parameter: str) -> str:
-    """Return the unit in SI of a parameter that is a relation."""
+    """Return the SI unit of a parameter that a relation sets."""
     return graph.kinds[parameter].unit

@@ -16,7 +16,7 @@ Table = Mapping[str, Mapping[str, Raw]]
 def replace_variants(
     designs: Designs, id: str, table: Table, note: str | None, expected: str | None, once: Once
 ) -> SaveResult:
-    """Return a new revision with the variants of a table; an unchanged table creates none.
+    """Replace the table of variants and return the new revision; an unchanged table creates none.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def replace_variants(
 
 
 def patch_between(old: Table, new: Table) -> JsonObject:
-    """Return the merge patch that converts one table into another."""
+    """Return the merge patch that turns one table into another."""
     gone: JsonObject = {name: None for name in old if name not in new}
     kept = {
         name: {**{place: None for place in old.get(name, {}) if place not in values}, **values}

@@ -28,9 +28,9 @@ FAILURES = (
     NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded, JobCrashed,
     CannotRebuild,
 )  # fmt: skip
-"""What a variant itself brings about."""
+"""Errors that are caused by the variant itself."""
 
-MOST_CRASHES = 2  # of the process that builds one solid
+MOST_CRASHES = 2  # largest number of crashes of the process that builds one solid
 
 Describe = Callable[[Exception], JsonObject]
 """Turns an error into a problem (RFC 9457)."""
@@ -40,27 +40,29 @@ Settle = Callable[[DocumentCalculation, JobContext], Calculation]
 
 
 def plain_problem(error: Exception) -> JsonObject:
-    """Return an unexpected error as a problem."""
+    """Return an error as a problem."""
     return {"type": "about:blank", "title": "The variant failed", "status": 422, "detail": str(error)}
 
 
 @dataclass(frozen=True)
 class VariantSolids:
-    """One regeneration of variants.
+    """Builds the solids of variants in one regeneration.
 
     Attributes
     ----------
     builds, settle, describe
-        What builds a solid, completes a design, and describes an error.
+        Build a solid, complete a design, and describe an error.
     context
-        The job.
+        The context of the job.
     """
 
     builds: Builds
     settle: Settle
     describe: Describe
     context: JobContext
-    _failed: dict[str, Exception] = field(default_factory=dict)  # by key of build: nothing is tried twice
+    _failed: dict[str, Exception] = field(
+        default_factory=dict
+    )  # errors by key of build; a failed build is not repeated
 
     def settled(self, outcomes: Sequence[Outcome]) -> list[Outcome]:
         """Return the variants with all their solids built, or with the reason of a failure."""
@@ -81,7 +83,7 @@ class VariantSolids:
         return self._completed(outcome, outcome.document, outcome.calculation)
 
     def _failures(self, shapes: Mapping[str, CadModel]) -> Iterator[tuple[str, JsonObject]]:
-        """Build the solids whose parameters are known; return the reasons of failures."""
+        """Build the solids whose parameters are known, and yield the reasons of failures."""
         for name, shape in shapes.items():
             try:
                 with failures_named(name):
@@ -103,7 +105,7 @@ class VariantSolids:
                 return
 
     def _completed(self, outcome: Outcome, document: Document, calculation: Calculation) -> Outcome:
-        """Return a variant that is a separate design, with all values that depend on its solids."""
+        """Return a variant completed as a separate design, with all values that depend on its solids."""
         try:
             complete = self.settle(DocumentCalculation(document, calculation), self.context)
         except FAILURES as error:

@@ -19,10 +19,7 @@ Overrides = Mapping[str, Raw]
 
 
 def applied(document: Document, overrides: Overrides) -> Document:
-    """Return the document with the overrides of one variant applied, and without variants.
-
-    The original is not changed.
-    """
+    """Return a copy of the document with the overrides of one variant applied, and without variants."""
     parameters = dict(document.parameters)
     inside: dict[str, dict[str, Raw]] = {}
     for place, value in overrides.items():
@@ -46,16 +43,16 @@ def _model(model: Model, values: Overrides | None) -> Model:
 
 
 def place_name(variant: str, place: str) -> str:
-    """Return the name of a cell of the table in faults: `variants.main_2.clearance`."""
+    """Return the name by which faults refer to a cell of the table: `variants.main_2.clearance`."""
     return f"variants.{variant}.{place}"
 
 
 Cells = Mapping[tuple[str, str], Fault]
-"""What is wrong with cells of the table, by variant and place; a place is empty for a whole variant."""
+"""Faults of cells by variant and place; the place is empty for a fault of a whole variant."""
 
 
 def faulty_cells(document: Document, graph: Graph) -> Cells:
-    """Return faults: a reserved name, unknown places, and parameters of another kind than in the design."""
+    """Return the faults of cells: reserved names, unknown places, and units of the wrong kind."""
     faults: dict[tuple[str, str], Fault] = {}
     for name in RESERVED.keys() & document.variants.keys():
         faults[name, ""] = Fault(f"variants.{name}", "reserved", RESERVED[name])
@@ -74,7 +71,7 @@ def faulty_cells(document: Document, graph: Graph) -> Cells:
 
 
 def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | None:
-    """Return a fault if a parameter has a unit of another kind than in the design."""
+    """Return a fault if a parameter has a unit of another kind than in the design, else None."""
     cell, kind = graph.parameters.get(place), graph.kinds.get(place)
     if cell is None or kind is None or is_relation(value) or isinstance(value, list):
         return None
@@ -86,7 +83,7 @@ def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | N
 
 
 def sound(document: Document, faults: Cells) -> Document:
-    """Return the document without its faulty cells, so that all other faults are found too."""
+    """Return the document without its faulty cells, so that the other faults can be found too."""
     variants = {
         name: {place: value for place, value in overrides.items() if (name, place) not in faults}
         for name, overrides in document.variants.items()
@@ -96,9 +93,9 @@ def sound(document: Document, faults: Cells) -> Document:
 
 
 def is_place(network: Network, place: str) -> bool:
-    """Return whether a variant may override a place.
+    """Return whether a name is a place that a variant may override.
 
-    A parameter, an input of a step, a parameter of a model.
+    Places are parameters, inputs of steps, and parameters of models.
     """
     reference = Reference.parse(place)
     if reference.output is None:

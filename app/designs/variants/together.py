@@ -1,9 +1,8 @@
 """Calculate variants together: each step once for all of them, in array calls at one level.
 
-Cells are calculated variant by variant, as in designs of their own. At a step, those variants that give it
-the same inputs, of the same shapes and with the same choices, share one array call; each then continues with
-its row of the result. A variant that an array call refuses or masks is calculated alone, so that the message
-refers to that variant.
+Cells are calculated variant by variant, as in separate designs. At a step, the variants whose inputs have the
+same shapes and choices share one array call; each then continues with its row of the result. A variant that
+an array call refuses or masks is calculated alone, so that the message refers to that variant.
 """
 
 from __future__ import annotations
@@ -25,15 +24,15 @@ from app.designs.variants.table import applied
 from templates.core.errors import Fault, InvalidInputs
 
 TOO_MUCH = (
-    f"the relations of all variants make more than {MOST_OPERATIONS} operations on single values; "
+    f"the relations of all variants need more than {MOST_OPERATIONS} operations on single values; "
     "use shorter arrays, or fewer variants"
 )
-ROW_ARRAYS = "{} is calculated at several points; a design with variants gives it single values and curves"
+ROW_ARRAYS = "{} is calculated at several points; with variants, its inputs must be single values or curves"
 
 
 @dataclass(frozen=True)
 class Available:
-    """The catalogues and the results on solids that a calculation can use."""
+    """The catalogues, and the existing results of solids, that a calculation can use."""
 
     catalogues: Catalogues
     measured: Measured
@@ -42,14 +41,14 @@ class Available:
 
 @dataclass
 class _Run:
-    """One variant on its way through its network."""
+    """The calculation of one variant while it proceeds through its network."""
 
     name: str
-    places: Mapping[str, str]  # that it overrides, with the units of parameters
+    places: Mapping[str, str]  # overridden places, with the typed units of parameters
     document: Document
     calculation: Calculation
     left: Iterator[Node]
-    at: Block | None = field(default=None)  # the step that comes next
+    at: Block | None = field(default=None)  # the next step
 
     def advance(self, available: Available) -> None:
         """Calculate everything up to the next step."""
@@ -66,19 +65,19 @@ class _Run:
         calculate_nodes(self.calculation, [node], available.measured, available.analysed)
 
     def stop(self) -> None:
-        """Stop calculating: all variants together exceed the limits."""
+        """Stop the calculation, because all variants together exceed the limits."""
         self.at, self.left = None, iter(())
         self.calculation.faults.append(Fault("relations", "too_many_values", TOO_MUCH))
 
     def outcome(self) -> Outcome:
-        """Return the result."""
+        """Return the outcome of the variant."""
         if wrong := row_arrays(self.calculation):
             return refused(self.name, wrong)
         return outcome_of(self.name, self.places, self.document, self.calculation)
 
 
 def together(document: Document, available: Available) -> list[Outcome]:
-    """Return every variant of a document, as far as it can be calculated now."""
+    """Return every variant of a document, calculated as far as possible now."""
     begun = {name: _begun(document, name, available) for name in document.variants}
     runs = [run for run in begun.values() if isinstance(run, _Run)]
     for run in runs:
@@ -94,14 +93,14 @@ def together(document: Document, available: Available) -> list[Outcome]:
 
 
 def _limit(runs: Sequence[_Run]) -> None:
-    """Stop all variants once their relations together exceed the operations of one design."""
+    """Stop all variants once their relations together exceed the operations allowed for one design."""
     if sum(run.calculation.operations for run in runs) > MOST_OPERATIONS:
         for run in runs:
             run.stop()
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """Return a variant before its calculation, or the faults of its network."""
+    """Return a variant ready for calculation, or its outcome if its network has faults."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)
@@ -116,7 +115,7 @@ def _begun(document: Document, name: str, available: Available) -> _Run | Outcom
 
 
 def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
-    """Return the variants at the earliest step that any has reached; the others wait to join them there."""
+    """Return the variants that wait at one step: the step at which most of them wait."""
     steps: dict[str, list[_Run]] = {}
     for run in runs:
         assert run.at is not None, "it waits at a step"
@@ -125,7 +124,7 @@ def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
 
 
 def _share(runs: Sequence[_Run]) -> None:
-    """Give each variant its evaluation of a step from an array call, if possible."""
+    """Prepare the evaluation of a step for each variant by array calls, where possible."""
     asking = {run.name: asked for run in runs if (asked := _asking(run)) is not None}
     shared = evaluations(list(asking.values()))
     for name, evaluation in zip(asking, shared, strict=True):

@@ -1,4 +1,4 @@
-"""The verdict over a design with variants: each criterion at its worst variant."""
+"""Verdicts over a design with variants: each criterion is shown for its worst variant."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from templates.core.criteria.judgement import Judgement, Place
 from templates.core.criteria.summary import SHOWN, worst_first
 
 VARIANT = "variant"
-"""In `where` of a criterion: the name of the worst variant; `base` is the design itself."""
+"""The entry in `where` of a criterion that names the worst variant; `base` is the design itself."""
 
 Judged = Mapping[str, Sequence[Judgement]]
-"""Criteria by the name of the variant, the design itself among them."""
+"""Criteria by the name of the variant."""
 
 
 def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
-    """Return every criterion of a design at its worst variant, worst first.
+    """Return every criterion of a design as judged for its worst variant, worst first.
 
-    Without variants it is unchanged. Points are variants, including the design itself. A limit that is
-    unverified for one variant is unverified for all.
+    Without variants the list is unchanged. The points of a merged criterion are the variants and the design
+    itself. A limit that is unverified for one variant is unverified for all.
     """
     if not variants:
         return list(base)
@@ -35,7 +35,7 @@ def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
 
 
 def _worst(judgements: Sequence[Judgement]) -> Judgement:
-    """Return the worst judgement of one criterion over variants, and the count of each verdict."""
+    """Return the worst judgement of one criterion over all variants, with the count of each verdict."""
     worst = worst_first(judgements)[0]
     counts = Counter(judgement.verdict for judgement in judgements)
     return replace(

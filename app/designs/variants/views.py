@@ -1,4 +1,4 @@
-"""The variants of a revision as the REST interface shows them."""
+"""Responses of the REST interface about the variants of a revision."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def variants(
     catalogues: Catalogues,
     outputs: Collection[str] = (),
 ) -> VariantsOut:
-    """Return the variants of a design's revision, by default the newest, with these outputs.
+    """Return the variants of a design's revision, by default the newest, with selected outputs.
 
     Raises
     ------
@@ -75,13 +75,13 @@ def _require_outputs(outputs: Collection[str], stored: Mapping[str, JsonObject])
 
 @dataclass(frozen=True)
 class _Table:
-    """One revision with all that its variants refer to."""
+    """One revision with the stored data of its variants."""
 
     revision: RevisionRow
-    stored: Mapping[str, JsonObject]  # results by variant, those of the design under `base`
-    models: Mapping[str, list[RevisionModelRow]]  # by variant
+    stored: Mapping[str, JsonObject]  # results by variant; those of the design are under `base`
+    models: Mapping[str, list[RevisionModelRow]]  # models by variant
     builds: Mapping[str, BuildRow]
-    artifacts: Mapping[str, Mapping[str, str]]  # by build
+    artifacts: Mapping[str, Mapping[str, str]]  # hashes of files by build and kind
 
     @classmethod
     def of(cls, session: Session, row: RevisionRow) -> _Table:
@@ -150,7 +150,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; the first of equal ones."""
+    """Return the worst variant of each criterion; the first of equally bad ones."""
     worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
@@ -165,5 +165,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant
 
 
 def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return a sort key, worst first, in the order of criteria."""
+    """Return a sort key that puts the worst first."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

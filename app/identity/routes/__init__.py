@@ -1,1 +1,1 @@
-"""Routes of identity."""
+"""Routes of principals, their keys and the audit."""

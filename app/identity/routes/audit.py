@@ -1,4 +1,4 @@
-"""`/audit`: who did what, for administrators."""
+"""`/audit`: the list of who did what, for administrators."""
 
 from __future__ import annotations
 
@@ -45,7 +45,10 @@ def list_audit(
 
 @router.get("/head", dependencies=[needs("admin")])
 def show_head(database: TheDatabase) -> AuditHead:
-    """Return the hash to record elsewhere; `crankwright audit verify --head HASH` uses it later."""
+    """Return the newest hash of the audit, to be recorded elsewhere.
+
+    `crankwright audit verify --head HASH` uses it later.
+    """
     with database.read() as session:
         newest = chain.head(session)
     return AuditHead(seq=newest.seq, hash=newest.hash)

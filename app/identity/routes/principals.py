@@ -69,13 +69,13 @@ def change_principal(id: Id, body: PrincipalPatch, identity: TheIdentity) -> Pri
 
 @router.get("/principals/{id}/usage", responses=refusals(403, 404))
 def show_usage(id: Id, identity: TheIdentity) -> Usage:
-    """Return the usage and limits of a principal: of oneself, or of any principal for administrators."""
+    """Return the usage and limits of a principal; administrators may read those of every principal."""
     return views.used(*identity.usage(id))
 
 
 @router.get("/principals/{id}/keys", responses=refusals(403, 404))
 def list_keys(id: Id, identity: TheIdentity, limit: Limit = 50, cursor: Cursor = None) -> KeyList:
-    """Return the keys of a principal: of oneself, or of any principal for administrators."""
+    """Return the keys of a principal; administrators may list those of every principal."""
     return page_of(KeyList, identity.keys(id), limit, cursor, show=views.key)
 
 
@@ -83,7 +83,7 @@ def list_keys(id: Id, identity: TheIdentity, limit: Limit = 50, cursor: Cursor =
 def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
     """Create a key, which appears only in this answer.
 
-    Users cannot exceed the rights or life of their own key.
+    A user's new key cannot have more roles or a longer lifetime than the user's present key.
     """
     days = body.expires_days
     expires = None if days is None else datetime.now(UTC) + timedelta(days=days)

@@ -1,1 +1,1 @@
-"""Answers of the interface about principals and the audit."""
+"""Response schemas for principals and the audit."""

@@ -1,4 +1,4 @@
-"""Principals, keys, limits and usage as the interface shows and accepts them."""
+"""Request and response schemas for principals, keys, limits and usage."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ class Author(Answer):
 class Limits(Answer):
     """The limits of a principal."""
 
-    requests_per_minute: float = Field(description="of one server [1/min]")
+    requests_per_minute: float = Field(description="requests to one server [1/min]")
     storage_mb: float = Field(
-        description="what the principal was the first to have stored, deleted things too: files of builds, "
+        description="content that the principal was the first to store, even if deleted: files of builds, "
         "surfaces of analyses, imported files, tables and rows of studies, texts of worksheets [MiB]"
     )
-    calculation_seconds: float = Field(description="run time of jobs on one day in UTC [s]")
-    queued_jobs: int = Field(description="jobs that wait at the same time")
+    calculation_seconds: float = Field(description="run time of jobs per day (UTC) [s]")
+    queued_jobs: int = Field(description="largest number of waiting jobs")
 
 
 class Usage(Answer):
-    """The usage of a principal today (UTC), and the bytes that it has stored."""
+    """The usage of a principal today (UTC), and the amount of its stored content."""
 
     requests: int = Field(description="requests today; counted every few seconds")
     jobs: int = Field(description="jobs that were queued today")
     calculation_seconds: float = Field(description="run time of jobs today [s]")
-    storage_mb: float = Field(description="stored in all [MiB]")
+    storage_mb: float = Field(description="total stored content [MiB]")
     queued_jobs: int = Field(description="jobs that wait now")
-    limits: Limits | None = Field(description="null: nothing is limited")
+    limits: Limits | None = Field(description="limits; null if nothing is limited")
 
 
 class Principal(Answer):
@@ -52,7 +52,7 @@ class Principal(Answer):
     name: str
     kind: Literal["person", "service"]
     roles: list[Role]
-    disabled: str | None = Field(description="since when it may do nothing")
+    disabled: str | None = Field(description="time since which it is disabled; null if it is not")
     created: str
 
 
@@ -61,24 +61,24 @@ class PrincipalList(Page[Principal]):
 
 
 class Me(Answer):
-    """The principal of the request, and its rights."""
+    """The principal of the request, with its roles and usage."""
 
     id: str
     name: str
     kind: Literal["person", "service"]
-    roles: list[Role] = Field(description="that the key or the session allows")
+    roles: list[Role] = Field(description="roles that the key or session allows")
     usage: Usage
 
 
 class Key(Answer):
-    """A key, of which the service has the hash alone."""
+    """A key without its secret, of which the service stores only the hash."""
 
-    prefix: str = Field(description="the part of the key that names it")
+    prefix: str = Field(description="the public part of the key, which identifies it")
     name: str
-    scopes: list[Role] = Field(description="roles it is limited to; none: all of its principal")
+    scopes: list[Role] = Field(description="roles that the key is limited to; if empty, all of its principal")
     expires: str | None
     revoked: str | None
-    made_by: str | None = Field(description="the prefix of the key that made it, and with which it ends")
+    made_by: str | None = Field(description="prefix of the key that created this one; this key ends with it")
     created: str
 
 
@@ -87,7 +87,7 @@ class KeyList(Page[Key]):
 
 
 class NewKey(Key):
-    """A key that was just made; only this answer has it."""
+    """A newly created key; only this answer contains its secret."""
 
     key: str
 
@@ -105,7 +105,7 @@ class PrincipalIn(Bounded):
 
 
 class LimitsIn(Bounded):
-    """Limits that differ from those of the settings; null: as in the settings."""
+    """The principal's own limits; null means the limit of the settings."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -132,5 +132,5 @@ class KeyIn(Bounded):
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"expires_days": 90}]})
 
     name: Annotated[str, Field(max_length=100)] = ""
-    scopes: Roles = Field([], description="roles the key is limited to; none: all of its principal")
+    scopes: Roles = Field([], description="roles to limit the key to; if empty, all of its principal")
     expires_days: float | None = Field(None, gt=0, le=36500, allow_inf_nan=False)

@@ -1,1 +1,1 @@
-"""Draw models by a running Creo session, through CREOSON's JSON interface."""
+"""Draw models with a running Creo session, through CREOSON's JSON interface."""

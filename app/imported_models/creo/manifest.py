@@ -1,4 +1,4 @@
-"""The manifest of a Creo model: its file, and the dimensions and parameters that relations may drive."""
+"""Parse the manifest of a Creo model: its file, and the dimensions and parameters to be driven."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.imported_models.manifests import LINE, NAME, STRICT, TITLE, read_manife
 from app.schemas.bounds import Bounded
 from cad.imported_models import Description, Parameter
 
-_PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # others CREOSON refuses
+_PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # CREOSON refuses other names
 MM: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 
 
@@ -19,30 +19,32 @@ class Driven(Bounded):
 
     model_config = STRICT
 
-    name: str = Field(max_length=60, pattern=NAME, description="in relations")
-    words: str = Field("", max_length=100, pattern=LINE, description="what it is; the name if not given")
+    name: str = Field(max_length=60, pattern=NAME, description="name in relations")
+    words: str = Field(
+        "", max_length=100, pattern=LINE, description="meaning of the number; default: its name"
+    )
     dimension: str | None = Field(
-        None, min_length=1, max_length=80, pattern=LINE, description="its symbol in Creo: `D`"
+        None, min_length=1, max_length=80, pattern=LINE, description="symbol of the dimension in Creo: `D`"
     )
     parameter: str | None = Field(
-        None, max_length=31, pattern=_PARAMETER, description="its name in Creo: `SCALE`"
+        None, max_length=31, pattern=_PARAMETER, description="name of the parameter in Creo: `SCALE`"
     )
-    unit: Literal["mm", "inch", "deg", "1"] = Field(description="in which Creo has it")
-    value: float = Field(description="in the model as it is stored")
-    low: float = Field(description="the least value that is sent to Creo")
-    high: float = Field(description="the greatest value that is sent to Creo")
+    unit: Literal["mm", "inch", "deg", "1"] = Field(description="its unit in Creo")
+    value: float = Field(description="its value in the stored model")
+    low: float = Field(description="smallest value that is sent to Creo")
+    high: float = Field(description="largest value that is sent to Creo")
     check: Literal["diameter", "radius", "distance"] | None = Field(
-        None, description="as what it is read back from every solid"
+        None, description="the size of every solid that is compared with it"
     )
 
     @model_validator(mode="after")
     def is_one_number(self) -> Self:
-        """Require a dimension or a parameter, with a value within its range.
+        """Require either a dimension or a parameter, with a value within its range.
 
         Raises
         ------
         ValueError
-            If it is neither, or both; or its value is out of its range.
+            If it is neither or both, or its value is out of range.
         """
         if (self.dimension is None) == (self.parameter is None):
             raise ValueError("give either the dimension or the parameter of Creo")
@@ -68,7 +70,7 @@ class Driven(Bounded):
 
 
 class Manifest(Bounded):
-    """A model of Creo and what may be driven."""
+    """A model of Creo, and its dimensions and parameters that relations may drive."""
 
     model_config = STRICT
 
@@ -76,9 +78,11 @@ class Manifest(Bounded):
     title: str = Field(max_length=100, pattern=TITLE)
     file: str = Field(
         pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,30}\.(prt|asm)$",
-        description="the model in Creo: `bearing.prt`",
+        description="file name of the model in Creo: `bearing.prt`",
     )
-    length_unit: Literal["mm", "inch"] = Field("mm", description="of the model: mass properties are in it")
+    length_unit: Literal["mm", "inch"] = Field(
+        "mm", description="length unit of the model and of its mass properties"
+    )
     parameters: list[Driven] = Field(min_length=1, max_length=100)
 
     @model_validator(mode="after")
@@ -107,6 +111,6 @@ def read(content: bytes) -> Manifest:
     Raises
     ------
     UnreadableModel
-        Naming all faults.
+        With all faults.
     """
     return read_manifest(Manifest, content, "the manifest for Creo")

@@ -1,7 +1,7 @@
 """One session with a running Creo through CREOSON: set values, regenerate, measure, export.
 
-CREOSON answers a JSON POST, `{"sessionId", "command", "function", "data"}`, by `{"status": {"error",
-"message"}, "data"}`. Each step that Creo can refuse has its own kind of failure. Nothing is saved in Creo.
+CREOSON answers a JSON POST, `{"sessionId", "command", "function", "data"}`, with `{"status": {"error",
+"message"}, "data"}`. Each step that Creo can refuse has its own error code. Nothing is saved in Creo.
 
 References
 ----------
@@ -37,12 +37,12 @@ _GLANCE = 0.05  # [s]
 
 @dataclass(frozen=True)
 class Creoson:
-    """Where CREOSON answers, and the folder for exports: as Creo names it, and as this service does."""
+    """The address of CREOSON, and the folder for exports under its name for Creo and for this service."""
 
     url: str
     exports: str
     folder: Path
-    version: int | None = None  # of Creo, from 7 on: its regeneration takes other options
+    version: int | None = None  # version of Creo, if 7 or newer, which needs other options to regenerate
 
 
 def unreachable(reason: str) -> ProgramMissing:
@@ -54,7 +54,7 @@ def unreachable(reason: str) -> ProgramMissing:
 
 @dataclass
 class CreoSession:
-    """A connection to CREOSON, as long as it lasts."""
+    """An open connection to CREOSON."""
 
     creoson: Creoson
     http: httpx.Client
@@ -64,7 +64,7 @@ class CreoSession:
     id: str = field(default="")
 
     def connect(self) -> None:
-        """Connect; raises ProgramMissing if CREOSON does not answer or Creo is not running."""
+        """Connect to Creo; raise ProgramMissing if CREOSON does not answer or Creo is not running."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
         self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
@@ -77,7 +77,9 @@ class CreoSession:
     def ask(
         self, command: str, function: str, data: Fields, code: str, names: tuple[str, ...] = ()
     ) -> Fields:
-        """Call a function of CREOSON; a refusal has this code and names these parameters.
+        """Call a function of CREOSON, and return its answer.
+
+        The error for a refusal has this code and names these parameters.
 
         Raises
         ------
@@ -116,13 +118,13 @@ class CreoSession:
         if status["error"]:
             said = str(status.get("message") or "no reason given")[:300]
             if code == "creo_unreachable":
-                raise unreachable(f"CREOSON says to {what}: {said}")
+                raise unreachable(f"CREOSON reports for {what}: {said}")
             raise GeometryError(code, f"Creo refuses {what}: {said}", names)
         return answer  # type: ignore[no-any-return]
 
 
 class CreoDrawing:
-    """Draws by Creo: one session at a time, whoever asks."""
+    """Draws models with Creo; only one session is open at a time."""
 
     def __init__(self, creoson: Creoson, seconds: float) -> None:
         self.creoson, self.seconds = creoson, seconds
@@ -173,7 +175,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """Open a session when no other one is open; close it at the end without saving changes."""
+        """Open a session once no other one is open; close it at the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():
@@ -187,14 +189,14 @@ class CreoDrawing:
                 try:
                     yield session
                 finally:
-                    with suppress(Exception):  # what happened before matters more
+                    with suppress(Exception):  # an earlier error matters more
                         session.ask("connection", "disconnect", {}, "creo_disconnect")
         finally:
             self._turn.release()
 
 
 def _volume(properties: Fields, names: tuple[str, ...]) -> float:
-    """Return the volume in the unit of the model, cubed."""
+    """Return the volume in the cubed length unit of the model."""
     volume = properties.get("volume")
     if isinstance(volume, bool) or not isinstance(volume, int | float) or not 0 < volume < 1e18:
         raise GeometryError(

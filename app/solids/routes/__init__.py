@@ -1,1 +1,1 @@
-"""Routes of solids."""
+"""Routes of models, builds, artifacts and analyses."""

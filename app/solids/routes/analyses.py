@@ -1,4 +1,4 @@
-"""`POST /models/{id}/versions/{n}/analyses/{kind}`, its results, and the data of its picture."""
+"""`POST /models/{id}/versions/{n}/analyses/{kind}`, its results, and the surface for its picture."""
 
 from __future__ import annotations
 
@@ -65,15 +65,15 @@ async def analyse_model(
     prefer: Annotated[str | None, Header()] = None,
     units: Units = "si",
 ) -> Response:
-    """Build a model, then find stiffness, frequency or stress on its solid; equal questions run once.
+    """Build a model, then compute stiffness, frequency or stress of its solid; equal requests run once.
 
-    The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
-    plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
-    none is given. Of one throw, `unit_loads` are tables: the stress tensors at points of its fillets under
-    1 kN on the pin along and across the throw, and under torque and bending moments of 1 kN·m. `chain` is
-    of a shaft of several throws, from its first main to its last: stiffness, that of each throw, frequency.
-    `bore_compliance` is of a bearing housing or a connecting rod: how far its bore gives way to the modes of
-    an oil film's pressure.
+    The shaft is held at one end; the other end is loaded by a torque about z (`torsion`), or a moment about
+    y in the plane of the throw (`bending`). Stress is the largest von Mises stress under `load`, by default
+    1 N·m. For one throw, `unit_loads` returns tables: the stress tensors at points of its fillets under 1 kN
+    on the pin along and across the throw, and under torque and bending moments of 1 kN·m. `chain` analyses a
+    shaft of several throws, from its first main journal to its last: its stiffness, that of each throw, and
+    its frequency. `bore_compliance` analyses a bearing housing or a connecting rod: how far its bore deforms
+    under the pressure modes of an oil film.
     """
     if kind not in KINDS:
         raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")
@@ -96,7 +96,10 @@ def show_analysis(
     load: Annotated[str, Query(max_length=60, description="the load of the stress")] = "1 N*m",
     units: Units = "si",
 ) -> Analysis:
-    """Return all outputs of one question about one solid. They were computed once for all loads."""
+    """Return all outputs of one analysis of one solid, scaled to a load.
+
+    The outputs were computed once for all loads.
+    """
     wrong = load_faults(load)
     analysis = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
     if wrong:
@@ -106,7 +109,7 @@ def show_analysis(
 
 @router.get("/builds/{key}/analyses", responses=refusals(404))
 def list_analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> AnalysisList:
-    """Return all analyses of one solid: every question about it, with the answers under 1 N·m."""
+    """Return all analyses of one solid, with their answers under 1 N·m."""
     return AnalysisList(items=analyses.of_build(key)).in_units(units)
 
 
@@ -129,10 +132,10 @@ async def show_surface(
     if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
+    """Return the solid's surface under a load of 1 N·m: the displacement, twist and stress of every point.
 
-    For a picture: the corners of plane triangles, with a value at each. It never changes. It is there once an
-    analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
+    It is meant for a picture and has the corners of plane triangles, with a value at each. It never changes.
+    It exists once an analysis was requested with `"outputs": ["surface"]`, whose answer links to it.
     """
     file = await run_in_threadpool(analyses.surface, key)
     shown = "" if units == "si" else f"-{units}"
@@ -154,7 +157,7 @@ def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
-    """Return the outputs to find, if nothing in the body is wrong beside its parameters."""
+    """Return the requested outputs, if the body has no faults besides those of its parameters."""
     asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
     names = ", ".join(offered(kind))
     wrong = faults(kind, body)

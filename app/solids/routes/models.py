@@ -30,8 +30,8 @@ from app.solids.schemas.models import Build, Verification
 from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.file_kinds import plain_kind
 from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -50,7 +50,7 @@ FileKind = Annotated[str, WithJsonSchema({"type": "string", "enum": list(MEDIA_T
 
 
 class BuildIn(Bounded):
-    """Build a model from parameters."""
+    """A request to build a model from parameters."""
 
     model_config = ConfigDict(
         strict=True,
@@ -64,7 +64,7 @@ class BuildIn(Bounded):
     artifacts: list[FileKind] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
         max_length=50,
-        description="the kinds of files wanted; without it all but dimensioned drawings",
+        description="kinds of files to create; default: all but dimensioned drawings",
     )
 
 
@@ -82,7 +82,7 @@ def list_model_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
 
 @router.get("/models/{id}/versions/{number}", responses=refusals(404))
 def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheDatabase) -> ModelAnswer:
-    """Return one model: its parameters as JSON Schema, its measures, and its possible analyses."""
+    """Return one model: its parameters as JSON Schema, its measurements, and its possible analyses."""
     cls = catalogues.models.get(id, number)
     described = describe(cls)
     parameters = described.pop("inputs")
@@ -146,7 +146,7 @@ async def build_model(
     client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
+    """Build a model, check it, and measure the finished STEP file. Equal parameters are built once."""
     unknown = [kind for kind in body.artifacts if kind not in MEDIA_TYPES]
     if unknown:
         offered = ", ".join(MEDIA_TYPES)
@@ -165,7 +165,7 @@ async def build_model(
 
 @router.get("/builds/{key}", responses=refusals(404))
 def show_build(key: str, models: TheModels) -> Build:
-    """Return a build: its files and its measures."""
+    """Return a build with its files and measurements."""
     return models.show(key)
 
 
@@ -191,9 +191,9 @@ async def read_file_of_build(
     client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """A file of a build, of no design: the fields of a drawing that name one are empty.
+    """Return a file of a build outside of designs, so a drawing leaves the fields for a design empty.
 
-    It is made when it is first asked for, and stored.
+    The file is created at the first request, and stored.
     """
     if kind not in MEDIA_TYPES:
         raise NotFound(f"there is no model.{kind[:20]}; there are {', '.join(MEDIA_TYPES)}")
@@ -230,7 +230,7 @@ async def read_artifact(
     jobs: TheJobs,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """Return the bytes of this hash; they never change. A file that was lost is made again from its row."""
+    """Return the bytes with this hash, which never change. A lost file is rebuilt from its row."""
     if answer := await lost(sha256, healing, jobs, prefer, same=True):
         return answer
     headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
@@ -255,10 +255,10 @@ async def verify_step(
     jobs: TheJobs,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Verification | Response:
-    """Find the build of a STEP file, and the revisions that use it.
+    """Return the build of a STEP file, and the revisions that use it.
 
-    The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
-    Which build it is stands in its header, within the first 64 KiB. The stamp of a download, which names
+    The body is the file itself, sent as `model/step`; `application/step` and `application/p21` are synonyms.
+    The header of the file, within the first 64 KiB, names the build. The stamp of a download, which names
     design and revision, is not compared. Limits, geometric tolerances, materials and other properties are
     read back and compared with those of the build, one by one.
     """
@@ -275,12 +275,12 @@ async def verify_step(
 def send_file(
     store: Artifacts, file: File | None, headers: dict[str, str] | None = None, name: str | None = None
 ) -> Response:
-    """Return a stored file with its hash as ETag.
+    """Return a stored file, with its hash as ETag.
 
     Raises
     ------
     NotFound
-        If there is none: its build was deleted since the file was made.
+        If the file's build was deleted in the meantime.
     """
     if file is None:
         raise NotFound("the build has just been deleted; send the request again to rebuild it")

@@ -1,1 +1,1 @@
-"""Answers of the interface about models, builds and analyses."""
+"""Response schemas for models, builds and analyses."""

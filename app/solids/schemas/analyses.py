@@ -1,4 +1,4 @@
-"""Finite-element analyses of solids as the interface shows them."""
+"""Response schemas for finite-element analyses of solids."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Mesh(Answer):
 
 
 class Refinement(Answer):
-    """One step of the refinement until a stress settles."""
+    """One step of the mesh refinement until a stress converges."""
 
     elements: int
-    value: float = Field(description="the greatest stress on this mesh, in MPa")
+    value: float = Field(description="the largest stress on this mesh, in MPa")
 
 
 class Span(Answer):
@@ -32,38 +32,38 @@ class Span(Answer):
 
 
 class AnalysisOutput(Answer):
-    """A quantity that an analysis computed; of the surface, where its file is."""
+    """A quantity that an analysis computed; for the surface, a link to its file."""
 
     value: float | list[float] | list[list[float]] | None = Field(
         None,
-        description="a number; a list; of a table its rows; null where the refinement did not settle, say",
+        description="a number, a list, or the rows of a table; null if, for example, it did not converge",
     )
     unit: str | None = None
-    columns: list[str] | None = Field(None, description="of a table: what each number of a row is")
-    error: float | None = Field(description="estimated relative error; null where it is not known")
-    level: str | None = Field(description="how fine the mesh is; null where the mesh follows the stress")
+    columns: list[str] | None = Field(None, description="for a table: the meaning of each number in a row")
+    error: float | None = Field(description="estimated relative error; null if unknown")
+    level: str | None = Field(description="level of the mesh; null if the stress determines the mesh")
     mesh: Mesh
     convergence: list[Refinement] | None = None
-    point: Triple | None = Field(None, description="where the greatest stress is, in mm")
-    searched: Span | None = Field(None, description="the part of the axis in which it was sought, in mm")
+    point: Triple | None = Field(None, description="position of the largest stress, in mm")
+    searched: Span | None = Field(None, description="the part of the axis that was searched for it, in mm")
     reason: str | None = Field(None, description="why there is no value")
     error_reason: str | None = Field(None, description="why no error is estimated")
-    seconds: float | None = Field(None, description="time that it took, in s; in previews only")
-    url: str | None = Field(None, description="where the surface is")
+    seconds: float | None = Field(None, description="elapsed time, in s; only in previews")
+    url: str | None = Field(None, description="link to the surface")
     sha256: str | None = None
-    size: int | None = Field(None, description="of the file, in bytes")
+    size: int | None = Field(None, description="size of the file, in bytes")
     triangles: int | None = None
 
 
 class ModelAnalysis(Answer):
-    """An analysis of a design's model: what was asked, and the outputs that are known."""
+    """An analysis of a design's model: the request, and the known outputs."""
 
     id: str
     kind: str
     boundary: str = Field(description="how the loaded end is held")
     level: str | None
     tolerance: float | None
-    load: Quantity = Field(description="the torque or moment of stress, in N*m")
+    load: Quantity = Field(description="the torque or moment that causes the stress, in N*m")
     outputs: dict[str, AnalysisOutput]
     warnings: list[Warning]
 
@@ -73,8 +73,8 @@ class Analysis(ModelAnalysis):
 
     model: Version
     build: str
-    mesh: Mesh | None = Field(description="the finest mesh; null while nothing is known")
-    seconds: float = Field(description="time that all outputs took, in s")
+    mesh: Mesh | None = Field(description="the finest mesh; null until there is a result")
+    seconds: float = Field(description="elapsed time for all outputs, in s")
 
 
 class AnalysisList(Answer):
@@ -95,7 +95,7 @@ TRIANGLE: JsonDict = {
 
 
 class Points(Measured):
-    """A triple at every point."""
+    """Three numbers at every point."""
 
     value: list[tuple[float, float, float]]
     unit: str
@@ -106,14 +106,14 @@ class Surface(Answer):
 
     model_config = ConfigDict(json_schema_extra={"examples": [TRIANGLE]})
 
-    load: str = Field(description="what the fields are caused by")
-    points: Points = Field(description="where the points are while nothing acts, in mm")
+    load: str = Field(description="the load that causes the fields")
+    points: Points = Field(description="positions of the points without load, in mm")
     triangles: list[tuple[int, int, int]] = Field(
-        description="three numbers of points each, from 0, counterclockwise as seen from outside"
+        description="three point numbers each, counted from 0, counterclockwise as seen from outside"
     )
-    displacement: Points = Field(description="how far every point moves, in mm")
+    displacement: Points = Field(description="displacement of every point, in mm")
     twist: Values | None = Field(
         None,
-        description="the local rotation about z, in deg: of a round shaft, that of its section; in torsion",
+        description="local rotation about z under torsion, in deg; for a round shaft that of its section",
     )
     stress: Values = Field(description="von Mises stress, averaged where elements meet, in MPa")

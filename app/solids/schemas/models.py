@@ -1,4 +1,4 @@
-"""Builds of CAD models as the interface shows them: parameters, files, measurements."""
+"""Response schemas for builds of CAD models: parameters, files, measurements."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
 
 
 class BoundingBox(Answer):
-    """The smallest box along the axes that holds the solid."""
+    """The smallest box parallel to the axes that contains the solid."""
 
-    low: Triple = Field(description="its corner of smallest coordinates, in mm")
-    high: Triple = Field(description="its corner of largest coordinates, in mm")
+    low: Triple = Field(description="corner with the smallest coordinates, in mm")
+    high: Triple = Field(description="corner with the largest coordinates, in mm")
 
 
 class Inertia(Answer):
@@ -30,13 +30,13 @@ class Inertia(Answer):
 
 
 class Clearance(Answer):
-    """Distance and overlap of a fixed part of an assembly and another part."""
+    """The distance and overlap between a fixed part of an assembly and another part."""
 
-    parts: list[str] = Field(description="the names of the two")
-    distance: Quantity = Field(description="the smallest, in mm; 0 where they touch or overlap")
+    parts: list[str] = Field(description="names of the two parts")
+    distance: Quantity = Field(description="smallest distance, in mm; 0 if they touch or overlap")
     overlap: Quantity | None = Field(
         None,
-        description="space that both take, in mm**3, as the assembly allows it; absent where there is none",
+        description="volume of the overlap that the assembly allows, in mm**3; absent if there is none",
     )
 
 
@@ -44,24 +44,24 @@ class Measurements(Answer):
     """Measurements of the finished STEP file."""
 
     bounding_box: BoundingBox
-    volume: Quantity = Field(description="in mm**3")
-    mass: Quantity = Field(description="in kg")
+    volume: Quantity = Field(description="volume, in mm**3")
+    mass: Quantity = Field(description="mass, in kg")
     centre: Triple = Field(description="centre of mass, in mm")
     inertia: Inertia
     polar_inertia: Quantity | None = Field(
-        None, description="about the z axis, in kg*m**2; builds of an older recipe do not have it"
+        None, description="inertia about the z axis, in kg*m**2; absent in builds of an older recipe"
     )
     dimensions: dict[str, Quantity | Values] = Field(
         description="the model's dimensions, read back from the solid"
     )
     materials: dict[str, str] | None = Field(
-        None, description="of every part, with its density; builds of an older recipe do not have it"
+        None, description="material and density of every part; absent in builds of an older recipe"
     )
     trust: str | None = Field(
-        None, description="of an imported model: which checks the solid passed, and which it does not have"
+        None, description="for an imported model: which checks the solid passed, and which were not made"
     )
     clearances: list[Clearance] | None = Field(
-        None, description="of an assembly: between its fixed parts and the other parts, closest boxes first"
+        None, description="for an assembly: clearances of its fixed parts, closest boxes first"
     )
 
 
@@ -69,10 +69,10 @@ class Build(Answer):
     """A solid of a model: equal parameters are built once."""
 
     build: str = Field(description="key of the build: model, version, parameters, kernel and recipe")
-    model: Version | None = Field(None, description="absent while the build goes on")
-    parameters: dict[str, Shown] | None = Field(None, description="every parameter, defaults included")
+    model: Version | None = Field(None, description="model; absent while the build is running")
+    parameters: dict[str, Shown] | None = Field(None, description="every parameter, including defaults")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
-    measurements: Measurements | None = Field(description="null while the build goes on")
+    measurements: Measurements | None = Field(description="measurements; null while the build is running")
 
 
 class BuildUse(Answer):
@@ -81,48 +81,52 @@ class BuildUse(Answer):
     design: str
     revision: int
     current: bool = Field(description="whether it is the newest revision of its design")
-    variant: str | None = Field(None, description="of the design; absent where the design itself uses it")
+    variant: str | None = Field(
+        None, description="variant of the design; absent if the design itself uses the build"
+    )
 
 
 class StepStatement(Answer):
-    """What a STEP file states beside its shape, and what its build states there."""
+    """One statement of a STEP file besides its shape, and the corresponding one of its build."""
 
     kind: str = Field(
         description="`dimension` (nominal size, lower and upper deviation), `datum`, `cylindricity`, "
         "`perpendicularity` or `parallelism` (width and datum), `attribute`, `volume`, `surface area`, "
         "`centroid`, `density`, `material`"
     )
-    name: str = Field(description="of the parameter, the datum, the attribute or the part")
-    unit: str | None = Field(description="of its numbers; null for texts")
-    expected: list[float | str] | None = Field(description="null if the build states nothing there")
-    stated: list[float | str] | None = Field(description="null if the file states nothing there")
+    name: str = Field(description="name of the parameter, datum, attribute or part")
+    unit: str | None = Field(description="unit of the numbers; null for texts")
+    expected: list[float | str] | None = Field(
+        description="value in the build; null if it makes no such statement"
+    )
+    stated: list[float | str] | None = Field(
+        description="value in the file; null if it makes no such statement"
+    )
     agrees: bool
 
 
 class Verification(Answer):
-    """From which build a STEP file is."""
+    """The build that produced a STEP file, and whether the file is unchanged."""
 
     build: str
     model: Version
     revisions: list[BuildUse]
     kind: Literal["step", "validated.step"] = Field(
-        description="which file of the build it was compared with: `validated.step` if it states validation "
-        "properties and the build's own file states none"
+        description="kind of the stored file for the comparison: `validated.step` if the file has validation "
+        "properties and the build's own file has none"
     )
-    intact: bool = Field(
-        description="whether the bytes are still those that were written, but for the stamp of a download"
-    )
+    intact: bool = Field(description="whether the bytes are unchanged, apart from the stamp of a download")
     statements: list[StepStatement] = Field(
         [],
-        description="what was read in the text of the file: limits, datums, geometric tolerances, "
-        "attributes, materials and validation properties; absent where neither file nor build states any",
+        description="statements read from the file: limits, datums, geometric tolerances, "
+        "attributes, materials and validation properties; absent if neither file nor build makes any",
     )
 
 
 class Analysable(Answer):
     """Results that finite elements can compute for a model's solid."""
 
-    outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has none")
+    outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has no unit")
     tables: dict[str, list[str]] = Field({}, description="outputs that are tables, with their columns")
     lists: list[str] = Field([], description="outputs that are lists, with a number for each throw")
     boundaries: list[str]
@@ -134,8 +138,10 @@ class CadModel(Description):
     """One version of a CAD model."""
 
     parameters: Schema = Field(description="JSON Schema of the object `parameters`")
-    measures: dict[str, str] = Field(description="what is measured on its solid, with units")
+    measures: dict[str, str] = Field(description="quantities measured on its solid, with units")
     analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
-    film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
+    film_bore: str | None = Field(description="the parameter for the bore with the oil film")
     picture: str = Field(description="path of a picture of the example")
-    origin: ModelOrigin | None = Field(None, description="of a model that a team imported; absent for others")
+    origin: ModelOrigin | None = Field(
+        None, description="origin of a model that a team imported; absent for others"
+    )

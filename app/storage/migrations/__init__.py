@@ -12,8 +12,10 @@ from app.storage.engines import is_sqlite, migrating_engine
 from app.storage.errors import DatabaseBeforeRelease, DatabaseNewer
 
 BEFORE_RELEASE = frozenset(f"{number:04}" for number in range(1, 10))
-"""Schemas of programs before the first release, which nobody had."""
-_LOCK = 0x4372616E6B  # of PostgreSQL: simultaneous starts would create the same tables
+"""Schemas of programs before the first release, which were never distributed."""
+_LOCK = (
+    0x4372616E6B  # number of a lock in PostgreSQL, because simultaneous starts would create the same tables
+)
 
 
 def migrate(url: str) -> None:
@@ -22,7 +24,7 @@ def migrate(url: str) -> None:
     Raises
     ------
     DatabaseBeforeRelease, DatabaseNewer
-        The database was written by a program before the first release, or by a newer one.
+        If a program before the first release, or a newer one, wrote the database.
     """
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))
@@ -40,12 +42,12 @@ def migrate(url: str) -> None:
 
 
 def schema_of(connection: Connection) -> str | None:
-    """Return the version of a database's schema; None of an empty database."""
+    """Return the version of a database's schema; None for an empty database."""
     return MigrationContext.configure(connection).get_current_revision()
 
 
 def known_schemas() -> list[str]:
-    """Return the versions that this program can bring up to date, newest first; the first is its own."""
+    """Return the versions that this program can bring up to date, newest first, beginning with its own."""
     scripts = ScriptDirectory(str(Path(__file__).parent)).walk_revisions()
     return [script.revision for script in scripts]
 
@@ -56,9 +58,9 @@ def refuse_unknown(schema: str) -> None:
     Raises
     ------
     DatabaseBeforeRelease
-        It is older than the first release; there is no way from it to this program.
+        If the schema is older than the first release, from which no migration exists.
     DatabaseNewer
-        It is newer than this program.
+        If the schema is newer than this program.
     """
     if schema in BEFORE_RELEASE:
         raise DatabaseBeforeRelease(schema)

@@ -1,4 +1,4 @@
-"""The tables. Times are ISO 8601 texts in UTC; JSON is stored canonically: equal values give equal texts."""
+"""The tables. Times are ISO 8601 texts in UTC; JSON is canonical, so that equal values give equal texts."""
 
 from app.storage.tables.approvals import ApprovalRow, CommentRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json

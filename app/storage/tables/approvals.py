@@ -8,7 +8,7 @@ from app.storage.tables.base import Base
 
 
 class ApprovalRow(Base):
-    """A step of the approval of a revision. A principal takes at most one of them; anyone may withdraw."""
+    """A step in the approval of a revision. A principal may take at most one step; anyone may withdraw."""
 
     __tablename__ = "approval"
     __table_args__ = (
@@ -28,9 +28,9 @@ class ApprovalRow(Base):
     revision: Mapped[int] = mapped_column(primary_key=True)
     step: Mapped[str] = mapped_column(primary_key=True)  # calculated, checked, released, withdrawn
     principal_id: Mapped[str]
-    name: Mapped[str]  # of the principal at that time
-    digest: Mapped[str] = mapped_column(index=True)  # SHA-256 of the content
-    content: Mapped[JsonObject]  # what was signed: document, results and files by their hashes, name, time
+    name: Mapped[str]  # the principal's name at that time
+    digest: Mapped[str] = mapped_column(index=True)  # SHA-256 of `content`
+    content: Mapped[JsonObject]  # the signed content: document, results and files by their hashes, name, time
     at: Mapped[str]
 
 
@@ -47,7 +47,7 @@ class CommentRow(Base):
     design_id: Mapped[str]
     revision: Mapped[int]
     principal_id: Mapped[str]
-    name: Mapped[str]  # of the principal at that time
+    name: Mapped[str]  # the principal's name at that time
     subject: Mapped[str | None]  # a reference into the document, such as film.bearing_width
     text: Mapped[str]
     resolved: Mapped[str | None]  # since when

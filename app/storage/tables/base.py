@@ -24,11 +24,11 @@ canonical_json = json.JSONEncoder(
 
 
 class NotWritten(ValueError):
-    """A column holds what this program has never written there."""
+    """A column has a value that this program has not written."""
 
 
 class JsonText(TypeDecorator[plain.Json]):
-    """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
+    """A JSON value in a text column; None is NULL. Changes inside a value are not tracked: replace it."""
 
     impl = Text
     cache_ok = True
@@ -38,7 +38,13 @@ class JsonText(TypeDecorator[plain.Json]):
         return None if value is None else canonical_json(value)
 
     def process_result_value(self, value: str | None, dialect: Dialect | None = None) -> plain.Json:
-        """Return the Python value of a JSON text; any other text was not written by this program."""
+        """Return the Python value of a JSON text.
+
+        Raises
+        ------
+        NotWritten
+            If the text is not JSON, so that this program has not written it.
+        """
         try:
             return None if value is None else json.loads(value)
         except ValueError as error:
@@ -46,7 +52,7 @@ class JsonText(TypeDecorator[plain.Json]):
 
 
 class Base(DeclarativeBase):
-    """All tables share one metadata and one way to name constraints, which migrations rely on."""
+    """Base class of all tables; migrations rely on its way to name constraints."""
 
     metadata = MetaData(naming_convention=NAMING)
     type_annotation_map = {str: Text, JsonObject: JsonText, list[JsonObject]: JsonText, list[str]: JsonText}

@@ -8,7 +8,7 @@ from app.storage.tables.base import Base
 
 
 class DesignRow(Base):
-    """A design; what it holds is in its revisions."""
+    """A design; its content is in its revisions."""
 
     __tablename__ = "design"
 
@@ -17,24 +17,24 @@ class DesignRow(Base):
     created: Mapped[str]
     deleted: Mapped[str | None]
     head: Mapped[int]  # the number of the newest revision
-    archived: Mapped[str | None] = mapped_column(default=None)  # since when lists leave it out
+    archived: Mapped[str | None] = mapped_column(default=None)  # when it was archived
     event: Mapped[int] = mapped_column(BigInteger, default=0)  # the number of its newest event
 
     revisions: Mapped[list["RevisionRow"]] = relationship(order_by="RevisionRow.number")
 
 
 class DesignTagRow(Base):
-    """A tag of a design. It belongs to no revision: to set it makes nothing old."""
+    """A tag of a design. It belongs to no revision, so setting it invalidates no result."""
 
     __tablename__ = "design_tag"
 
     design_id: Mapped[str] = mapped_column(ForeignKey("design.id"), primary_key=True)
-    key: Mapped[str] = mapped_column(primary_key=True, index=True)  # the same for every spelling
+    key: Mapped[str] = mapped_column(primary_key=True, index=True)  # equal for all spellings
     tag: Mapped[str]  # as its user wrote it
 
 
 class RevisionRow(Base):
-    """One state of a design: the document never changes, the results are attached once."""
+    """One state of a design: the document never changes, and the results are added once."""
 
     __tablename__ = "revision"
 
@@ -64,7 +64,7 @@ class RevisionRow(Base):
 
 
 class RevisionModelRow(Base):
-    """A CAD model in a revision, with its parameters resolved; that of a variant is named `main_2.shell`."""
+    """A CAD model in a revision, with resolved parameters; a variant's model is named `main_2.shell`."""
 
     __tablename__ = "revision_model"
     __table_args__ = (
@@ -78,12 +78,12 @@ class RevisionModelRow(Base):
     model_version: Mapped[int]
     parameters: Mapped[JsonObject]
     relations: Mapped[JsonObject]
-    # No foreign key: the key follows from the parameters and is known before the build is made.
+    # No foreign key: the key is computed from the parameters and known before the build exists.
     build_key: Mapped[str | None] = mapped_column(index=True)
 
     @property
     def variant(self) -> str | None:
-        """Return the variant that the model belongs to; None of a model of the design itself."""
+        """Return the variant to which the model belongs; None for a model of the design itself."""
         return variant_of(self.name)
 
     @property
@@ -93,5 +93,5 @@ class RevisionModelRow(Base):
 
 
 def variant_of(model: str) -> str | None:
-    """Return the variant in the name of a model, such as `main_2.shell`; None where it names none."""
+    """Return the variant in the name of a model, such as `main_2.shell`; None if it names none."""
     return model.rpartition(".")[0] or None

@@ -16,10 +16,10 @@ class PrincipalRow(Base):
     id: Mapped[str] = mapped_column(primary_key=True)
     kind: Mapped[str]  # person, service
     name: Mapped[str]
-    subject: Mapped[str | None]  # what the OpenID provider calls this person
+    subject: Mapped[str | None]  # identifier of this person at the OpenID provider
     roles: Mapped[list[str]]  # viewer, author, checker, admin
-    limits: Mapped[JsonObject | None]  # where they differ from those of the settings
-    disabled: Mapped[str | None]  # since when
+    limits: Mapped[JsonObject | None]  # limits that differ from the settings
+    disabled: Mapped[str | None]  # time of the change
     created: Mapped[str]
 
 
@@ -32,10 +32,10 @@ class ApiKeyRow(Base):
     hash: Mapped[str]  # SHA-256 of the whole key
     principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
     name: Mapped[str]
-    scopes: Mapped[list[str]]  # roles that the key may use; empty: all of its principal
+    scopes: Mapped[list[str]]  # roles that the key may use; if empty, all roles of its principal
     expires: Mapped[str | None]
-    revoked: Mapped[str | None]  # since when
-    made_by: Mapped[str | None]  # prefix of the key by which its principal made it; it ends with that
+    revoked: Mapped[str | None]  # time of the change
+    made_by: Mapped[str | None]  # prefix of the key with which it was created; it ends when that key ends
     created: Mapped[str]
 
 
@@ -46,7 +46,7 @@ class SessionRow(Base):
 
     hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256 of the cookie's value
     principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
-    key: Mapped[str | None]  # prefix of the key by which they signed in; its end is that of the session
+    key: Mapped[str | None]  # prefix of the key used to sign in; the session ends when that key ends
     csrf: Mapped[str]
     expires: Mapped[str] = mapped_column(index=True)
     created: Mapped[str]
@@ -61,12 +61,14 @@ class UsageRow(Base):
     day: Mapped[str] = mapped_column(primary_key=True)  # 2026-11-22
     requests: Mapped[int] = mapped_column(BigInteger, default=0)
     jobs: Mapped[int] = mapped_column(BigInteger, default=0)
-    seconds: Mapped[float] = mapped_column(Double, default=0.0)  # of calculation
-    bytes: Mapped[int] = mapped_column(BigInteger, default=0)  # of files, stored for the first time
+    seconds: Mapped[float] = mapped_column(Double, default=0.0)  # calculation time
+    bytes: Mapped[int] = mapped_column(
+        BigInteger, default=0
+    )  # size of files that were stored for the first time
 
 
 class StorageRow(Base):
-    """Bytes that a principal has stored in all. Triggers of the database raise it with `usage.bytes`."""
+    """The total number of bytes that a principal has stored; triggers update it from `usage.bytes`."""
 
     __tablename__ = "storage"
 

@@ -1,4 +1,4 @@
-"""Records of clients' actions: the audit, and stored answers to requests that may be repeated."""
+"""Records of clients' actions: the audit log, and stored responses to requests that may be repeated."""
 
 from sqlalchemy import BigInteger, Index, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
@@ -16,17 +16,17 @@ class AuditRow(Base):
     id: Mapped[str] = mapped_column(primary_key=True)
     at: Mapped[str]
     principal: Mapped[str]
-    name: Mapped[str]  # of the principal at that time
+    name: Mapped[str]  # the principal's name at that time
     action: Mapped[str]  # design.create, key.revoke, …
     object: Mapped[str] = mapped_column(index=True)  # designs/<id>/revisions/<n>, keys/<prefix>, …
-    digest: Mapped[str | None]  # of what was written or signed
+    digest: Mapped[str | None]  # digest of the written or signed content
     seq: Mapped[int | None] = mapped_column(BigInteger)
-    previous: Mapped[str | None]  # the hash of the row before
+    previous: Mapped[str | None]  # the hash of the previous row
     hash: Mapped[str | None]
 
 
 class IdempotencyRow(Base):
-    """The answer to a request that may be sent again."""
+    """The stored response to a request that a client may send again."""
 
     __tablename__ = "idempotency"
     __table_args__ = (Index(None, "operated"),)
@@ -36,6 +36,6 @@ class IdempotencyRow(Base):
     client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.http.access`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
-    location: Mapped[JsonObject]  # what to render again
+    location: Mapped[JsonObject]  # data to render the response again
     created: Mapped[str]
-    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was stored [s of operation]

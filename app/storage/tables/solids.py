@@ -8,7 +8,7 @@ from app.storage.tables.base import Base
 
 
 class BuildRow(Base):
-    """A solid that was built, under the hash of all that determines it."""
+    """A built solid, identified by the hash of all data that determine it."""
 
     __tablename__ = "build"
 
@@ -18,7 +18,7 @@ class BuildRow(Base):
     parameters: Mapped[JsonObject]
     measurements: Mapped[JsonObject]
     created: Mapped[str]
-    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last requested [s of operation]
     made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe
 
     artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
@@ -37,7 +37,7 @@ class ArtifactRow(Base):
 
 
 class AnalysisRow(Base):
-    """One output of an analysis of a build, under the hash of all that determines it."""
+    """One output of an analysis of a build, identified by the hash of all data that determine it."""
 
     __tablename__ = "analysis"
 

@@ -8,7 +8,7 @@ from app.storage.tables.base import Base
 
 
 class StudyRow(Base):
-    """A study: many rows of a revision. Its rows follow from body, seed and number; `plan` fixes the rest."""
+    """A study: many rows of a revision, determined by body, seed, row number and `plan`."""
 
     __tablename__ = "study"
     __table_args__ = (
@@ -22,13 +22,13 @@ class StudyRow(Base):
     method: Mapped[str]
     state: Mapped[str]  # queued, running, done, failed, cancelled
     body: Mapped[JsonObject]  # as its user wrote it
-    plan: Mapped[JsonObject]  # what it led to: places, units, levels, stages
+    plan: Mapped[JsonObject]  # the plan made from it: places, units, levels, stages
     seed: Mapped[int] = mapped_column(BigInteger)
-    chunk: Mapped[int]  # rows of one chunk
-    rows: Mapped[int]  # that are planned; an optimisation may need fewer
-    table_sha256: Mapped[str | None]  # the artifact with the rows that its user gave
+    chunk: Mapped[int]  # number of rows in a chunk
+    rows: Mapped[int]  # planned number of rows; an optimisation may need fewer
+    table_sha256: Mapped[str | None]  # the artifact with the rows that the user gave
     client: Mapped[str]
-    job: Mapped[str | None]  # the job that works on it
+    job: Mapped[str | None]  # its job
     result: Mapped[JsonObject | None]
     problem: Mapped[JsonObject | None]
     created: Mapped[str]
@@ -36,14 +36,14 @@ class StudyRow(Base):
 
 
 class StudyChunkRow(Base):
-    """Rows of a study that have been calculated; the values are in the artifact."""
+    """Calculated rows of a study; the values are in the artifact."""
 
     __tablename__ = "study_chunk"
 
     study_id: Mapped[str] = mapped_column(ForeignKey("study.id"), primary_key=True)
     number: Mapped[int] = mapped_column(primary_key=True)
     state: Mapped[str]  # done
-    attempt: Mapped[int]  # of the job that calculated it
+    attempt: Mapped[int]  # attempt of the job that calculated it
     rows: Mapped[int]
-    refused: Mapped[JsonObject]  # how many rows, by reason
+    refused: Mapped[JsonObject]  # number of refused rows by reason
     sha256: Mapped[str] = mapped_column(index=True)

@@ -18,7 +18,7 @@ from templates.core.errors import Fault, InvalidInputs
 
 @dataclass(frozen=True)
 class Objective:
-    """A result to make as small or as large as possible."""
+    """A result to be minimised or maximised."""
 
     name: str
     sense: Literal["minimise", "maximise"] = "minimise"
@@ -34,7 +34,7 @@ class Held:
 
 @dataclass(frozen=True)
 class Problem:
-    """The variables, the objectives, one or several, and the criteria to hold."""
+    """The variables, one or more objectives, and the criteria that must be met."""
 
     space: Space
     objectives: tuple[Objective, ...]
@@ -42,18 +42,18 @@ class Problem:
 
     @property
     def senses(self) -> Array:
-        """Return 1 for each objective to minimise, -1 to maximise, shape (k,)."""
+        """Return 1 for each objective to minimise, and -1 for each to maximise, shape (k,)."""
         return np.array([1.0 if one.sense == "minimise" else -1.0 for one in self.objectives])
 
     @property
     def signs(self) -> Array:
-        """Return 1 for each criterion with `>=`, -1 with `<=`, shape (m,)."""
+        """Return 1 for each criterion with `>=`, and -1 for each with `<=`, shape (m,)."""
         return np.array([1.0 if one.sign == ">=" else -1.0 for one in self.held])
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Results of N rows [SI], NaN in the rows that are refused.
+    """Results of N rows [SI], with NaN in refused rows.
 
     Attributes
     ----------
@@ -62,14 +62,14 @@ class Columns:
     values, limits
         The two sides of each criterion, shape (N, m).
     low, high
-        The margin of each criterion at the bad and at the good end of its band, as far as that is known,
+        The margin of each criterion at the bad and at the good end of its error band, as far as known,
         shape (N, m); zero or more is safe.
     reasons
         Why a row is refused, by its number.
     seconds
-        What the rows cost; an answer from storage repeats what they cost when they were calculated.
+        The cost of the rows [s]; results from storage state their original cost.
     is_known
-        Where the error of a criterion that is met is known, shape (N, m); everywhere, if None.
+        Where the error of a criterion that is met is known, shape (N, m); None means everywhere.
     """
 
     objectives: Array
@@ -82,7 +82,7 @@ class Columns:
     is_known: Mask | None = None
 
     def row(self, number: int) -> Columns:
-        """Return one row, as columns of a single row."""
+        """Return one row as columns with a single row."""
         part = slice(number, number + 1)
         arrays = (self.objectives, self.values, self.limits, self.low, self.high)
         objectives, values, limits, low, high = (array[part] for array in arrays)
@@ -93,13 +93,13 @@ class Columns:
     def worst(self, problem: Problem) -> Array:
         """Return the margin of each criterion at the bad end of its band, shape (N, m).
 
-        Itself if it has none.
+        If a criterion has no band, its margin is returned.
         """
         margins = problem.signs * (self.values - self.limits)
         return np.where(np.isfinite(self.low), self.low, margins)
 
     def codes(self, problem: Problem) -> tuple[int, ...]:
-        """Return the verdict on each criterion in the first row, as places in `VERDICTS`."""
+        """Return the verdict on each criterion in the first row, as indices into `VERDICTS`."""
         margins = problem.signs * (self.values - self.limits)
         certain = np.ones_like(margins, dtype=bool) if self.is_known is None else self.is_known
         codes = verdicts(">=", margins, 0.0, (self.low, self.high), (0.0, 0.0), certain)
@@ -107,18 +107,18 @@ class Columns:
 
 
 def exact(problem: Problem, objectives: Array, values: Array, limits: Array) -> Columns:
-    """Return columns whose criteria have bands of no width; `limits` may be one row for all."""
+    """Return columns whose criteria have no error band; `limits` may be one row for all."""
     limits = np.broadcast_to(limits, values.shape)
     margin = problem.signs * (values - limits)
     return Columns(objectives, values, limits, margin, margin)
 
 
 Answer = Callable[[Array], Columns]
-"""The results at one level for rows [SI], shape (N, d): a pure function."""
+"""A pure function that returns the results at one level for rows [SI], shape (N, d)."""
 
 
 class CountingAnswer:
-    """An answer that counts the rows that it was asked for, and adds up their cost [s]."""
+    """A function that returns results, counts the requested rows, and adds up their cost [s]."""
 
     def __init__(self, answer: Answer) -> None:
         self._answer = answer
@@ -134,11 +134,11 @@ class CountingAnswer:
 
 
 class AllRefused(InvalidInputs):
-    """A search none of whose rows has all results that it needs."""
+    """Raised if no row of a search has all results that the search needs."""
 
 
 def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
-    """Return the error of a search none of whose rows has results, with the reasons given most often."""
+    """Return the error of a search in which no row has results, with the most frequent reasons."""
     reasons = Counter(columns.reasons.values()).most_common(3)
     listed = "; ".join(f"{times} times: {reason}" for reason, times in reasons) or _absent(problem, columns)
     detail = f"none of {count} rows within the bounds can be calculated ({listed}); change the bounds"
@@ -146,7 +146,7 @@ def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
 
 
 def _absent(problem: Problem, columns: Columns) -> str:
-    """Return a sentence on the results that no row has."""
+    """Return a sentence that names the results that are missing in all rows."""
     named = [(one.name, columns.objectives[:, n]) for n, one in enumerate(problem.objectives)]
     named += [(f"criterion {one.name}", columns.values[:, n]) for n, one in enumerate(problem.held)]
     named += [(f"limit of {one.name}", columns.limits[:, n]) for n, one in enumerate(problem.held)]

@@ -1,4 +1,4 @@
-"""Compare the result promised by the coarse level with that of the fine level at the same place."""
+"""Compare the coarse level's prediction with the fine level's result at the same point."""
 
 from __future__ import annotations
 
@@ -15,33 +15,35 @@ from templates.core.arrays import Array
 from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, NOT_MET, VERDICTS, Verdict
 
 WITHIN = 1e-3
-"""Relative difference between promise and truth that counts as agreement."""
+"""Largest relative difference between prediction and fine level that counts as agreement."""
 TINY = 1e-9
-"""Of the middle size of a column: differences below it are none."""
+"""Differences below this share of a column's median are ignored."""
 
 State = Literal["settled", "unconfirmed", "undecided", "infeasible", "not_settled"]
 
 
 @dataclass(frozen=True)
 class Round:
-    """One place that was confirmed.
+    """One confirmed point.
 
     Attributes
     ----------
     at
         The varied values [SI], shape (d,).
     promise, confirmed
-        Objectives, then the values and the limits of the criteria [SI], shape (k + 2 m,).
+        Objectives, then the values and the limits of the criteria [SI], as predicted by the corrected coarse
+        level and as calculated by the fine level, shape (k + 2 m,).
     codes
-        The verdict on each criterion, of the confirming level, as places in `VERDICTS`.
+        The fine level's verdict on each criterion, as indices into `VERDICTS`.
     worst
-        The margin of each criterion at the bad end of its band [SI], shape (m,); itself if that is unknown.
+        The margin of each criterion at the bad end of its band [SI], shape (m,); the margin itself if the
+        band is unknown.
     agrees
-        Whether promise and truth agree.
+        Whether prediction and fine level agree.
     is_feasible
-        Whether the search met every criterion by what it knew.
+        Whether every criterion was met according to the prediction.
     reason
-        Why the confirming level refuses the place; empty if it does not.
+        Why the fine level refuses the point; empty if it does not.
     """
 
     at: Array
@@ -55,27 +57,27 @@ class Round:
 
     @property
     def fell_short(self) -> bool:
-        """Return whether the search promised all criteria, but the fine level violates a limit."""
+        """Return whether the prediction met all criteria, but the fine level violates a limit."""
         return self.is_feasible and bool((self.worst < 0).any())
 
     @property
     def is_met(self) -> bool:
-        """Return whether the place has results, and every criterion is met."""
+        """Return whether the point has results and meets every criterion."""
         return bool(np.isfinite(self.confirmed).all()) and all(one >= MET_ERROR_UNKNOWN for one in self.codes)
 
     @property
     def is_known(self) -> bool:
-        """Return whether no criterion is met with an error that is not known."""
+        """Return whether the error of every criterion that is met is known."""
         return MET_ERROR_UNKNOWN not in self.codes
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Return the verdict on each criterion, of the confirming level."""
+        """Return the fine level's verdict on each criterion."""
         return tuple(VERDICTS[code] for code in self.codes)
 
 
 class Run:
-    """A search at a coarse level and its confirmations; counts what both cost.
+    """A search at a coarse level with its confirmations; it counts the cost of both.
 
     Raises
     ------
@@ -93,18 +95,18 @@ class Run:
 
     @property
     def seconds(self) -> float:
-        """Return the time of the rows [s], as the answers state it."""
+        """Return the total cost of all rows [s], as the results state it."""
         return self.explore.seconds + self._confirm.seconds
 
     @property
     def rows(self) -> tuple[int, int]:
-        """Return rows asked of the coarse and of the fine level."""
+        """Return the numbers of rows calculated at the coarse and at the fine level."""
         return self.explore.rows, self._confirm.rows
 
     def confirmed(self, unit: Array) -> tuple[list[Round], Columns]:
-        """Return places of the unit cube, shape (N, d), at the fine level, and its columns.
+        """Calculate points of the unit cube, shape (N, d), at the fine level; return rounds and columns.
 
-        Corrects nothing yet.
+        The corrections are not changed.
         """
         at = self.problem.space.at(unit)
         self._coarse, fine = self.explore(at), self._confirm(at)
@@ -127,9 +129,9 @@ class Run:
         )
 
     def unknown_place(self) -> Array:
-        """Return the place farthest from all confirmed ones, shape (1, d), in the best quarter of the scan.
+        """Return the point farthest from all confirmed points, shape (1, d), in the best quarter of the scan.
 
-        Best is what is nearest to feasible by the coarse level alone, without corrections.
+        The best quarter consists of the rows nearest to feasibility at the coarse level, without corrections.
         """
         raw = CorrectedAnswer(self.problem, self.explore, self.scales)
         seen = raw.seen(self.scanned.unit, self.scanned.columns)
@@ -140,7 +142,10 @@ class Run:
         return unit[[int(apart.argmax())]]
 
     def learn(self, unit: Array, rounds: Sequence[Round], fine: Columns) -> None:
-        """Correct by the places confirmed last; where a guarded one fell short, hold twice that besides."""
+        """Update the corrections with the latest confirmed points.
+
+        If a guarded point still violated a limit, the reserve is increased by twice the violation.
+        """
         if self.surface.guards:
             short = [
                 np.maximum(-one.worst, 0.0) / self.scales for one in rounds if one.agrees and one.fell_short
@@ -152,10 +157,10 @@ class Run:
 
 
 def unmet(rounds: Sequence[Round]) -> State:
-    """Return the state of a search whose agreed places are not met."""
+    """Return the state of a search whose predictions agree, but whose points do not meet all criteria."""
     return "infeasible" if any(NOT_MET in one.codes for one in rounds) else "undecided"
 
 
 def state_of_met(rounds: Sequence[Round]) -> State:
-    """Return the state of a search whose agreed places are met."""
+    """Return the state of a search whose predictions agree, and whose points meet all criteria."""
     return "settled" if all(one.is_known for one in rounds) else "unconfirmed"

@@ -20,25 +20,26 @@ from app.studies.methods.answers import Answer, Columns, Problem
 from templates.core.arrays import Array, Mask
 
 REACH = 1.0
-"""Distance in the unit cube over which ratios stay alike."""
+"""Distance in the unit cube over which ratios are correlated."""
 CLOSE = 0.02
-"""Distance in the unit cube within which a confirmation elsewhere adds little."""
+"""Distance in the unit cube within which a further confirmation adds little."""
 NUGGET = 1e-9
-"""Variance of the ratios at one place, relative to that over the box: solvers are not exact."""
+"""Variance of the ratios at one point, relative to that over the box, because solvers are not exact."""
 
 
 @dataclass(frozen=True)
 class SearchView:
-    """A search's view of N rows: objectives to minimise, and how far each criterion is from its limit.
+    """The predictions for N rows that a search uses: objectives to minimise, and margins of criteria.
 
     Attributes
     ----------
     objectives
-        Shape (N, k), those to maximise with the opposite sign.
+        Shape (N, k); objectives to maximise have the opposite sign.
     margins
-        Relative to the scale of the criterion, less its guard, shape (N, m); at least zero is feasible.
+        Margins relative to the scale of the criterion, reduced by the guard, shape (N, m); zero or more is
+        feasible.
     columns
-        Objectives, values and limits [SI] that are promised, shape (N, k + 2 m).
+        Predicted objectives, values and limits [SI], shape (N, k + 2 m).
     """
 
     objectives: Array
@@ -47,7 +48,7 @@ class SearchView:
 
     @property
     def violation(self) -> Array:
-        """Return the largest relative distance on the wrong side of a limit, shape (N,); zero is feasible."""
+        """Return the largest relative violation of a limit, shape (N,); zero is feasible."""
         worst = np.max(-self.margins, axis=1, initial=0.0)
         return np.where(np.isnan(self.margins).any(axis=1), np.nan, worst)
 
@@ -58,15 +59,15 @@ class SearchView:
 
 
 def stacked(columns: Columns) -> Array:
-    """Return objectives, values and limits side by side, shape (N, k + 2 m)."""
+    """Return objectives, values and limits as columns of one array, shape (N, k + 2 m)."""
     return np.hstack([columns.objectives, columns.values, columns.limits])
 
 
 class CorrectedAnswer:
-    """The coarse answer over the unit cube, corrected and guarded by what was confirmed."""
+    """The coarse level over the unit cube, corrected and guarded by the confirmed points."""
 
     def __init__(self, problem: Problem, answer: Answer, scales: Array) -> None:
-        """Take the scale [SI] of each criterion, shape (m,), above zero."""
+        """Set the scale [SI] of each criterion, shape (m,), above zero."""
         self.problem, self.answer, self.scales = problem, answer, scales
         self.places: list[Array] = []
         self.coarse: list[Array] = []
@@ -75,11 +76,11 @@ class CorrectedAnswer:
         self.reserve = np.zeros(len(problem.held))
 
     def __call__(self, unit: Array) -> SearchView:
-        """Return the promises at places of the unit cube, shape (N, d)."""
+        """Return the predictions at points of the unit cube, shape (N, d)."""
         return self.seen(unit, self.answer(self.problem.space.at(unit)))
 
     def seen(self, unit: Array, columns: Columns) -> SearchView:
-        """Return the promises at places where the coarse level has been asked already."""
+        """Return the predictions at points whose coarse results are given as `columns`."""
         weights = self._weights(unit)
         promise = self._promise(stacked(columns), weights)
         count, held = len(self.problem.objectives), len(self.problem.held)
@@ -89,7 +90,7 @@ class CorrectedAnswer:
         return SearchView(self.problem.senses * promise[:, :count], margins, promise)
 
     def learn(self, unit: Array, coarse: Columns, fine: Columns) -> None:
-        """Correct by one more confirmed place, shape (1, d), and guard its bands from now on."""
+        """Add one confirmed point, shape (1, d), to the corrections, and its error bands to the guards."""
         self.places.append(unit[0])
         self.coarse.append(stacked(coarse)[0])
         self.fine.append(stacked(fine)[0])
@@ -99,19 +100,19 @@ class CorrectedAnswer:
         self.guards.append(np.where(np.isfinite(share), np.maximum(share, 0.0), 0.0))
 
     def is_known(self, unit: Array) -> bool:
-        """Return whether a place, shape (d,), is close to one that was confirmed."""
+        """Return whether a point, shape (d,), is close to a confirmed one."""
         return any(float(np.linalg.norm(unit - place)) < CLOSE for place in self.places)
 
     def _weights(self, unit: Array) -> Array:
-        """Return the weight of each confirmed place, shape (N, a); each row adds up to one."""
+        """Return the weight of each confirmed point, shape (N, a); each row adds up to one."""
         if not self.places:
             return np.empty((len(unit), 0))
         return kriging_weights(np.array(self.places), unit)
 
     def _guard(self, values: Array, weights: Array) -> Array:
-        """Return the half of each band that is bad [SI], shape (N, m), as the fine level had it.
+        """Return the unsafe half of each error band at the fine level [SI], shape (N, m).
 
-        None at first.
+        It is zero before the first confirmation.
         """
         if not self.guards:
             return np.zeros_like(values)
@@ -129,13 +130,13 @@ class CorrectedAnswer:
 
 
 def _kriged(weights: Array, values: Array) -> Array:
-    """Return values at places interpolated; beyond their own range by no more than its width."""
+    """Return interpolated values; they exceed the range of `values` by no more than its width."""
     low, high = values.min(axis=0), values.max(axis=0)
     return np.clip(weights @ values, 2 * low - high, 2 * high - low)
 
 
 def kriging_weights(places: Array, unit: Array) -> Array:
-    """Return the weight of each of the places (a, d) at each row of `unit` (N, d), shape (N, a).
+    """Return the weight of each of the points (a, d) at each row of `unit` (N, d), shape (N, a).
 
     The weights of a row add up to one. Ordinary kriging with the covariance exp(-r²/2 l²).
     """

@@ -1,6 +1,7 @@
-"""NSGA-II of pymoo, one generation at a time: each depends on the previous one, the seed and its number.
+"""NSGA-II of pymoo, one generation at a time.
 
-So an interrupted search continues with its unfinished generation.
+A generation depends only on the previous one, the seed and its number. So an interrupted search continues
+with its unfinished generation.
 
 References
 ----------
@@ -20,17 +21,17 @@ from templates.core.arrays import Array
 
 
 class Population(Protocol):
-    """The part of pymoo's population that is used here."""
+    """The part of pymoo's populations that this module uses."""
 
     def __len__(self) -> int: ...
 
     def get(self, name: str) -> Array:
-        """Return of all members the variables `X`, the objectives `F` or the constraints `G`."""
+        """Return the variables `X`, the objectives `F` or the constraints `G` of all members."""
         ...
 
 
 class Algorithm(Protocol):
-    """The part of pymoo's algorithms that is used here."""
+    """The part of pymoo's algorithms that this module uses."""
 
     pop: Population
 
@@ -51,7 +52,7 @@ def evolved(
     stages: Stages,
     name: str,
 ) -> Array:
-    """Return the last population of NSGA-II, as places of the unit cube, shape (P, d).
+    """Return the last population of NSGA-II as points of the unit cube, shape (P, d).
 
     Parameters
     ----------
@@ -60,7 +61,7 @@ def evolved(
     seeds
         The seed of the search, and the number of the round.
     stages, name
-        Where its generations are kept, and by which name.
+        The store of the generations, and the name under which they are stored.
     """
     size = len(population)
 
@@ -77,7 +78,7 @@ def evolved(
 def _next(
     surface: CorrectedAnswer, members: tuple[Array, ...], size: int, seed: int
 ) -> tuple[Array, ...] | None:
-    """Return the next generation: places, objectives and constraints; None if no new places come up."""
+    """Return the next generation as points, objectives and constraints; None if there are no new points."""
     kinds = surface.problem
     problem = extra("pymoo.core.problem").Problem(
         n_var=len(kinds.space), n_obj=len(kinds.objectives), n_ieq_constr=len(kinds.held) + 1, xl=0.0, xu=1.0
@@ -108,9 +109,9 @@ def _tell(
 
 
 def _for_pymoo(seen: SearchView) -> tuple[Array, Array]:
-    """Return objectives and constraints, which hold at zero or less.
+    """Return objectives and constraints, which are met at zero or less.
 
-    One more says whether a row has results.
+    An additional constraint states whether a row has results.
     """
     complete = seen.complete
     objectives = np.where(complete[:, None], seen.objectives, 0.0)

@@ -1,4 +1,4 @@
-"""Packages of the extra `study`, imported when a method needs them: the imports take half a second."""
+"""Packages of the extra `study`, imported only when a method needs them: this takes half a second."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from templates.core.errors import Fault, InvalidInputs
 
 
 def extra(module: str) -> ModuleType:
-    """Return a module of SALib or of pymoo.
+    """Return a module of SALib or pymoo.
 
     Raises
     ------
     InvalidInputs
-        With code `not_installed`, if the package is not there.
+        With code `not_installed`, if the package is missing.
     """
     try:
         return import_module(module)

@@ -1,7 +1,7 @@
 """The Pareto front of several objectives, found by pymoo's NSGA-II.
 
-The search runs at the coarse level, where points spread along the front are polished too. The fine level
-confirms them, which corrects the coarse level for the next round, as for one objective.
+The search runs at the coarse level, and points spread along the front are then polished. The fine level
+confirms these points, which corrects the coarse level for the next round, as for one objective.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from app.studies.methods.stages import Forgetful, Journal, Stages
 from templates.core.arrays import Array, Integers, Mask
 
 POPULATION, GENERATIONS = 100, 200
-"""Of NSGA-II in the first round; later ones start from its last population and take half as many."""
+"""Generations of the first round; later rounds start from the last population and take half as many."""
 CONFIRMED = 20
-"""Places of the front that each round confirms."""
+"""Points of the front that each round confirms."""
 ROUNDS = 4
 """Most rounds."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """Effort of a search: rows of a generation, generations, confirmed places and rounds at most."""
+    """Limits of a search: population size, generations, confirmed points and rounds."""
 
     population: int = POPULATION
     generations: int = GENERATIONS
@@ -41,21 +41,21 @@ class Effort:
 
 @dataclass(frozen=True)
 class Front:
-    """The confirmed front and what it cost.
+    """The confirmed front and its cost.
 
     Attributes
     ----------
     state
-        As of an `Optimum`, for all places of the last round together.
+        The state as in `Optimum`, for all points of the last round together.
     places
-        Confirmed places that meet all criteria and of which none is better than another in all objectives, by
-        the first objective. Empty if no place meets all criteria.
+        Confirmed points that meet all criteria and that no other such point betters in all objectives,
+        ordered by the first objective. Empty if no point meets all criteria.
     rounds
-        All confirmed places, by round.
+        All confirmed points, by round.
     explored, confirmations
-        Rows asked of the coarse and of the fine level.
+        The numbers of rows calculated at the coarse and at the fine level.
     seconds
-        What both cost, as the answers state it.
+        The total cost [s], as the results state it.
     """
 
     state: State
@@ -77,9 +77,9 @@ def pareto_front(
     within: float = WITHIN,
     journal: Journal | None = None,
 ) -> Front:
-    """Return the front of a problem of several objectives; parameters as of `optimise`.
+    """Return the front of a problem with several objectives; the parameters are those of `optimise`.
 
-    What `journal` has kept of an earlier call with equal arguments is not calculated again.
+    Stages that `journal` has stored during an earlier call with equal arguments are not repeated.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def dominations(objectives: Array) -> Integers:
 
 
 def _state(rounds: list[Round]) -> State | None:
-    """Return the state in which the search ends with these places; None if it goes on."""
+    """Return the final state if the search ends with these points; None if it continues."""
     if not all(one.agrees for one in rounds):
         return None
     if all(one.is_met for one in rounds):
@@ -130,9 +130,12 @@ def _state(rounds: list[Round]) -> State | None:
 
 
 def _first(run: Run, count: int) -> Array:
-    """Return the best rows of the scan, spread as evenly as they are there."""
+    """Return the first population: the best rows of the scan.
+
+    If no row is feasible, the first member is the best point that a local search finds.
+    """
     seen = run.surface.seen(run.scanned.unit, run.scanned.columns)
-    if not (seen.violation == 0).any():  # the feasible places are few: evolution starts from one of them
+    if not (seen.violation == 0).any():  # feasible points are rare, so evolution starts from the best one
         return np.vstack([best(run.surface, run.scanned).unit[None], run.scanned.unit[: count - 1]])
     rows = np.flatnonzero(seen.complete)
     order = np.lexsort((dominations(seen.objectives[rows]), seen.violation[rows]))
@@ -140,9 +143,9 @@ def _first(run: Run, count: int) -> Array:
 
 
 def _chosen(surface: CorrectedAnswer, population: Array, count: int) -> Array:
-    """Return places of a population's front to confirm, far from each other.
+    """Return points of a population's front to confirm, far from each other.
 
-    Without a feasible one the nearest.
+    If no point is feasible, return the one of least violation.
     """
     unit = np.unique(population, axis=0)
     seen = surface(unit)
@@ -156,9 +159,9 @@ def _chosen(surface: CorrectedAnswer, population: Array, count: int) -> Array:
 
 
 def _polished(surface: CorrectedAnswer, unit: Array, objectives: Array) -> Array:
-    """Return each place with its first objective as small as it gets while no other grows.
+    """Return each point with its first objective minimised while no other objective increases.
 
-    NSGA-II keeps places in the gaps of its front that are not quite of it.
+    Some points that NSGA-II leaves in the gaps of its front do not quite belong to the front.
     """
     middle_width = middle_and_width(objectives)
     ends = [
@@ -169,7 +172,7 @@ def _polished(surface: CorrectedAnswer, unit: Array, objectives: Array) -> Array
 
 
 def spread(objectives: Array, count: int) -> list[int]:
-    """Return up to `count` rows far from each other, the least of each objective first; shape (N, k)."""
+    """Return up to `count` rows far from each other, including each objective's minimum; shape (N, k)."""
     low, high = objectives.min(axis=0), objectives.max(axis=0)
     scaled = (objectives - low) / np.where(high > low, high - low, 1.0)
     chosen = list(dict.fromkeys(int(row) for row in scaled.argmin(axis=0)))

@@ -1,8 +1,8 @@
 """One objective: explore at a coarse level, confirm at a fine one, correct, and repeat until both agree.
 
 After the first confirmation the search tightens each limit by the error band of the fine level, so that the
-confirmed optimum meets it fully. Feasible is not optimal: the ratios to the coarse level are exact at the
-confirmed rows, but slopes between them may be wrong.
+confirmed optimum meets it fully. A feasible point is not necessarily optimal: the ratios to the coarse level
+are exact at the confirmed rows, but slopes between them may be wrong.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from app.studies.methods.search import best
 from templates.core.arrays import Array
 
 ROUNDS = 8
-"""Most confirmations of one optimum."""
+"""Largest number of confirmations of one optimum."""
 
 
 @dataclass(frozen=True)
 class Violation:
-    """A criterion that the best place does not meet: by how much [SI], and relative to its limit."""
+    """A criterion that the best point does not meet: the violation [SI], and its ratio to the limit."""
 
     criterion: str
     by: float
@@ -32,24 +32,24 @@ class Violation:
 
 @dataclass(frozen=True)
 class Optimum:
-    """The best confirmed place, how it was reached, and what it cost.
+    """The best confirmed point, the rounds that led to it, and their cost.
 
     Attributes
     ----------
     state
-        `settled`: promise and truth agree, all criteria are met. `unconfirmed`: so do they, but the error of
-        a criterion at the fine level is not known. `undecided`: they agree, but a limit lies in
-        the band of the fine level. `infeasible`: they agree, and nowhere that the search looked all criteria
-        are met. `not_settled`: they do not agree after the last round, or the fine level refuses the place.
+        `settled`: prediction and fine level agree, and all criteria are met. `unconfirmed`: the same, but the
+        error of a criterion at the fine level is unknown. `undecided`: they agree, but a limit lies in the
+        error band of the fine level. `infeasible`: they agree, and no examined point meets all criteria.
+        `not_settled`: they do not agree after the last round, or the fine level refuses the point.
     best
-        The round that counts: of those that meet all criteria the one with the best objective; if it is
-        infeasible, the one of least violation; else the last.
+        The round with the best objective among those that meet all criteria; if none does, the round of least
+        violation for an infeasible problem, else the last round.
     violations
         Criteria that `best` does not meet, the least violated first.
     explored, confirmations
-        Rows asked of the coarse and of the fine level.
+        The numbers of rows calculated at the coarse and at the fine level.
     seconds
-        What both cost, as the answers state it.
+        The total cost [s], as the results state it.
     """
 
     state: State
@@ -76,15 +76,16 @@ def optimise(
     Parameters
     ----------
     problem
-        What to vary, to optimise and to hold.
+        The variables, objectives and required criteria.
     explore, confirm
-        The results at the coarse level, asked for thousands of rows, and at the fine one, asked for a few.
+        Functions that return results at the coarse level, for thousands of rows, and at the fine one, for a
+        few.
     seed
-        Of the scan; equal seeds and answers give equal optima.
+        Seed of the scan; equal seeds and results give equal optima.
     rounds
-        Most confirmations.
+        Largest number of confirmations.
     within
-        Relative difference between promise and truth that counts as agreement.
+        Relative difference between prediction and fine level that counts as agreement.
 
     Raises
     ------
@@ -104,10 +105,10 @@ def optimise(
 
 
 def _next(run: Run) -> Array:
-    """Return the place to confirm, shape (1, d): the optimum by all that is known.
+    """Return the point to confirm, shape (1, d): the optimum according to the present corrections.
 
-    If nothing is feasible by that, and the place next to the limits is known already, it is a place far from
-    all that are known: the corrections may be what is wrong there.
+    If that point is infeasible and close to a confirmed one, return a point far from all confirmed ones
+    instead, because the corrections may be wrong there.
     """
     place = best(run.surface, run.scanned, tuple(run.surface.places[-1:]))
     if place.violation > 0 and run.surface.is_known(place.unit):
@@ -116,7 +117,7 @@ def _next(run: Run) -> Array:
 
 
 def _state(done: list[Round]) -> State | None:
-    """Return the state in which the search ends with the last round; None if it goes on."""
+    """Return the final state if the search ends with the last round; None if it continues."""
     confirmed = done[-1]
     if not np.isfinite(confirmed.confirmed).all():
         return "not_settled"
@@ -126,12 +127,12 @@ def _state(done: list[Round]) -> State | None:
         return state_of_met([confirmed])
     looks_elsewhere = not confirmed.is_feasible and not done[0].agrees
     if confirmed.fell_short or looks_elsewhere:
-        return None  # hold the bands, or a little more; or doubt the corrections first
+        return None  # tighten the limits or improve the corrections first
     return unmet([confirmed])
 
 
 def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
-    """Return the optimum, from the rounds done; without a state it is in vain or has not settled."""
+    """Return the optimum from the finished rounds; without a final state it is infeasible or not settled."""
     sense = float(run.problem.senses[0])
     met = [one for one in done if one.is_met]
     chosen = done[-1]
@@ -147,7 +148,7 @@ def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
 
 
 def violated(problem: Problem, place: Round, scales: Array) -> tuple[Violation, ...]:
-    """Return the criteria that a place does not meet, the least violated first; `scales` [SI], shape (m,)."""
+    """Return the criteria that a point does not meet, the least violated first; `scales` [SI], shape (m,)."""
     count, held = len(problem.objectives), len(problem.held)
     values, limits = place.confirmed[count : count + held], place.confirmed[count + held :]
     by = (-problem.signs * (values - limits)).tolist()

@@ -15,44 +15,44 @@ from templates.core.arrays import Array
 
 
 class Points(Protocol):
-    """Rows [SI] by number, of which there are `count`."""
+    """A sequence of `count` rows [SI], accessed by number."""
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         ...
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded, shape (last - first, d)."""
+        """Return rows `first` to `last`, excluding `last`, shape (last - first, d)."""
         ...
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows that the user gives [SI], shape (N, d)."""
+    """Rows [SI] that the user gives, shape (N, d)."""
 
     values: Array
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return len(self.values)
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         return self.values[first:last]
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Each combination of the steps of all variables; the last variable changes from row to row.
+    """All combinations of the steps of all variables; the last variable changes fastest.
 
-    `steps` names the number of steps of each interval; a variable with `values` takes all of them.
+    `steps` gives the number of steps of each interval; a variable with `values` uses all of them.
 
     Raises
     ------
     InvalidInputs
-        With code `steps`, if an interval has less than two.
+        With code `steps`, if an interval has fewer than two steps.
     """
 
     space: Space
@@ -65,16 +65,16 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of values that each variable takes."""
+        """Return the number of values of each variable."""
         return tuple(len(axis) for axis in self.axes)
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return prod(self.shape)
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         numbers = np.arange(first, min(last, self.count))
         places = np.unravel_index(numbers, self.shape)
         return np.stack([axis[place] for axis, place in zip(self.axes, places, strict=True)], axis=-1)
@@ -89,29 +89,29 @@ class Sobol:
     seed: int
 
     def unit(self, first: int, last: int) -> Array:
-        """Return the rows as places in the unit cube."""
+        """Return the rows as points of the unit cube."""
         return sobol_sequence(len(self.space), self.seed, first, min(last, self.count))
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         return self.space.at(self.unit(first, last))
 
 
 def sobol_sequence(dimensions: int, seed: int, first: int, last: int) -> Array:
-    """Return points `first` to `last`, the last excluded, of a scrambled sequence in the unit cube."""
-    from scipy.stats import qmc  # it takes as long as all other imports of a small command
+    """Return points `first` to `last`, excluding `last`, of a scrambled sequence in the unit cube."""
+    from scipy.stats import qmc  # a slow import: as slow as all others of a small command together
 
     sequence = qmc.Sobol(dimensions, rng=seed)
     if first:
         return np.asarray(sequence.fast_forward(first).random(last - first), dtype=np.float64)
-    # SciPy warns if the first draw is not a power of two; what it draws too much is left out.
+    # SciPy warns if the first draw is not a power of two; surplus points are dropped.
     drawn = sequence.random_base2(max(last - 1, 0).bit_length())
     return np.asarray(drawn[:last], dtype=np.float64)
 
 
 @dataclass(frozen=True)
 class LatinHypercube:
-    """A Latin hypercube of a seed: `count` rows, one in each of as many slices of every variable."""
+    """A Latin hypercube of `count` rows: each of `count` equal slices of every variable contains one row."""
 
     space: Space
     count: int
@@ -119,15 +119,15 @@ class LatinHypercube:
 
     @cached_property
     def _unit(self) -> Array:
-        """Return all rows of the sample at once, since the place of each depends on the others."""
+        """Return all rows of the sample, because each row depends on the others."""
         from scipy.stats import qmc
 
         return np.asarray(qmc.LatinHypercube(len(self.space), rng=self.seed).random(self.count))
 
     def unit(self, first: int, last: int) -> Array:
-        """Return the rows as places in the unit cube."""
+        """Return the rows as points of the unit cube."""
         return self._unit[first:last]
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         return self.space.at(self.unit(first, last))

@@ -19,20 +19,20 @@ from app.studies.methods.correction import CorrectedAnswer
 from templates.core.arrays import Array, Mask
 
 STEP = 1e-5
-"""Of central differences, as a share of a variable's range."""
+"""Step of central differences, as a share of a variable's range."""
 HOLD = 1e-9
-"""Relative margin that the polish keeps, so that rounding does not carry it over a limit."""
+"""Relative margin that the polish keeps, so that rounding does not violate a limit."""
 REFUSED = 1e3
-"""Scaled objective of a refused row: worse than any, so that the polish turns back."""
+"""Scaled objective of a refused row, worse than any other, so that the polish turns back."""
 STALE, WORTH = 12, 1e-9
-"""A polish ends after so many places none of which is better by so much, scaled, than those before."""
+"""A polish ends after this many points without an improvement of this size (scaled)."""
 ACCURACY, ROUGH, MOST_STEPS = 1e-12, 1e-6, 100
-"""Of SLSQP: scaled objective, to the end or only so far that places can be compared; and iterations."""
+"""Accuracy of SLSQP in the scaled objective, final or only for comparison; and its iterations."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """The end of a search: a place in the unit cube, shape (d,), its objective and its relative violation."""
+    """The end of a search: a point in the unit cube, shape (d,), its objective and its relative violation."""
 
     unit: Array
     objective: float
@@ -40,16 +40,16 @@ class Place:
 
 
 def rank(place: Place) -> tuple[float, float]:
-    """Return the key to sort places: feasible ones first, the smaller objective first."""
+    """Return a sort key for points: smaller violation first, then smaller objective."""
     return (place.violation, place.objective)
 
 
 @dataclass(frozen=True)
 class ScaledProblem:
-    """The first objective, near one, and the margins of a surface.
+    """The first objective, scaled to about one, and the margins of a surface.
 
-    `middle` and `width` are those of all objectives, shape (k,). `most` bounds the other objectives, shape
-    (k - 1,): so a place of a front gets better in one objective, and worse in none.
+    `middle` and `width` describe the values of all objectives, shape (k,). `most` bounds the other
+    objectives, shape (k - 1,), so that a point of a front improves in one objective and gets worse in none.
     """
 
     surface: CorrectedAnswer
@@ -58,7 +58,7 @@ class ScaledProblem:
     most: Array | None = None
 
     def __call__(self, unit: Array) -> tuple[Array, Array]:
-        """Return objectives, (N,), and margins, (N, m), or (N, m + k - 1) with bounds on the others."""
+        """Return objectives, (N,), and margins, (N, m); (N, m + k - 1) if other objectives are bounded."""
         seen = self.surface(unit)
         scaled = (seen.objectives - self.middle) / self.width
         margins = seen.margins - HOLD
@@ -68,15 +68,15 @@ class ScaledProblem:
 
 
 Linear = tuple[float, Array, Array, Array]
-"""Objective, its slopes (n,), margins (m,), their slopes (m, n)."""
+"""Objective, its slopes (n,), margins (m,), and their slopes (m, n)."""
 
 
 class _Stale(Exception):
-    """The polish brings nothing any more."""
+    """Raised if the polish no longer improves anything."""
 
 
 class _Tangent:
-    """Values and slopes over the free variables around a start; remembers the best place it was asked for."""
+    """Values and slopes over the free variables around a start; it records all evaluated points."""
 
     def __init__(self, scaled: ScaledProblem, start: Array, free: Mask) -> None:
         self._scaled, self._start, self.free = scaled, start, np.flatnonzero(free)
@@ -84,7 +84,7 @@ class _Tangent:
         self.places: list[Place] = []
 
     def unit(self, z: Array) -> Array:
-        """Return the place in the unit cube for values of the free variables."""
+        """Return the point in the unit cube for given values of the free variables."""
         place = self._start.copy()
         place[self.free] = np.clip(z, 0.0, 1.0)
         return place
@@ -98,7 +98,7 @@ class _Tangent:
         return self._kept[key]
 
     def _is_stale(self) -> bool:
-        """Return whether the last places improved nothing: SLSQP chases the noise of solvers for ever."""
+        """Return whether the last points improved nothing; SLSQP would otherwise follow solver noise."""
         if len(self.places) < STALE:
             return False
         before, after = (min(part, key=rank) for part in (self.places[: 1 - STALE], self.places[1 - STALE :]))
@@ -123,7 +123,7 @@ class _Tangent:
         return float(both[0, 0]), across[0], both[0, 1:], across[1:]
 
     def _steps(self, place: Array) -> tuple[Array, Array]:
-        """Return two steps for each free variable, to both sides, or to one side at a bound."""
+        """Return two steps for each free variable: one to each side, or both to one side at a bound."""
         z = place[self.free]
         below = np.where(z < STEP, 2 * STEP, -STEP)
         above = np.where(z > 1 - STEP, -2 * STEP, STEP)
@@ -135,14 +135,14 @@ class _Tangent:
 
 
 def _refused(free: int, held: int) -> Linear:
-    """Return a flat place so bad that the line search comes back from it."""
+    """Return a constant result so bad that the line search turns back."""
     return REFUSED, np.zeros(free), np.full(held, -1.0), np.zeros((held, free))
 
 
 def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Array:
-    """Return slopes at 0 of the parabola through (0, middle), (a, one), (b, other).
+    """Return the slopes at 0 of parabolas through (0, middle), (a, one), (b, other).
 
-    Of a line if one is missing.
+    If one point is missing, a straight line is used.
     """
     a, b = a[:, None], b[:, None]
     with np.errstate(all="ignore"):
@@ -154,7 +154,7 @@ def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Arra
 
 
 def polished(scaled: ScaledProblem, start: Array, accuracy: float = ACCURACY) -> Place:
-    """Return the best place on the way of SLSQP from a start, to an accuracy of the scaled objective."""
+    """Return the best point on the path of SLSQP from a start, to an accuracy of the scaled objective."""
     tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
     first = tangent(start[tangent.free])
     if tangent.free.size and first[0] < REFUSED:
@@ -168,9 +168,9 @@ def _slsqp(tangent: _Tangent, start: Array, held: int, accuracy: float) -> None:
 
 
 def relaxed(scaled: ScaledProblem, place: Place) -> Place:
-    """Return the place of least violation near a place.
+    """Return the point of least violation near a given point.
 
-    The violation t becomes the objective, margins + t >= 0.
+    The violation t becomes the objective, with the constraints margins + t >= 0.
     """
     tangent = _Tangent(scaled, place.unit, scaled.surface.problem.space.continuous)
     start = place.unit[tangent.free]
@@ -204,7 +204,7 @@ def _minimise(
     limits: list[_Limits],
     accuracy: float = ACCURACY,
 ) -> None:
-    """Run SLSQP; the functions remember where it was."""
+    """Run SLSQP; the functions record the points that it visits."""
     with suppress(_Stale):
         minimize(  # type: ignore[call-overload] # its stubs know functions of arrays of one axis only
             objective,

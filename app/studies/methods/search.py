@@ -1,7 +1,7 @@
 """The optimum of one objective at one level: a scan of the whole box, then a polish of its best points.
 
-Values from a list stay as the scan found them, so each promising combination is polished by itself. The
-optimum is not proven to be global.
+Variables with a list of values keep the values of the scan, so each promising combination is polished
+separately. The optimum is not proven to be global.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from app.studies.methods.space import Space, Values
 from templates.core.arrays import Array, Integers
 
 SCANNED = 4096
-"""Rows of the scan; a power of two of Sobol' points."""
+"""Number of rows of the scan; a power of two of Sobol' points."""
 STARTS = 6
-"""Places that are polished, if all variables are continuous."""
+"""Number of points that are polished if all variables are continuous."""
 AGAIN = 3
-"""The same beside places that are given to start from."""
+"""The same, if starting points are given as well."""
 COMBINATIONS = 24
-"""Combinations of values of lists that are polished, each from its best place."""
+"""Combinations of list values that are polished, each from its best point."""
 RELAXED = 3
-"""Ends without a feasible place from which the place of least violation is searched."""
+"""Number of infeasible end points from which the point of least violation is searched."""
 APART = 0.15
-"""Distance in the unit cube between two starts."""
+"""Smallest distance in the unit cube between two starts."""
 
 
 @dataclass(frozen=True)
 class Scan:
-    """Places of the unit cube, shape (N, d), and what the coarse level has there."""
+    """Points of the unit cube, shape (N, d), and the coarse level's results there."""
 
     unit: Array
     columns: Columns
 
 
 def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
-    """Ask for rows all over the box: each combination, if there are few and nothing is continuous.
+    """Calculate rows all over the box; all combinations, if there are few and no variable is continuous.
 
     Raises
     ------
@@ -71,10 +71,7 @@ def _places(space: Space, seed: int) -> Array:
 
 
 def scales(columns: Columns) -> Array:
-    """Return the scale [SI] of each criterion, shape (m,).
-
-    Its limit, or its value where the limit is zero.
-    """
+    """Return the scale [SI] of each criterion, shape (m,): its limit, or its value if the limit is zero."""
     with np.errstate(all="ignore"):
         return np.array([_scale(*pair) for pair in zip(columns.limits.T, columns.values.T, strict=True)])
 
@@ -87,7 +84,7 @@ def _scale(limits: Array, values: Array) -> float:
 
 
 def best(surface: CorrectedAnswer, scanned: Scan, starts: tuple[Array, ...] = ()) -> Place:
-    """Return the best place that the polish finds from the best of the scan, and from `starts` besides."""
+    """Return the best point that the polish finds from the best rows of the scan and from `starts`."""
     seen = surface.seen(scanned.unit, scanned.columns)
     scaled = ScaledProblem(surface, *middle_and_width(seen.objectives[seen.complete]))
     count = AGAIN if starts else STARTS
@@ -96,7 +93,7 @@ def best(surface: CorrectedAnswer, scanned: Scan, starts: tuple[Array, ...] = ()
     ends.sort(key=rank)
     if ends[0].violation > 0:
         ends = sorted((relaxed(scaled, end) for end in ends[:RELAXED]), key=rank)
-    # Only the best is polished to the end. A fresh start cures a Hessian that the way there has spoilt.
+    # Only the best point is polished to full accuracy. A fresh start also resets SLSQP's Hessian.
     return min(ends[0], polished(scaled, ends[0].unit), key=rank)
 
 
@@ -108,10 +105,7 @@ def middle_and_width(objectives: Array) -> tuple[Array, Array]:
 
 
 def _starts(space: Space, unit: Array, seen: SearchView, count: int) -> list[int]:
-    """Return rows of the scan to polish.
-
-    The best, no two close together or of the same combination of lists.
-    """
+    """Return the best rows of the scan to polish; no two are close or share a combination of lists."""
     rows = np.flatnonzero(seen.complete)
     order = rows[np.lexsort((seen.objectives[rows, 0], seen.violation[rows]))].astype(np.int64)
     if not space.continuous.all():

@@ -20,7 +20,7 @@ from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 
 CONFIDENCE = 0.95
-"""Of the intervals around indices and effects, by bootstrap."""
+"""Confidence level of the intervals around indices and effects, by bootstrap."""
 
 
 def slopes(points: Local, output: str, y: Array) -> Slopes:
@@ -37,7 +37,7 @@ def slopes(points: Local, output: str, y: Array) -> Slopes:
 
 @dataclass(frozen=True)
 class MorrisPoints:
-    """Rows of Morris' screening: trajectories on a lattice of `levels`, each of d + 1 rows."""
+    """Rows of Morris' screening: trajectories of d + 1 rows each, on a lattice of `levels`."""
 
     space: Space
     trajectories: int
@@ -46,29 +46,29 @@ class MorrisPoints:
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return self.trajectories * (len(self.space) + 1)
 
     @cached_property
     def unit(self) -> Array:
-        """Return all rows as places in the unit cube."""
+        """Return all rows as points of the unit cube."""
         sample = extra("SALib.sample.morris").sample
         problem, random = _problem(self.space), np.random.default_rng(self.seed)
         return np.asarray(sample(problem, self.trajectories, num_levels=self.levels, seed=random))
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         return self.space.at(self.unit[first:last])
 
 
 @dataclass(frozen=True)
 class Effects:
-    """Change of an output [SI] as a variable crosses its whole range, shape (d,).
+    """The change of an output [SI] as a variable crosses its whole range, shape (d,).
 
     Attributes
     ----------
     mean, mean_absolute, spread
-        µ, µ* and σ: direction, importance, and how much the effect depends on where it is taken.
+        µ, µ* and σ: direction, importance, and variation of the effect over the box.
     confidence
         Half the width of the 95 % interval of µ*.
     """
@@ -122,18 +122,18 @@ class SobolPoints:
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return self.base * (len(self.space) + 2)
 
     @cached_property
     def unit(self) -> Array:
-        """Return all rows as places in the unit cube."""
+        """Return all rows as points of the unit cube."""
         sample = extra("SALib.sample.sobol").sample
         problem, random = _problem(self.space), np.random.default_rng(self.seed)
         return np.asarray(sample(problem, self.base, calc_second_order=False, seed=random))
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows number `first` to `last`, the last one excluded."""
+        """Return rows `first` to `last`, excluding `last`."""
         return self.space.at(self.unit[first:last])
 
 
@@ -141,7 +141,8 @@ class SobolPoints:
 class Indices:
     """Shares of the variance of an output, shape (d,), each with half the width of its 95 % interval.
 
-    `first`: what disappears if the variable is fixed. `total`: what is left if all others are fixed.
+    `first` is the share that disappears if the variable is fixed; `total` the share that remains if all other
+    variables are fixed.
     """
 
     first: Array
@@ -156,15 +157,15 @@ def indices(points: SobolPoints, output: str, y: Array) -> Indices:
     Raises
     ------
     InvalidInputs
-        With code `refused_rows`, if a row has no value: one alone would make every index NaN. With code
-        `constant`, if the output does not vary.
+        With code `refused_rows`, if a row has no value, because a single one would make every index NaN.
+        With code `constant`, if the output does not vary.
     """
     _complete(output, y, points.count)
     if np.ptp(y) <= np.finfo(float).eps * np.abs(y).max():
         detail = f"{output} is {float(y[0]):.6g} [SI] in all rows, so no variable has a share of its variance"
         raise InvalidInputs([Fault(output, "constant", detail)])
     analyse = extra("SALib.analyze.sobol").analyze
-    random = np.random.default_rng(points.seed)  # SALib takes a seed of 0 for none
+    random = np.random.default_rng(points.seed)  # SALib treats a seed of 0 as no seed
     by_name = analyse(
         _problem(points.space),
         np.asarray(y, dtype=np.float64),
@@ -185,7 +186,7 @@ def _plain(values: object) -> Array:
 
 
 def _complete(output: str, y: Array, count: int) -> None:
-    """Refuse results of the wrong number of rows, and rows without values."""
+    """Raise InvalidInputs if the number of values is wrong, or a row has no value."""
     if len(y) != count:
         raise ValueError(f"{output}: {len(y)} values for {count} rows")
     if missing := int(np.count_nonzero(~np.isfinite(y))):

@@ -17,12 +17,12 @@ Spacing = Literal["linear", "log"]
 
 @dataclass(frozen=True)
 class Interval:
-    """A value that varies between two bounds [SI]; log spacing gives each decade the same share.
+    """A variable between two bounds [SI]; with log spacing, each decade has the same share.
 
     Raises
     ------
     InvalidInputs
-        With code `bounds`, if the bounds are not finite or not in order, or log spacing meets a bound ≤ 0.
+        With code `bounds`, if the bounds are not finite or not in order, or if log spacing has a bound ≤ 0.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Interval:
             raise _bounds(self.name, "spacing `log` needs bounds above zero")
 
     def at(self, u: Array) -> Array:
-        """Return the values [SI] at places `u` from 0 to 1."""
+        """Return the values [SI] at positions `u` from 0 to 1."""
         if self.spacing == "log":
             values = self.low * np.exp(u * math.log(self.high / self.low))
         else:
@@ -45,7 +45,7 @@ class Interval:
         return np.where(u >= 1.0, self.high, np.clip(values, self.low, self.high))
 
     def place(self, values: Array) -> Array:
-        """Return the places from 0 to 1 of values [SI] within the bounds."""
+        """Return the positions from 0 to 1 of values [SI] within the bounds."""
         if self.spacing == "log":
             places = np.log(values / self.low) / math.log(self.high / self.low)
         else:
@@ -53,7 +53,7 @@ class Interval:
         return np.clip(places, 0.0, 1.0)
 
     def steps(self, count: int) -> Array:
-        """Return `count` values [SI], the bounds among them."""
+        """Return `count` values [SI], including both bounds."""
         if count < 2:
             raise InvalidInputs([Fault(self.name, "steps", f"{self.name}: a grid needs at least 2 steps")])
         return self.at(np.linspace(0.0, 1.0, count))
@@ -61,7 +61,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class Values:
-    """A value that takes one of a list: whole numbers, standard sizes [SI], or places in a list of choices.
+    """A variable with a list of values: whole numbers, standard sizes [SI], or indices of a list of options.
 
     Raises
     ------
@@ -78,17 +78,17 @@ class Values:
             raise InvalidInputs([Fault(self.name, "values", detail)])
 
     def at(self, u: Array) -> Array:
-        """Return the values at places `u` from 0 to 1: each has an equal share of them."""
+        """Return the values at positions `u` from 0 to 1; each value has an equal share."""
         index = np.minimum(np.floor(u * len(self.values)).astype(np.int64), len(self.values) - 1)
         return np.array(self.values)[index]
 
     def place(self, values: Array) -> Array:
-        """Return the middle of the share of the nearest value of the list."""
+        """Return the middle of the share of the nearest value in the list."""
         nearest = np.abs(values[..., None] - np.array(self.values)).argmin(axis=-1)
         return np.asarray((nearest + 0.5) / len(self.values))
 
     def steps(self, count: int) -> Array:
-        """Return all values, regardless of the count."""
+        """Return all values, whatever the count."""
         return np.array(self.values)
 
 
@@ -115,11 +115,11 @@ class Space:
         return np.array([isinstance(variable, Interval) for variable in self.variables], dtype=bool)
 
     def at(self, unit: Array) -> Array:
-        """Return rows [SI] from rows of the unit cube, shape (N, d)."""
+        """Return rows [SI] for points of the unit cube, shape (N, d)."""
         return _by_column([v.at(u) for v, u in zip(self.variables, unit.T, strict=True)], unit)
 
     def place(self, rows: Array) -> Array:
-        """Return rows of the unit cube from rows [SI], shape (N, d)."""
+        """Return points of the unit cube for rows [SI]."""
         return _by_column([v.place(x) for v, x in zip(self.variables, rows.T, strict=True)], rows)
 
 

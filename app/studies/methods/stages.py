@@ -1,7 +1,7 @@
 """Stages of a search, stored so that an interrupted search does not repeat finished ones.
 
-A search is a pure function of its seed and of the answers it receives. A stage is a part of a search that
-returns a few arrays. A caller that stores these arrays and the requests of the stage can resume after it.
+A search is a pure function of its seed and of the results that it receives. A stage is a part of a search
+that returns a few arrays. A caller that stores these arrays and the costs of the stage can resume after it.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from templates.core.arrays import Array
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage as far as it has come.
+    """The present state of a stage.
 
     Attributes
     ----------
     done
-        How many of its steps are done.
+        The number of finished steps.
     arrays
-        What the next step, or the next stage, begins with.
+        The input of the next step or stage.
     rows, seconds
-        What the stage asked of the coarse level so far, and what that cost [s].
+        The rows that the stage has calculated at the coarse level so far, and their cost [s].
     """
 
     done: int
@@ -38,7 +38,7 @@ class Journal(Protocol):
     """A store of stages."""
 
     def stored(self, name: str) -> Stage | None:
-        """Return the latest stored stage of a name."""
+        """Return the latest stored state of the stage with this name, or None."""
         ...
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -47,17 +47,17 @@ class Journal(Protocol):
 
 
 class Forgetful:
-    """A journal that keeps nothing: for a search that nothing interrupts."""
+    """A journal that stores nothing, for a search that is never interrupted."""
 
     def stored(self, name: str) -> Stage | None:
-        """Return no stage."""
+        """Return None, because no stage is stored."""
 
     def keep(self, name: str, stage: Stage) -> None:
         """Do nothing."""
 
 
 class Stages:
-    """The stages of one search, with the count of what it asks of the coarse level."""
+    """The stages of one search, and the count of the rows calculated at the coarse level."""
 
     def __init__(self, journal: Journal, counted: CountingAnswer) -> None:
         self._journal, self._counted = journal, counted
@@ -69,14 +69,14 @@ class Stages:
         following: Callable[[int, tuple[Array, ...]], tuple[Array, ...] | None],
         count: int,
     ) -> tuple[Array, ...]:
-        """Return the arrays after `count` steps, or after the one that has nothing to follow it.
+        """Return the arrays after `count` steps, or earlier if `following` returns None.
 
         Parameters
         ----------
         first
-            The arrays before the first step.
+            Returns the arrays before the first step.
         following
-            The arrays after a step, by its number from 0 and the arrays before it: a pure function.
+            Returns the arrays after a step, given its number (from 0) and the arrays before it.
         """
         rows, seconds = self._counted.rows, self._counted.seconds
         stage = self._journal.stored(name)
@@ -93,5 +93,5 @@ class Stages:
         return stage.arrays
 
     def once(self, name: str, make: Callable[[], Array]) -> Array:
-        """Return the result of a stage of a single step."""
+        """Return the result of a stage with a single step."""
         return self.stepped(name, lambda: (), lambda number, arrays: (make(),), 1)[0]

@@ -55,11 +55,11 @@ router = APIRouter(prefix="/api/v1/studies", tags=["studies"], route_class=Stric
 Id = Annotated[str, Path(max_length=64)]
 Columns = Annotated[
     str | None,
-    Query(max_length=5000, description="names of places and outputs, separated by commas; all, if not given"),
+    Query(max_length=5000, description="names of places and outputs, separated by commas; by default all"),
 ]
-Fits = Annotated[Where | None, Query(description="only rows of this verdict, or those that were refused")]
+Fits = Annotated[Where | None, Query(description="only rows with this verdict, or only refused rows")]
 Sort = Annotated[
-    str | None, Query(max_length=200, description="a column; with `-` before it the largest first")
+    str | None, Query(max_length=200, description="a column; prefix it with `-` for descending order")
 ]
 FILES: JsonDict = {
     "requestBody": {
@@ -67,7 +67,7 @@ FILES: JsonDict = {
     }
 }
 BEGUN: Responses = {
-    202: {"description": "the study is queued; its place is in the header Location"},
+    202: {"description": "the study is queued; the header Location has its address"},
     **refusals(404, 429),
 }
 
@@ -76,9 +76,10 @@ BEGUN: Responses = {
 async def begin_study(
     body: StudyIn, studies: TheStudies, once: TheOnce, client: TheClient, request: Request
 ) -> Response:
-    """Begin a study of a revision; what it will take is estimated before it begins.
+    """Begin a study of a revision; its cost is estimated before it begins.
 
-    A CSV or XLSX file as body has the rows of `table`; `design`, `outputs` and the rest are then the query.
+    With a CSV or XLSX file as body, the file has the rows of a `table` study, and `design`, `outputs` and the
+    other members are query parameters.
     """
     return await answer_begun(request, client, studies, body, once)
 
@@ -86,14 +87,14 @@ async def begin_study(
 async def answer_begun(
     request: Request, client: str, studies: Studies, body: StudyIn, once: Once
 ) -> Response:
-    """Return the study that a request begins, or has begun before."""
+    """Return the study that a request begins, or began before."""
     id = await begun(request, client, studies, body, once)
     shown = await run_in_threadpool(_shown, studies, id)
     return written(shown, 202, {"Location": f"/api/v1/studies/{id}"})
 
 
 async def begun(request: Request, client: str, studies: Studies, body: StudyIn, once: Once) -> str:
-    """Return the id of the study that a request begins, or has begun before."""
+    """Return the id of the study that a request begins, or began before."""
     id = await run_in_threadpool(studies.begun_before, once)
     if id is None:
         draft = await run_in_threadpool(studies.draft, body)
@@ -106,14 +107,14 @@ async def begun(request: Request, client: str, studies: Studies, body: StudyIn, 
 async def estimate_study(
     body: StudyIn, studies: TheStudies, client: TheClient, request: Request
 ) -> StudyEstimate:
-    """Estimate a study: its rows, levels, time and solids. Nothing begins."""
+    """Estimate the rows, levels, time and solids of a study without beginning it."""
     draft = await run_in_threadpool(studies.draft, body)
     plan, _ = await _planned(request, client, draft)
     return views.estimate(plan)
 
 
 async def _planned(request: Request, client: str, draft: Draft) -> tuple[Plan, Array | None]:
-    """Return the plan of a study, and the rows that its user gave; made in the pool."""
+    """Return the plan of a study, calculated in the pool, and the rows that its user gave."""
     pool = services_of(request).calculations
     calculation = pool.submit(client, planned, draft.task, draft.rows, draft.solid_seconds)
     plan, given = await calculated_in_pool(pool, calculation)
@@ -121,7 +122,7 @@ async def _planned(request: Request, client: str, draft: Draft) -> tuple[Plan, A
 
 
 async def calculated_in_pool(pool: CalculationPool, calculation: Calculation) -> Json:
-    """Return the result of a calculation; it is ended if the request is."""
+    """Return the result of a calculation; cancel the calculation if the request is cancelled."""
     try:
         return await asyncio.shield(asyncio.wrap_future(calculation.future))
     except BaseException:
@@ -134,9 +135,9 @@ def list_studies(
     studies: TheStudies,
     limit: Limit = 50,
     cursor: Cursor = None,
-    design: Annotated[str | None, Query(max_length=64, description="those of this design")] = None,
+    design: Annotated[str | None, Query(max_length=64, description="only studies of this design")] = None,
 ) -> StudyList:
-    """Studies, newest first."""
+    """Return studies, newest first."""
     with studies.database.read() as session:
         rows = repository.page(session, limit, cursor, design)
         return page(StudyList, rows, limit, lambda row: views.study(session, row), lambda row: row.id)
@@ -144,7 +145,7 @@ def list_studies(
 
 @router.get("/{id:study}", responses=refusals(404))
 def show_study(id: Id, studies: TheStudies, units: Units = "si") -> Study:
-    """A study: its state, how far it is, and what the method found."""
+    """Return a study: its state, its progress, and the result of its method."""
     return _shown(studies, id).in_units(units)
 
 
@@ -152,7 +153,7 @@ def show_study(id: Id, studies: TheStudies, units: Units = "si") -> Study:
     "/{id:study}", response_model=Study, responses={204: {"description": "removed"}, **refusals(403, 404)}
 )
 def end_study(id: Id, studies: TheStudies, client: TheClient) -> Response:
-    """Cancel a study of one's own that waits or runs; remove one that has ended, with its rows."""
+    """Cancel one's own study that waits or runs, or delete a finished study with its rows."""
     row = studies.end(id, client)
     return Response(status_code=204) if row is None else written(_shown(studies, id))
 
@@ -168,7 +169,7 @@ def list_rows(
     cursor: Cursor = None,
     units: Units = "si",
 ) -> StudyRows:
-    """Rows that have been calculated, filtered and sorted."""
+    """Return rows that have been calculated, filtered and sorted."""
     listing = _listing(studies, id, columns, where, sort)
     with studies.reading(id):
         return listing.page(limit, views.start_of(cursor), units)
@@ -183,10 +184,10 @@ def download_csv(
     sort: Sort = None,
     units: Units = "si",
 ) -> Response:
-    """All rows, or those that fit, as CSV: a row of names, one of units, then the numbers."""
+    """Return all or the selected rows as CSV: a row of names, a row of units, then the numbers."""
     listing = _listing(studies, id, columns, where, sort)
     with studies.reading(id):
-        listing.stored.verify()  # once the answer has begun it can only break off
+        listing.stored.verify()  # after the response has begun, an error could only truncate it
     headers = {"Content-Disposition": _named(id, "csv")}
     return StreamingResponse(
         exports.csv_parts(listing, units), media_type="text/csv; charset=utf-8", headers=headers
@@ -203,7 +204,7 @@ async def download_xlsx(
     sort: Sort = None,
     units: Units = "si",
 ) -> Response:
-    """Rows as a sheet, at most 20 000."""
+    """Return at most 20 000 rows as an XLSX sheet."""
 
     def content() -> bytes:
         with studies.reading(id):
@@ -216,9 +217,12 @@ async def download_xlsx(
 def download_npz(
     id: Id, studies: TheStudies, columns: Columns = None, where: Fits = None, sort: Sort = None
 ) -> Response:
-    """All rows as arrays by name (NumPy), in the units of the design; equal studies, equal bytes."""
+    """Return all or the selected rows as named NumPy arrays in the units of the design.
+
+    Equal studies give equal bytes.
+    """
     listing = _listing(studies, id, columns, where, sort)
-    file = TemporaryFile()  # closed once it is sent
+    file = TemporaryFile()  # closed after it is sent
     try:
         with studies.reading(id):
             exports.write_npz(listing, file)
@@ -250,7 +254,7 @@ async def choose_row(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new revision of the design with the values of a row."""
+    """Create a revision of the design with the values of a row."""
     if if_match is None:
         raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
     saved = await threads.run_within(
@@ -268,7 +272,7 @@ async def choose_row(
 async def watch_study(
     id: Id, studies: TheStudies, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:
-    """The study as it stands whenever its state changes, and its progress, until it has ended."""
+    """Stream the study whenever its state changes, and its progress, until it has ended."""
     topic = f"job:{(await run_in_threadpool(_row, studies, id)).job}"
     async with listening(jobs.events, topic) as events:
         async for event in as_it_stands(events, place, partial(_whole, studies, id, topic), last, study=id):

@@ -1,4 +1,4 @@
-"""`POST /studies` with a file: the file holds the rows as CSV or XLSX, the query parameters the rest."""
+"""`POST /studies` with a file: CSV or XLSX rows in the body, all other members in the query."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ KINDS: dict[str, FileKind] = {
 
 
 def _kind(scope: Scope) -> FileKind | None:
-    """Return the kind of file that a request says it brings."""
+    """Return the kind of file in the body of a request; None if it is no file."""
     given = Headers(scope=scope).get("content-type", "")
     return KINDS.get(given.partition(";")[0].strip().lower())
 
 
 class FileRoute(StrictRoute):
-    """A route that takes files; other bodies go to the route of the same path that takes JSON."""
+    """A route for files; other bodies go to the JSON route of the same path."""
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Match as any route does, if the body is a file."""
+        """Match like any route, but only if the body is a file."""
         match, child = super().matches(scope)
         return (match, child) if match is not Match.FULL or _kind(scope) else (Match.NONE, {})
 
 
 router = APIRouter(prefix="/api/v1/studies", tags=["studies"], route_class=FileRoute)
 
-Names = Annotated[str | None, Query(max_length=5000, description="separated by commas")]
+Names = Annotated[str | None, Query(max_length=5000, description="names separated by commas")]
 Tolerance = Annotated[float | None, Query(gt=0, lt=1)]
 
 
@@ -65,7 +65,10 @@ async def begin_study_of_file(
     explore: Tolerance = None,
     confirm: Tolerance = None,
 ) -> Response:
-    """A study with method `table`: a row of names, perhaps one of units, then the numbers."""
+    """Begin a study with method `table` from a file.
+
+    The file has a row of names, an optional row of units, then numbers.
+    """
     kind, content = _kind(request.scope) or "csv", Pieces.of(await request.body())
     pool = services_of(request).calculations
     places = await run_in_threadpool(studies.places, design, revision)
@@ -92,7 +95,7 @@ def _names(text: str) -> list[str]:
 
 
 def _build(text: str) -> str | list[int]:
-    """Return a word, or numbers of rows."""
+    """Return a word, or a list of row numbers."""
     numbers = _names(text)
     return (
         [int(n) for n in numbers] if numbers and all(n.isdecimal() and len(n) < 9 for n in numbers) else text

@@ -1,1 +1,1 @@
-"""The forms of an approval, and the part of a page that shows it."""
+"""The forms of an approval, and the part of a page that shows its state."""

@@ -1,4 +1,4 @@
-"""Actions of the forms of approval and comments, on the pages of designs and revisions."""
+"""Handle the forms for approvals and comments on the pages of designs and revisions."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class Place(NamedTuple):
 
     @property
     def path(self) -> str:
-        """Return its address."""
+        """Return the address of the page."""
         return f"/designs/{self.id}" if self.is_design else f"/designs/{self.id}/revisions/{self.number}"
 
 
 @router.post("/designs/{id}/revisions/{number}/approvals")
 async def sign(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
-    """Record one step of the approval, and return the changed part of the page."""
+    """Take one step of the approval, and return the changed part of the page."""
     typed = await fields(request)
     said = {"step": typed.get("step", "")}
     said |= {name: typed[name] for name in ("reason", "acknowledged") if typed.get(name, "").strip()}
@@ -51,7 +51,7 @@ async def sign(id: Id, number: Number, request: Request, services: ThePageServic
 
 @router.post("/designs/{id}/revisions/{number}/comments")
 async def comment(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
-    """Write a comment."""
+    """Add a comment, and return the changed part of the page."""
     typed = await fields(request)
     body = {"text": typed.get("text", "").replace("\r\n", "\n"), "subject": typed.get("subject", "").strip()}
     said = {name: text for name, text in body.items() if text}
@@ -84,7 +84,7 @@ async def _sent(
     failure: str,
     part: str,
 ) -> Response:
-    """Carry out the action of a form; return the changed part of the page, with the reason of a refusal."""
+    """Carry out the action of a form, and return the changed part of the page, with any refusal's reason."""
     try:
         await action
     except Refused as refused:

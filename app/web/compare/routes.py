@@ -1,4 +1,4 @@
-"""Two revisions side by side, of one design or of two, with pickers for both."""
+"""The page that compares two revisions, of one design or of two, with pickers for both."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.web.shared.paths import Id, Text
 from app.web.shared.responses import show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices
 
-MOST_NUMBERS = 100  # of revisions in a picker
+MOST_NUMBERS = 100  # largest number of revisions in a picker
 GROUPS = ("inputs", "outputs", "model_parameters", "measurements")
 TEXTS = ("parameters", "versions", "relations")
 MISSING = 404
@@ -24,9 +24,9 @@ _ID = re.compile("[A-Za-z0-9_]{1,64}")
 
 @dataclass(frozen=True)
 class CompareForm:
-    """The texts of the form: numbers and a design, empty where nothing was chosen.
+    """The texts of the form: revision numbers and a design, empty if nothing was chosen.
 
-    `of` is the design whose revisions the second picker offered; a number of another one means nothing.
+    `of` is the design whose revisions the second picker offered; a number from another design is ignored.
     """
 
     revision: str
@@ -35,7 +35,7 @@ class CompareForm:
     of: str
 
     def numbers(self, id: str) -> tuple[int | None, int | None]:
-        """Return the revisions to compare; None where no number was chosen."""
+        """Return the revisions to compare; None for a number that was not chosen."""
         return _number(self.revision), _number(self.number) if self._is_meant(id) else None
 
     def _is_meant(self, id: str) -> bool:
@@ -48,7 +48,7 @@ def _number(text: str) -> int | None:
 
 
 async def compare_page(request: Request, services: PageServices, id: str, asked: CompareForm) -> Response:
-    """Show the differences, and the forms to choose two other revisions."""
+    """Return the page with the differences, and the forms to choose two other revisions."""
     design = await services.run(services.designs.show, id)
     other = await _other(services, design, asked.design)
     if other is None:
@@ -77,14 +77,14 @@ async def compare_page(request: Request, services: PageServices, id: str, asked:
 
 
 async def _other(services: PageServices, design: Design, id: str) -> Design | None:
-    """Return the design on the other side; None if there is none of this id."""
+    """Return the design on the other side; None if there is no such design."""
     if not id:
         return design
     return await services.find(services.designs.show, id) if _ID.fullmatch(id) else None
 
 
 def _numbers(newest: int, chosen: int) -> list[int]:
-    """Return the revisions that a picker offers, newest first, the chosen one among them."""
+    """Return the revisions that a picker offers, newest first, including the chosen one."""
     numbers = set(range(newest, max(0, newest - MOST_NUMBERS), -1)) | {chosen}
     return sorted(numbers, reverse=True)
 
@@ -102,5 +102,5 @@ async def compared(
     design: Text = "",
     of: Text = "",
 ) -> Response:
-    """Return the comparison of two revisions, of one design or of two."""
+    """Return the page that compares two revisions, of one design or of two."""
     return await compare_page(request, services, id, CompareForm(revision, number, design, of))

@@ -1,8 +1,8 @@
-"""Actions of forms about designs: each calls a service, then shows the page with the result.
+"""Handle forms about designs: each calls a service, then shows the page with the result.
 
-Without scripts in the browser, these forms are the only way to act; with scripts, `design/design.js` saves
-changes directly. `app.http.guard` refuses forms of other sites, because a browser would send them without
-asking the user.
+Without scripts in the browser, these forms are the only way to change a design; with scripts,
+`design/design.js` saves changes directly. `app.http.guard` refuses forms of other sites, because a browser
+would send them without asking the user.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 @router.post("/designs")
 async def create(request: Request, services: ThePageServices) -> Response:
-    """A design from the gallery, or one with a template and a model of one's choice.
+    """Create a design from the gallery, or one with a chosen template and model.
 
-    A template's inputs are asked for first: its example is never saved as if it were typed.
+    For a template, the user first fills in its inputs, so that its example is never saved as the user's own.
     """
     typed = await fields(request)
     example = GALLERY.get(typed.get("example", ""))
@@ -61,7 +61,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
 async def _with_step(
     request: Request, services: PageServices, typed: Mapping[str, str], document: dict[str, JsonValue]
 ) -> Response:
-    """Return a design with one step; its form, where that is not filled in, or refused."""
+    """Create a design with one step; return the step's form if it is not filled in, or was refused."""
     if "design_name" not in typed:  # the form of the home page: its name is that of the design
         await new_step(services, typed)  # a template that does not exist is refused here
         return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
@@ -90,7 +90,7 @@ async def _created(services: PageServices, document: Mapping[str, JsonValue]) ->
 
 @router.post("/designs/{id}")
 async def save(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Save a new revision; return the form with its entries and their faults if it is refused."""
+    """Save a new revision; if it is refused, return the form with its entries and their faults."""
     typed = await fields(request)
     design = await services.run(services.designs.show, id)
     based = typed.get("revision", "")
@@ -106,9 +106,9 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
 
 @router.post("/designs/{id}/blocks")
 async def add(id: Id, request: Request, services: ThePageServices) -> Response:
-    """A parameter, a template, a model, an analysis or an iteration more, changed, or one less.
+    """Add, change or remove a parameter, template, model, analysis or iteration.
 
-    The inputs of a template are asked for first.
+    For a template, the user first fills in its inputs.
     """
     typed = await fields(request)
     if typed.get("add") == "template":
@@ -145,7 +145,7 @@ async def _add_step(id: str, request: Request, services: PageServices, typed: Ma
 
 @router.post("/designs/{id}/auto-map")
 async def auto_map(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Save the proposals that the user chose."""
+    """Save the proposed links that the user chose."""
     typed = await fields(request)
     proposed = await services.calculate(None, services.designs.proposals, id)
     chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
@@ -168,14 +168,14 @@ async def copy(id: Id, services: ThePageServices) -> Response:
 
 @router.post("/designs/{id}/delete")
 async def delete(id: Id, services: ThePageServices) -> Response:
-    """Delete a design from the lists."""
+    """Remove a design from the lists."""
     await services.run(services.designs.delete, id)
     return go("/#designs")
 
 
 @router.post("/designs/{id}/revisions/{number}/restore")
 async def restore(id: Id, number: Number, services: ThePageServices) -> Response:
-    """Save a new revision equal to an old one."""
+    """Save a new revision that equals an old one."""
     await services.save(services.designs.restore, id, number, None, None, services.once)
     return go(f"/designs/{id}")
 
@@ -195,12 +195,12 @@ async def _again(
     refused: Refused,
     part: Mapping[str, str] = NOTHING,
 ) -> Response:
-    """Return the page with a form that was refused; of a stale one, only what its user changed is kept."""
+    """Return the page with a refused form; if the form is outdated, keep only the user's own changes."""
     if refused.status not in (STALE, ILL_NAMED):
         raise refused
     notice = (
         f"Somebody else saved this design meanwhile: {refused.problem.detail}. Your changes are kept in "
-        "the fields below; look at them once more, then save."
+        "the fields below; check them again, then save."
         if refused.status == STALE
         else None
     )
@@ -225,7 +225,7 @@ def _refuse_taken(design: Design, patch: Patch) -> None:
 
 
 def _block(typed: Mapping[str, str]) -> Patch:
-    """Return the merge patch that adds or removes what a form names."""
+    """Return the merge patch that adds or removes the item named by a form."""
     name = typed.get("name", "").strip()
     match typed.get("add", ""):
         case "parameter":
@@ -243,7 +243,7 @@ _LIST = re.compile(r"/(designs(\?[!-~]*)?)?")
 
 @router.post("/designs/{id}/rename")
 async def rename(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Rename the design; the results stay."""
+    """Rename the design; its results stay unchanged."""
     typed = await fields(request)
     await services.change(id, typed.get("revision", ""), {"name": typed.get("name", "").strip()})
     return _back(typed)
@@ -251,7 +251,7 @@ async def rename(id: Id, request: Request, services: ThePageServices) -> Respons
 
 @router.post("/designs/{id}/labels")
 async def label(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Add or remove tags, or move the design into the archive or out of it."""
+    """Add or remove tags, or archive or restore the design."""
     typed = await fields(request)
     await _label(services, id, typed)
     return _back(typed)

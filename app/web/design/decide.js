@@ -1,5 +1,5 @@
-// The button "Decide": a finer calculation where, and only where, a criterion is undecided or its error unknown.
-// Its cost is stated before it begins; what takes long begins at the second click.
+// The button "Decide": a finer calculation only for criteria that are undecided or whose error is unknown.
+// The page states the cost first; a long calculation starts only after a second click.
 import { call, units } from "../shared/api.js";
 import { calculated } from "../shared/calculation.js";
 import { plain } from "../shared/numbers.js";
@@ -7,11 +7,11 @@ import { showVerdict } from "../verdict/verdict.js";
 
 const STOPPED = {
   no_finer_level: "no finer level gives an error estimate",
-  budget: "the time allowed is used up",
+  budget: "the allowed time is used up",
   pending: "a level is still being calculated: press again",
 };
-const SHORT = 2, ALLOWED = 60, LONGEST = 600; // s: begun at once; budget at least and at most
-const BUSY = 10; // times the processor time that is estimated: a server has other work too
+const SHORT = 2, ALLOWED = 60, LONGEST = 600; // [s]: started at once; smallest and largest budget
+const BUSY = 10; // factor on the estimated processor time, because a server has other work too
 
 export function startDecide(api, patch) {
   const button = document.querySelector("[data-decide]"), place = document.querySelector("[data-decided]");
@@ -60,7 +60,7 @@ function headline({ name, verdict }) {
   return item;
 }
 
-// What is calculated, each step at its level once, and for how many designs.
+// Return the levels to calculate, each step at each level once, and for how many designs.
 function named(trials) {
   const times = new Map();
   for (const { step, level } of trials) {

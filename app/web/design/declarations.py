@@ -23,7 +23,7 @@ _NUMBERS = {"tolerance", "limit"}
 
 @dataclass(frozen=True)
 class AnalysisLine:
-    """One analysis of a model; without a name, the empty line that adds one. `texts` are by field."""
+    """One analysis of a model; without a name, the empty line for a new one. `texts` are by field."""
 
     model: str
     kinds: Mapping[str, Analysable]
@@ -34,18 +34,18 @@ class AnalysisLine:
 
     @property
     def levels(self) -> list[str]:
-        """Return the levels of its kinds."""
+        """Return the levels of the analysis's kind."""
         return list(dict.fromkeys(level for kind in self.kinds.values() for level in kind.levels))
 
     @property
     def boundaries(self) -> list[str]:
-        """Return the ways in which the loaded end may be held."""
+        """Return the possible supports of the loaded end."""
         return list(dict.fromkeys(name for kind in self.kinds.values() for name in kind.boundaries))
 
 
 @dataclass(frozen=True)
 class IterationLine:
-    """One iteration; without a place, the empty line that adds one. `texts` are by field."""
+    """One iteration; without a place, the empty line for a new one. `texts` are by field."""
 
     place: str = ""
     texts: Mapping[str, str] = field(default_factory=dict)
@@ -57,7 +57,7 @@ Line = TypeVar("Line", AnalysisLine, IterationLine)
 
 
 def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """Return the faults of a refused form's fields: the name of the fault and its detail, by field."""
+    """Return the faults of a refused form by field: the name and the detail of each."""
     match part.get("declare") or part.get("add"):
         case "analysis":
             fields, begins = _OF_ANALYSIS, f"models.{part.get('model', '')}.analyses.{part.get('kind', '')}."
@@ -78,7 +78,7 @@ def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, t
 
 
 def _refused(line: Line, refusal: Refusal) -> Line:
-    """Return the line with its entries and their faults if its form was refused."""
+    """Return the line with its entries and their faults, if its form was refused."""
     part = refusal.part
     if isinstance(line, AnalysisLine):
         is_its = part.get("declare") == "analysis" and part.get("model") == line.model
@@ -92,7 +92,7 @@ def _refused(line: Line, refusal: Refusal) -> Line:
 
 
 def analysis_lines(design: Design, models: Sequence[ModelBlock], refusal: Refusal) -> list[AnalysisLine]:
-    """Return the analyses of every model that can be analysed, each followed by an empty line."""
+    """Return the analyses of every model that can be analysed, each model followed by an empty line."""
     lines: list[AnalysisLine] = []
     for block in models:
         if kinds := block.model.analyses:
@@ -106,7 +106,7 @@ def analysis_lines(design: Design, models: Sequence[ModelBlock], refusal: Refusa
 
 
 def iteration_lines(design: Design, refusal: Refusal) -> list[IterationLine]:
-    """Return the iterations, then an empty line."""
+    """Return the iterations, followed by an empty line."""
     lines = [IterationLine(str(place), _texts(one)) for place, one in enumerate(design.iterations)]
     lines.append(IterationLine(texts=dict.fromkeys(_OF_ITERATION, "")))
     return [_refused(line, refusal) for line in lines]
@@ -118,7 +118,7 @@ def _texts(iteration: DesignIteration) -> dict[str, str]:
 
 
 def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
-    """Yield the names through which an iteration may run: measures of solids, outputs of their analyses."""
+    """Yield the names that an iteration may use: measures of solids, and outputs of their analyses."""
     for block in models:
         yield from (f"{block.name}.{measure}" for measure in block.model.measures)
         for name, options in design.models[block.name].analyses.items():
@@ -128,10 +128,10 @@ def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
 
 
 def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
-    """Return the merge patch for a form of this page; None for another form."""
+    """Return the merge patch for a form in this module; None for another form."""
     match typed.get("declare", ""):
         case "analysis":
-            name = typed.get("kind", "").strip()  # an analysis is called by its kind
+            name = typed.get("kind", "").strip()  # an analysis is named after its kind
             options = None if typed.get("drop") else _analysis(typed)
             return {"models": {typed.get("model", ""): {"analyses": {name: options}}}}
         case "iteration":
@@ -140,7 +140,7 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
 
 
 def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the options of an analysis; null removes those that were emptied."""
+    """Return the options of an analysis; null removes an emptied option."""
     return {
         name: _value(name, typed.get(name, ""))
         for name in _OF_ANALYSIS
@@ -149,7 +149,7 @@ def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 
 
 def _iterations(design: Design, typed: Mapping[str, str]) -> list[JsonValue]:
-    """Return all iterations, with one added, changed or removed."""
+    """Return all iterations after one was added, changed or removed."""
     given = {name: _value(name, typed[name]) for name in _OF_ITERATION if typed.get(name, "").strip()}
     whole: list[JsonValue] = [one.model_dump(mode="json") for one in design.iterations]
     place = typed.get("place", "")
@@ -158,7 +158,7 @@ def _iterations(design: Design, typed: Mapping[str, str]) -> list[JsonValue]:
 
 
 def _value(name: str, text: str) -> JsonValue:
-    """Read a field; None where it is empty."""
+    """Return the value of a field; None if it is empty."""
     if not text.strip():
         return None
     if name == "limit" and text.strip().isdecimal() and len(text) < 10:

@@ -1,4 +1,4 @@
-// The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
+// The script of the design page: previews, the draft, saving, progress. Every action calls the API.
 import { Refused, call, units } from "../shared/api.js";
 import { calculated } from "../shared/calculation.js";
 import { startDownloads } from "../shared/downloads.js";
@@ -27,20 +27,20 @@ startLists();
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
-const namesHere = document.querySelector("[data-names]").value; // a long design has them fetched
+const namesHere = document.querySelector("[data-names]").value; // for a long design they are fetched
 const names = new Names(JSON.parse(namesHere || "[]"));
-const watches = []; // of fields: each takes those that come later
+const watches = []; // functions that set up fields added later
 const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
-const MOST_LINKS = 5; // to fields that are wrong
+const MOST_LINKS = 5; // largest number of links to wrong fields
 const CONFLICT = 409; // the calculation was cancelled
 const patch = () => patchOf(draft.changed(), models);
 const progress = document.querySelector("[data-progress]");
 const designState = document.querySelector("[data-design-state]").dataset.designState;
 const isJudged = document.querySelector("[data-verdict]").dataset.verdict === "judged"; // the revision has a verdict
-const ofVariants = document.querySelector("[data-governing-variant]"); // as saved
+const ofVariants = document.querySelector("[data-governing-variant]"); // the governing variant as saved
 let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
 
 const preview = live(
@@ -53,7 +53,7 @@ const preview = live(
   refusePreview,
 );
 
-// What takes long is shown once its job has ended, the rest at once; or only what is known soon.
+// Show fast results at once and slow ones when their job has ended; or only the fast ones.
 async function previewed(signal, isQuick) {
   const path = `${api}/preview?worksheet=true&units=${units()}${isQuick ? "&within=1" : ""}`;
   const answer = await call("POST", path, patch(), { signal, headers: { Prefer: "wait=1" } });
@@ -64,7 +64,7 @@ async function previewed(signal, isQuick) {
   return calculated(answer.location, signal);
 }
 
-// A step that is not calculated yet; as long as nothing is changed, the results shown are those of the revision.
+// Mark a step that is not calculated yet; while nothing is changed, the page shows the results of the revision.
 const isWaiting = (answer) => answer.state === "pending" && (designState !== "current" || draft.isChanged());
 
 function waiting({ steps }) {
@@ -90,7 +90,7 @@ function show(payload) {
   showParameters(payload.model_parameters);
 }
 
-// Of the design's own parameters and of its models; those of a step stand in the step.
+// Warnings on the design's own parameters and its models; those of a step are shown in the step.
 const isOfNoStep = ({ name }) => !Object.hasOwn(steps, name.split(".")[0]);
 
 function clear() {
@@ -115,7 +115,7 @@ function refuse(error) {
   if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
 }
 
-// Links to the fields that are wrong; where the fault is of no field, words that fit.
+// Links to the wrong fields; for a fault without a field, a text.
 function linksToFaults() {
   const links = [...form.querySelectorAll('[aria-invalid="true"]')].slice(0, MOST_LINKS).flatMap((field, place) => {
     const link = Object.assign(document.createElement("a"), { href: `#${field.id}`, textContent: nameOf(field.name).replaceAll("_", " ") });
@@ -168,7 +168,7 @@ form.addEventListener("submit", async (event) => {
   if (isSame && isJudged) return (state.textContent = "nothing has changed");
   const note = typed || (isSame ? "criteria judged" : "");
   const headers = { "If-Match": `"${revision}"`, Prefer: "wait=1", "Idempotency-Key": onlyOnce() };
-  preview.cancel(); // else it would keep as a draft what is saved by then
+  preview.cancel(); // otherwise it would store saved changes as a draft
   state.textContent = "saving …";
   try {
     const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });
@@ -194,10 +194,10 @@ function refuseToSave(error) {
   wrong?.scrollIntoView({ block: "center" });
 }
 
-// A key that makes a repeated request harmless; crypto.randomUUID is there on encrypted pages only.
+// Return a key that makes a repeated request harmless; crypto.randomUUID exists only on encrypted pages.
 const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
 
-// Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded again.
+// After somebody else has saved, keep the draft, and apply it to the newest revision when the page is reloaded.
 function conflict() {
   conflicted = true;
   draft.keep();
@@ -208,7 +208,7 @@ function conflict() {
   trouble.append(again);
 }
 
-// A step that has come into the page: its fields as typed, its results as they are by now.
+// Set up a step that was loaded into the page: its fields as typed, with their present results.
 function adopt(fold) {
   const step = fold.dataset.fold, answer = steps[step];
   startLists(fold);
@@ -247,7 +247,7 @@ async function start() {
   if (form.querySelector("[data-elements]")) import("../elements/elements.js").then(({ startElements }) => startElements());
 }
 
-// Preview the page as it is opened, its draft restored.
+// Preview the page when it is opened, after its draft was restored.
 async function showFirst(from) {
   try {
     const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step

@@ -1,4 +1,4 @@
-// The drawing of what drives what: a block leads to its step, which opens.
+// The diagram of dependencies: a click on a block opens its step.
 import { goTo } from "../verdict/verdict.js";
 
 export function startDrives() {

@@ -1,5 +1,5 @@
-// Before the page is drawn: a form with `data-waits` belongs to a script that comes later. What is sent until then waits
-// for that script. If it has not come by the end of loading, the browser sends the form, as it does without scripts.
+// Runs before the page is drawn. A form with `data-waits` belongs to a script that loads later; if it is sent before, it
+// waits for that script. If the script has not loaded by the end, the browser sends the form, as it does without scripts.
 document.addEventListener("submit", (event) => {
   const form = event.target;
   if (!form.matches("[data-waits]")) return;

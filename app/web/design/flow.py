@@ -19,13 +19,13 @@ LETTER = 6.7  # width, of 11 px in a fixed pitch
 HEAD, ROW, LANE = 24.0, 17.0, 8.0  # heights
 GAP, SPACE, MARGIN, BACK = 72.0, 16.0, 14.0, 12.0
 NARROWEST = 110.0
-MOST_LETTERS = 40  # of a row; its title says all
+MOST_LETTERS = 40  # letters of a row; its title has the full text
 LINKS = {"parameter": "#-{}", "step": "#step-{}", "model": "#part-{}"}
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a box: what a relation sets, or a value that one uses."""
+    """A row in a box: a value that a relation sets, or one that a relation uses."""
 
     text: str
     title: str
@@ -34,7 +34,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Box:
-    """A parameter, step or model."""
+    """A box for a parameter, step or model."""
 
     name: str
     kind: str
@@ -43,32 +43,32 @@ class Box:
     y: float
     width: float
     height: float
-    inputs: Mapping[str, Row]  # by the name of what is set
-    outputs: Mapping[str, Row]  # by the name of what is used
+    inputs: Mapping[str, Row]  # by the name of the value that is set
+    outputs: Mapping[str, Row]  # by the name of the value that is used
 
     @property
     def link(self) -> str:
-        """Return the link to its place on the page of the design."""
+        """Return the link to the block on the page of the design."""
         return LINKS[self.kind].format(self.name)
 
     @property
     def right(self) -> float:
-        """Return the coordinate at which wires leave it."""
+        """Return the x coordinate at which wires leave the box."""
         return self.x + self.width
 
 
 @dataclass(frozen=True)
 class Wire:
-    """One name that a relation uses."""
+    """A line for one name that a relation uses."""
 
     relation: NetworkRelation
-    points: list[tuple[float, float]]  # where it starts, passes columns, and ends
+    points: list[tuple[float, float]]  # start, crossings of columns, and end
     path: str
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """An SVG of what drives what."""
+    """The diagram of dependencies: its boxes and wires."""
 
     width: float
     height: float
@@ -78,7 +78,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class _Item:
-    """An item of a column: a block with its rows, or a lane (without a block) for a value."""
+    """An item in a column: a block with its rows, or a lane (without a block) for a value."""
 
     name: str
     column: int
@@ -89,14 +89,14 @@ class _Item:
 
 
 def drawing(network: DesignNetwork) -> Drawing | None:
-    """Return the drawing of a design; None if no relation connects two blocks."""
+    """Return the diagram of a design; None if no relation connects two blocks."""
     if not network.relations:
         return None
     items = [*_blocks(network), *_lanes(network)]
     columns = [[item for item in items if item.column == at] for at in range(_count(items))]
     tall = max(sum(item.height + SPACE for item in column) for column in columns)
     left, boxes, lanes = MARGIN + GAP / 2, [], {}
-    places: dict[str, float] = {}  # the middle of whatever a name was given last
+    places: dict[str, float] = {}  # latest middle of the item with each name
     for column in columns:
         width = max(_width(item) for item in column)
         top = MARGIN + (tall - sum(item.height + SPACE for item in column)) / 2
@@ -118,7 +118,7 @@ def _count(items: Sequence[_Item]) -> int:
 
 
 def _blocks(network: DesignNetwork) -> list[_Item]:
-    """Return steps, models and the parameters that drive or are driven, in non-empty columns."""
+    """Return steps, models and the parameters in relations, in columns of which none is empty."""
     used = {_block(name) for one in network.relations for name in (one.source, one.target)}
     shown = [block for block in network.blocks if block.kind != "parameter" or block.name in used]
     return [_item(block, network.relations) for block in shown]
@@ -133,7 +133,7 @@ def _item(block: NetworkBlock, relations: Sequence[NetworkRelation]) -> _Item:
 
 
 def _lanes(network: DesignNetwork) -> list[_Item]:
-    """Return the places of values in the columns that they pass."""
+    """Return the positions of values in the columns that they cross."""
     columns = {block.name: block.column for block in network.blocks}
     passed = {
         (one.source, column): None
@@ -145,7 +145,7 @@ def _lanes(network: DesignNetwork) -> list[_Item]:
 
 
 def _wish(item: _Item, places: Mapping[str, float]) -> float:
-    """Return the mean height of what drives it; at the top without any."""
+    """Return the mean height of the items that drive this one; the top if there are none."""
     if item.block is None:
         return places.get(item.name, places[_block(item.name)])
     sources = [places.get(one.source, places.get(_block(one.source), 0.0)) for one in item.inputs]
@@ -194,7 +194,7 @@ def _wires(
 
 
 def _forward(points: Sequence[tuple[float, float]]) -> str:
-    """Return the bends of a line between columns, straight through them."""
+    """Return the bends of a line between columns, which it crosses straight."""
     (x, y), *rest = points
     path = f"M{x:.1f},{y:.1f}"
     for place, (to_x, to_y) in enumerate(rest):
@@ -206,7 +206,7 @@ def _forward(points: Sequence[tuple[float, float]]) -> str:
 
 
 def _backward(start: tuple[float, float], end: tuple[float, float], bottom: float) -> str:
-    """Return a line down behind the column, back below all boxes, and up before the other column."""
+    """Return the bends of a backward line: down after its column, below all boxes, and up again."""
     (x, y), (to_x, to_y), out = start, end, GAP / 2
     return (
         f"M{x:.1f},{y:.1f}C{x + out:.1f},{y:.1f} {x + out:.1f},{bottom:.1f} {x:.1f},{bottom:.1f}"

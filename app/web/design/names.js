@@ -1,9 +1,9 @@
-// The names that relations may use: which of them fit a field, what is typed at the caret, and how one is inserted.
+// The names that relations may use: which names fit a field, which one is typed at the caret, and how to insert a name.
 import { quantityText, unit } from "../shared/numbers.js";
 import { nameOf } from "../shared/typed.js";
 
 const WORD = /[\w.]/;
-const BEFORE = /(^|[^\w.])(if|then|else|and|or|not)$/; // words behind which a name may stand
+const BEFORE = /(^|[^\w.])(if|then|else|and|or|not)$/; // words that a name may follow
 const FOLLOWS = new Set(["output", "measure"]);
 
 export class Names {
@@ -16,7 +16,7 @@ export class Names {
     this.byName = new Map(list.map((item) => [item.name, item]));
   }
 
-  // A field takes relations if its name is one that relations use, or is a parameter of the design.
+  // A field accepts relations if relations use its name, or if it is a parameter of the design.
   takes(field) {
     return field.matches("input:not([type=hidden])") && !field.name.includes("@") && (field.name.startsWith(".") || this.byName.has(field.name));
   }
@@ -27,13 +27,13 @@ export class Names {
 
   fits = (item, field) => this.dimensionOf(field) === undefined || item.dimension === this.dimensionOf(field);
 
-  // All but the field itself and what follows from it: results of its own step, measures of its own model.
+  // All names except the field itself and values that depend on it: results of its step, measures of its model.
   for(field) {
     const own = nameOf(field.name), block = field.name.startsWith(".") ? "" : own.split(".")[0];
     return this.list.filter(({ name, role }) => name !== own && !(FOLLOWS.has(role) && name.split(".")[0] === block));
   }
 
-  // Names that hold what was typed: those that fit first, of these those that begin so.
+  // Names that contain the typed text: fitting ones first, and among these the ones that begin with it.
   matching(field, typed) {
     const ranks = [[], [], [], []], wanted = typed.toLowerCase();
     for (const item of this.for(field)) {
@@ -51,7 +51,7 @@ export class Names {
 
   box = (field) => field.getBoundingClientRect();
 
-  // New values of a preview.
+  // Store the new values of a preview.
   update({ steps = {}, parameters = {} }) {
     const put = (name, quantity) => {
       const item = this.byName.get(name);
@@ -67,18 +67,18 @@ export class Names {
 
 export const isRelation = (text) => text.trimStart().startsWith("=");
 
-// Where the name before the caret begins; -1 where no name may stand: outside of relations, in numbers, units and words.
+// Return where the name before the caret begins; -1 where no name is allowed: outside relations, in numbers, units and texts.
 export function startOfName(text, caret) {
   if (!isRelation(text) || caret <= text.indexOf("=")) return -1;
   let start = caret;
   while (start > 0 && WORD.test(text[start - 1])) start -= 1;
   if (start < caret && !/[A-Za-z]/.test(text[start])) return -1;
   const before = text.slice(0, start).trimEnd();
-  if (before.split('"').length % 2 === 0) return -1; // within the word of a choice
+  if (before.split('"').length % 2 === 0) return -1; // within the text of a choice
   return /[\w.)\]"]/.test(before.at(-1) ?? "=") && !BEFORE.test(before) ? -1 : start;
 }
 
-// Put a name into a field: in place of what was typed of it; behind "= " where there was no relation.
+// Insert a name into a field: replace its typed part; add "= " in front if there was no relation.
 export function insert(field, name, start, end) {
   if (!isRelation(field.value)) {
     field.value = `= ${name}`;

@@ -78,9 +78,7 @@ from app.web.verdict.banner import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
-QUICK = (
-    1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
-)
+QUICK = 1  # longest wait for steps; the page's script requests slower ones and shows their progress [s]
 NO_REFUSAL = Refusal()
 NO_PART = dict.fromkeys(("declare", "add", "name", "value"), "")
 
@@ -95,7 +93,7 @@ async def design_page(
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
-    """Return the page with the newest revision in a form, or with a refused form and its faults."""
+    """Return the page of the newest revision with its form, or with a refused form and its faults."""
     design = await services.run(services.designs.show, id)
     revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
         request, services, design, refusal
@@ -158,10 +156,10 @@ async def design_page(
 
 
 class Form(NamedTuple):
-    """A design as it is calculated, with the fields of its form; `models` are described by name.
+    """A design as calculated, with the fields of its form; `models` are described by name.
 
-    `in_full` are the steps of a long design that have fields and formulas here; None where all have. The fold
-    lines of its steps are `folded`.
+    `in_full` are the steps of a long design whose fields and formulas are on the page; None if all are. The
+    summary lines of the other steps are `folded`.
     """
 
     revision: RevisionWorksheet
@@ -186,7 +184,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         await templates_of(services, steps_of_design(design)),
         await described_models(services, design),
     )
-    has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
+    has_parameters = bool(design.parameters)  # only a preview with the worksheet has their values
     change = PreviewRequest(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
     preview = await services.calculate(within, services.previews.at_once, change) if has_values else None
@@ -230,20 +228,20 @@ def _verdict(revision: RevisionWorksheet, design: Design, templates: Mapping[str
 def _blocks(
     revision: RevisionWorksheet, design: Design, templates: Mapping[str, Template]
 ) -> list[StepBlock]:
-    """Return the steps with their results and the outputs of their fold lines."""
+    """Return the steps with their results and the outputs in their summary lines."""
     computed = {name: step.outputs for name, step in design.steps.items()}
     return with_keys(steps_of(revision, templates, computed), revision, design)
 
 
 async def _before(request: Request, services: PageServices, design: Design) -> RevisionWorksheet | None:
-    """Return the revision before the newest; of it the page shows parameters of models alone."""
+    """Return the previous revision, of which the page shows only the parameters of models."""
     if design.revision == 1 or not design.models:
         return None
     return await revision_of(request, services, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
 async def step_section(request: Request, services: PageServices, id: str, name: str) -> Response:
-    """Return the section of one step, unfolded, for the page of a long design; its script fetches it.
+    """Return the unfolded section of one step, which the script of a long design's page fetches.
 
     Raises
     ------
@@ -276,7 +274,7 @@ async def _analyses(
 async def _fields_of_solids(
     services: PageServices, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
-    """Return the fields that can be painted on each model; none on a model without analyses."""
+    """Return the fields that can be painted on each model; empty for a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
@@ -288,7 +286,7 @@ async def _fields_of_solids(
 
 
 async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
-    """Return proposed relations for unset model parameters; none if the principal may not save."""
+    """Return proposed relations for unset model parameters; empty if the principal may not save."""
     if not (design.models and acting().may("author")):
         return []
     return await services.calculate(None, services.designs.proposals, design.id)
@@ -297,14 +295,14 @@ async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
 def _loose(
     fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
 ) -> dict[str, str]:
-    """Return the faults that belong neither to a field of the worksheet nor to one of a small form."""
+    """Return the faults that belong neither to a field of the worksheet nor to a field of a small form."""
     shown = {name for name, _ in wrong.values()}
     loose = sheet.loose_faults(fields, faults)
     return {name: detail for name, detail in loose.items() if name not in shown}
 
 
 def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Field]:
-    """Return every field of the blocks."""
+    """Return all fields of the blocks."""
     of_models = [field for block in models for field in block.fields]
     return of_models + [field for block in steps for field in (*block.fields, *block.options, *block.limits)]
 
@@ -316,7 +314,7 @@ async def _variants(request: Request, services: PageServices, id: str) -> Varian
 
 
 async def _job(services: PageServices, design: Design) -> Job | None:
-    """Return the job that regenerates the design, if one does."""
+    """Return the job that regenerates the design, if there is one."""
     if design.state != "regenerating":
         return None
     jobs = (await services.run(list_jobs, services.jobs, limit=200)).items
@@ -324,7 +322,7 @@ async def _job(services: PageServices, design: Design) -> Job | None:
 
 
 async def _choices(services: PageServices) -> dict[str, list[TemplateSummary]]:
-    """Return the templates and models that a design may take in."""
+    """Return the templates and models that can be added to a design."""
     groups = {
         "templates": (await services.run(list_templates, services.catalogues, limit=500)).items,
         "models": (await services.run(list_models, services.catalogues, limit=500)).items,

@@ -1,8 +1,8 @@
-// Values beside the fields: what a relation comes to, and model parameters old → new with their status.
+// Values next to the fields: results of relations, and model parameters old → new with their status.
 import { isolated } from "../shared/isolated.js";
 import { quantityText, unit } from "../shared/numbers.js";
 
-const TO_DO = "set it, or link it to an output"; // as app/web/shared/parts.html says it
+const TO_DO = "set it, or link it to an output"; // same text as in app/web/shared/parts.html
 
 export function showValues(form, block, { inputs }) {
   for (const [tail, quantity] of Object.entries(inputs ?? {})) {

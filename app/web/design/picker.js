@@ -62,7 +62,7 @@ export function startPicker(form, names) {
     for (const input of [...fields].filter((one) => names.takes(one))) addButton(input, () => open(input));
   };
   watchAll(form.elements);
-  return watchAll; // for fields that come later
+  return watchAll; // for fields added later
 }
 
 function addButton(input, open) {
@@ -84,7 +84,7 @@ function addButton(input, open) {
   });
 }
 
-// By block, parameters first, in the order of the names; inputs after what a block computes.
+// Group by block, parameters first, in the order of the names; inputs follow the outputs of a block.
 function grouped(items) {
   const blocks = new Map();
   for (const item of items) {

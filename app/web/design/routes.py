@@ -17,16 +17,16 @@ router = APIRouter(include_in_schema=False)
 async def design(id: Id, request: Request, services: ThePageServices) -> Response:
     """Return the page of a design at its newest revision.
 
-    It is read-only while its template is quarantined.
+    It is read-only while one of its templates is quarantined.
     """
     return await or_stored(request, services, id, None, design_page(request, services, id))
 
 
 @router.get("/designs/{id}/step")
 async def step(id: Id, request: Request, services: ThePageServices, name: Text = "") -> Response:
-    """Return one step of a design's newest revision.
+    """Return the section of one step of a design's newest revision.
 
-    The page of a long design loads it when it is unfolded.
+    The page of a long design loads it when the user unfolds the step.
     """
     return await step_section(request, services, id, name)
 
@@ -43,6 +43,6 @@ async def step(id: Id, request: Request, services: ThePageServices, name: Text =
 @router.get("/designs/{id}/revisions/{_}/restore")
 @router.get("/designs/{id}/jobs/{_}/cancel")
 async def after_a_form(id: Id, request: Request) -> Response:
-    """Redirect to the design when a browser loads the address of a refused form again."""
+    """Redirect to the design if a browser reloads the address of a refused form."""
     query = f"?{request.url.query}" if request.url.query else ""
     return go(f"/designs/{id}{query}")

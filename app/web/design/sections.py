@@ -1,4 +1,4 @@
-"""The steps of a design on its page; unchanged steps are not rendered again.
+"""Render the steps of a design on its page; unchanged steps are not rendered again.
 
 Rendering a step takes some milliseconds, and a design may have sixty steps. Most of them stay the same after
 a change.
@@ -21,7 +21,7 @@ from app.web.shared.responses import jinja
 from app.web.variants.table import VariantsTable
 from app.web.verdict.banner import Banner, opened
 
-KEPT = 16 * 2**20  # characters of sections
+KEPT = 16 * 2**20  # largest size of the cached sections [characters]
 _kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
 """Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
 
@@ -30,13 +30,16 @@ MOST_IN_FULL = 12
 
 
 def asked_step(request: Request, steps: Collection[str]) -> str | None:
-    """Return the step that the address names, if the design has it."""
+    """Return the step in the address, if the design has it."""
     name = request.query_params.get("step", "")
     return name if name in steps else None
 
 
 def steps_in_full(request: Request, steps: Collection[str], refusal: Refusal, verdict: Banner) -> set[str]:
-    """Return the steps that a long design's page has in full: the one asked for, those of a refused form."""
+    """Return the steps that a long design's page shows completely.
+
+    They are the step in the address and those of a refused form.
+    """
     first = asked_step(request, steps) or opened(list(steps), verdict)
     typed = {name.partition("@" if "@" in name else ".")[0] for name in (*refusal.typed, *refusal.faults)}
     return {name for name in steps if name == first or name in typed}
@@ -50,9 +53,9 @@ def sections(
     in_full: Collection[str] | None = None,
     folded: Mapping[str, Markup] = MappingProxyType({}),
 ) -> Iterator[Markup]:
-    """Yield the section of every step.
+    """Yield the rendered section of every step.
 
-    That of `opened` is unfolded. With `in_full` all others are `folded`.
+    The section of `opened` is unfolded. With `in_full`, all other steps are `folded`.
     """
     worst = verdict.worst_by_step()
     for step in steps:
@@ -64,18 +67,21 @@ def sections(
 
 
 def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[str, Markup]:
-    """Return the fold line of every step, with the address of the rest below that of the design, `base`."""
+    """Return the summary line of every step; the rest is at an address below that of the design, `base`."""
     worst = verdict.worst_by_step()
     return {step.name: _fold_line(step, worst.get(step.name), base) for step in steps}
 
 
 def banner_of(verdict: Banner, design: str) -> Markup:
-    """Return the verdict on top of the page of a design: a long one has hundreds of criteria."""
+    """Return the verdict at the top of a design's page.
+
+    The result is cached, because a long design has hundreds of criteria.
+    """
     return _macro("verdict/verdict.html", "banner", verdict, design)
 
 
 def variants_start(design: Design, variants: VariantsTable) -> Markup:
-    """Return the table in which the first variants of a design are typed: it has a column for each input."""
+    """Return the table for the first variants of a design, which has a column for each input."""
     return _macro("variants/variants.html", "start", design, variants)
 
 
@@ -92,7 +98,7 @@ def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) 
 
 
 def _written(macro: str, shown: object, *arguments: object) -> Markup:
-    """Return the output of a macro of steps, kept by its name and all that it shows."""
+    """Return the output of a macro of steps, cached under its name and everything that it shows."""
     key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
     html = _kept.get(key)
     if html is None:
@@ -107,7 +113,7 @@ def _macro(page: str, name: str, *arguments: object) -> Markup:
 
 
 def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
-    """Return all data of a section; the digest of the template represents its declarations."""
+    """Return all data that a section shows; the digest of the template represents its declarations."""
     template = step.template
     return (
         step.name,

@@ -27,7 +27,7 @@ router = APIRouter(include_in_schema=False)
 
 
 class Filter(BaseModel):
-    """The filter of a list of designs, as the interface takes it."""
+    """The filter of a list of designs, as the interface accepts it."""
 
     name: NamePart = None
     state: InState = None

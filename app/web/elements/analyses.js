@@ -1,12 +1,12 @@
-// One analysis as a table, as app/web/elements/elements.html writes it.
+// Draw one analysis as a table, as app/web/elements/elements.html does.
 import { percent, quantityText } from "../shared/numbers.js";
 import { cells, numberOf, warning } from "../shared/results.js";
 
-const LOADED = ["torsion", "bending"]; // kinds that a load belongs to
-const HELD = [...LOADED, "chain"]; // kinds whose loaded end has a choice
+const LOADED = ["torsion", "bending"]; // kinds that have a load
+const HELD = [...LOADED, "chain"]; // kinds with a choice of supports at the loaded end
 const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degrees of freedom"];
 
-// Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
+// Insert an analysis into the list: replace its own table, else add it in front. A surface alone has no table.
 export function showAnalysis(list, analysis) {
   const node = table(analysis), old = list.querySelector(`[data-analysis="${analysis.id}"]`);
   if (old) old.replaceWith(node);

@@ -1,13 +1,13 @@
-// A solid under its load: deformed visibly, coloured by stress, twist or deflection; the edges of what it was.
+// Draw a solid under its load, visibly deformed and coloured by stress, twist or deflection, with its original edges.
 import { facets } from "./facets.js";
 import { plain, unit } from "../shared/numbers.js";
 import { FIELD, drawScene, rangeOf, showColours } from "../solid/scene.js";
 
-const SHOWN = 0.05; // of the part's size: what the largest displacement is drawn as
-const NOTHING = 0.01; // of the largest value
+const SHOWN = 0.05; // size of the largest displacement in the drawing, relative to the part
+const NOTHING = 0.01; // smaller values, relative to the largest, count as zero
 const LINE = { color: "#51606f", width: 2 };
 
-// A surface under another load than the 1 N·m for which it is kept: everything is proportional to it.
+// Scale a surface from the stored load of 1 N·m to another load; all fields are proportional to it.
 export function under(surface, load, words) {
   const times = ({ value, unit }) => ({ unit, value: value.map((one) => (Array.isArray(one) ? one.map((part) => part * load) : one * load)) });
   const { displacement, stress, twist } = surface;
@@ -39,14 +39,14 @@ export async function drawDeformed(place, surface, name) {
   await drawScene(place.querySelector(".figure"), [solid, before]);
 }
 
-// By how much displacements are drawn too large, in two digits.
+// Return the magnification of displacements, with two digits.
 function exaggeration({ points, displacement }) {
   const size = Math.max(...[0, 1, 2].map((axis) => width(points.value.map((point) => point[axis]))));
   const most = rangeOf(displacement.value.map((moved) => Math.hypot(...moved))).high;
   return most > 0 ? Number(((SHOWN * size) / most).toPrecision(2)) : 1;
 }
 
-// The range of the colours; next to nothing is nothing.
+// Return the range of the colours; negligible values count as zero.
 function coloured(values) {
   const { low, high } = rangeOf(values);
   return { low: Math.abs(low) < NOTHING * high ? 0 : low, high };

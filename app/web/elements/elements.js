@@ -1,4 +1,4 @@
-// The panel "Finite elements": asks for an analysis, follows its job, shows its answers, paints the solid.
+// The panel "Finite elements": request an analysis, follow its job, show its results, paint the solid.
 import { showAnalysis } from "./analyses.js";
 import { Refused, call, units } from "../shared/api.js";
 import { isolated } from "../shared/isolated.js";
@@ -15,7 +15,7 @@ function start(place) {
   const asks = place.querySelector("[data-asks]"), kind = ask(place, "kind");
   const button = place.querySelector("[data-analyse]");
   asks.hidden = false;
-  // On a design's page the panel stands in the form of the worksheet: its fields are none of that.
+  // On a design's page the panel is inside the worksheet's form, but its fields do not belong to that form.
   for (const event of ["input", "change"]) place.addEventListener(event, (happened) => happened.stopPropagation());
   kind.addEventListener("change", () => asDeclared(place));
   asDeclared(place);
@@ -34,7 +34,7 @@ function start(place) {
 
 const ask = (place, name) => place.querySelector(`[data-ask="${name}"]`);
 
-// The choices with which the design itself analyses this kind, so that nothing is calculated twice.
+// Preselect the options with which the design itself makes this analysis, so that nothing is calculated twice.
 function asDeclared(place) {
   const { boundary, level, load } = ask(place, "kind").selectedOptions[0].dataset;
   if (boundary) ask(place, "boundary").value = boundary;
@@ -45,7 +45,7 @@ function asDeclared(place) {
   for (const within of ask(place, "level").options) within.hidden = isTable && Boolean(Number(within.value));
 }
 
-// What the chosen kind takes: tables are under unit loads, held in one way; a load belongs to stress.
+// Show the options of the chosen kind: tables have unit loads and fixed supports; only stress has a load.
 function optionsOf(place) {
   const { outputs, tables } = ask(place, "kind").selectedOptions[0].dataset, names = outputs.split(" ");
   return { names, isTable: tables !== undefined, hasStress: names.includes(EXTRA) };
@@ -57,7 +57,7 @@ function tell(place, words) {
   notice.hidden = !words;
 }
 
-// Ask, and wait for the job if there is one; the answer in the units of the page, and its load in N·m.
+// Send the request and wait for its job, if any; return the answer in the units of the page, and its load in N·m.
 async function analysed(place) {
   const { payload: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
   const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);

@@ -1,7 +1,7 @@
-// Triangles between shared points made ready to be drawn: sharp where the surface has an edge, smooth elsewhere.
+// Prepare triangles between shared points for drawing: sharp at the edges of the surface, smooth elsewhere.
 const EDGE = Math.cos((35 * Math.PI) / 180);
 
-// Every point as often as it has sides: `from` says which point each of the new ones is; and all sharp edges.
+// Return each point once for each of its sides (`from` is the original point), and all sharp edges.
 export function facets(points, triangles) {
   const normals = triangles.map(([a, b, c]) => normal(points[a], points[b], points[c]));
   const sides = points.map(() => []), from = [];

@@ -21,7 +21,7 @@ router = APIRouter(include_in_schema=False)
 async def explanation(
     id: Id, name: Annotated[str, Path(max_length=140)], request: Request, services: ThePageServices
 ) -> Response:
-    """Return the page with the origin of a model parameter or of a criterion's verdict."""
+    """Return the page that explains a model parameter or a criterion's verdict."""
     asked = ExplanationQuestion(id, name, units_of(request))
     design, chain = await asyncio.gather(
         services.run(services.designs.show, id),

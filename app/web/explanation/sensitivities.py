@@ -1,4 +1,4 @@
-"""The sensitivities of an explanation as its page shows them: slopes, elasticities and bars."""
+"""Prepare the sensitivities of an explanation for its page: slopes, elasticities and bars."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from app.designs.schemas.designs import Sensitivity
 from app.presentation import numbers
 
-WIDTH = 100  # of the picture of a bar, whose middle is no change
+WIDTH = 100  # width of a bar's picture; its middle means no change
 HELPS = {"increase": "raise it", "decrease": "lower it"}
 
 
 @dataclass(frozen=True)
 class Bar:
-    """The bar of an elasticity: its beginning and its length."""
+    """The bar of an elasticity: its start and its length."""
 
     begin: float
     length: float
@@ -23,7 +23,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class SensitivityLine:
-    """A line of the table."""
+    """A row of the table of sensitivities."""
 
     name: str
     slope: str
@@ -34,7 +34,7 @@ class SensitivityLine:
 
 
 def sensitivity_lines(items: Sequence[Sensitivity]) -> list[SensitivityLine]:
-    """Return all lines; the longest bar is that of the largest elasticity."""
+    """Return all rows; the longest bar belongs to the largest elasticity."""
     largest = max((abs(item.elasticity or 0.0) for item in items), default=0.0)
     return [_line(item, largest) for item in items]
 
@@ -58,5 +58,5 @@ def _bar(elasticity: float, largest: float) -> Bar:
 
 
 def _digits(value: float) -> float:
-    """Return four digits: differences give no more."""
+    """Return a number with four digits, which is the accuracy of differences."""
     return float(f"{value:.4g}")

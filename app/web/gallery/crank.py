@@ -1,7 +1,8 @@
 """An example design: the paper's study of a crankshaft, from its dimensions to its life.
 
 Punewale, Khobragade, Chaudhari and Khandre (2015) change crankpin, journals, throw and the face inclination
-of a single-cylinder crankshaft; see docs/crank_study.md. They print no dimensions; these are our own.
+of a single-cylinder crankshaft; see docs/crank_study.md. The paper states no dimensions; those here are our
+own.
 """
 
 from __future__ import annotations

@@ -48,9 +48,9 @@ _OUTPUTS: list[JsonValue] = [
 
 
 def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
-    """Return a variant for every main and every big end.
+    """Return a variant for every main bearing and every big-end bearing.
 
-    The groove lies in the shell of a main's block, and in that of a big end's cap.
+    The groove lies in the shell in the block of a main bearing, and in the cap of a big end.
     """
     big_ends: dict[str, JsonValue] = {
         f"big_end_{n}": {
@@ -68,10 +68,10 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
 
 
 def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
-    """Return positions of cylinders, mains and webs: a wider bore makes the engine longer.
+    """Return the positions of cylinders, mains and webs; a wider bore makes the engine longer.
 
-    A throw is as long as a bore and what is `between` two bores. Cylinders stand `cylinders` [mm] off the
-    middle of their throw, webs `webs` [mm] before and behind it.
+    The length of a throw is the bore plus the distance `between` two bores. The cylinders lie `cylinders`
+    [mm] off the middle of their throw, and the webs `webs` [mm] before and after it.
     """
     middle = [f"= {2 * k + 1} * pitch / 2" for k in range(THROWS)]
     return {
@@ -90,9 +90,9 @@ def _document(
     bearings: dict[str, JsonValue],
     train: Train,
 ) -> dict[str, JsonValue]:
-    """Return a design: the engine, a film in one bearing with its shell, the crankshaft, torsion, life.
+    """Return a design with a variant for each bearing.
 
-    A variant for each bearing.
+    Its steps are the engine, a film in one bearing with its shell, the crankshaft, torsion and life.
     """
     placed = {name: value for name, value in places.items() if name != "pitch"}
     return {

@@ -19,7 +19,7 @@ Version = int | str | None
 
 
 class Example(NamedTuple):
-    """A design to start from."""
+    """An example design to start from."""
 
     title: str
     text: str
@@ -35,8 +35,8 @@ GALLERY = {
     ),
     "shell": Example(
         title="A plain bearing at several levels",
-        text="The same duty by oil film 2: friction, flow, stiffness, measured errors, and the pressure "
-        "painted on the shell.",
+        text="The same bearing calculated by oil film 2: friction, flow, stiffness, measured errors, and the "
+        "pressure painted on the shell.",
         document={
             "name": "plain main bearing",
             "parameters": {"scale": "1", "ratio": "0.5"},
@@ -70,8 +70,8 @@ GALLERY = {
     ),
     "v8": Example(
         title="All bearings of a cross-plane V8",
-        text="Two rods on each pin, five mains and eight big ends, a crankshaft whose pins stand as the "
-        "firing order wants them, its torsion and its life.",
+        text="Two rods on each pin, five mains and eight big ends, a crankshaft whose pin angles follow from "
+        "the firing order, its torsion and its life.",
         document=V8,
     ),
     "crank": Example(

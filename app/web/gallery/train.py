@@ -1,4 +1,4 @@
-"""Torsion and life of the gallery's engines: the train of inertias, and the crank throw beside the flywheel.
+"""Torsion and life of the gallery's engines: the train of inertias, and the throw next to the flywheel.
 
 Stiffness of the throws and stress tensors of their fillets come from finite elements of the design's own
 crankshaft. The inertia of the throws comes from its solid and from the masses on its pins. The values of
@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pydantic import JsonValue
 
 THROWS = 4
-STIFFNESS = "crankshaft.chain.throw_stiffnesses"  # of each throw, from mid-main to mid-main
+STIFFNESS = "crankshaft.chain.throw_stiffnesses"  # stiffness of each throw between the centres of its mains
 TENSORS = "crankshaft.unit_loads.stress_of_"
-FIRST = 3  # number of the inertia of throw 1, behind the damper's ring and its hub
+FIRST = 3  # number of the inertia of throw 1, after the damper's ring and hub
 _SHAFTS = THROWS + 3
 _MASS_ON_PIN = (
     "engine.rod_mass * (1 - engine.rod_centre / engine.rod_length)"
@@ -38,10 +38,7 @@ class Train:
 
 
 def parameters(train: Train) -> dict[str, JsonValue]:
-    """Return the parameters that both steps use.
-
-    Torque of cylinder 1, loads of the throws, twisting moments.
-    """
+    """Return the parameters that both steps use: cylinder torque, loads of throws, twisting moments."""
     last = THROWS
     torques = {f"torque_{k}": _torque(train, k) for k in range(1, last)}
     front = " + ".join(torques)
@@ -68,7 +65,7 @@ def parameters(train: Train) -> dict[str, JsonValue]:
 
 
 def _load(axis: str, cylinders: Sequence[int]) -> str:
-    """Load of the rods on a pin."""
+    """Return the load of the rods on a pin."""
     return " + ".join(f"engine.crankpin_load_{axis}[{n}]" for n in cylinders)
 
 
@@ -81,17 +78,15 @@ def _torque(train: Train, throw: int) -> str:
 
 
 def steps(train: Train) -> dict[str, JsonValue]:
-    """Return forced torsion of the train, life of the throw beside the flywheel."""
+    """Return two steps: forced torsion of the train, and life of the throw next to the flywheel."""
     return {"torsion": _torsion(train), "life": _life()}
 
 
 def analyses() -> dict[str, JsonValue]:
-    """Return results of finite elements on the crankshaft.
+    """Return the analyses of the crankshaft: the stiffness of each throw, and stress tensors at its fillets.
 
-    The stiffness of each throw, tensors at its fillets.
-
-    The stiffness between bearings differs from `coarse` to `fine` by less than from formula to formula, so
-    the cheap level serves. Stresses of `coarse` are up to a third too low.
+    The stiffness between bearings differs less between `coarse` and `fine` than between formulas, so the
+    cheap level is sufficient. Stresses of `coarse` are up to a third too low.
     """
     return {
         "chain": {"level": "coarse", "boundary": "guided_end"},
@@ -100,7 +95,7 @@ def analyses() -> dict[str, JsonValue]:
 
 
 def _between(throw: int) -> str:
-    """Return the stiffness from the pin of a throw to that of the next: half of either throw, in series."""
+    """Return the stiffness from the pin of a throw to that of the next: half of each throw, in series."""
     this, following = (f"{STIFFNESS}[{n}]" for n in (throw, throw + 1))
     return f"= 2 * {this} * {following} / ({this} + {following})"
 

@@ -1,4 +1,4 @@
-"""The route of the first page."""
+"""The route of the home page."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from app.web.shared.responses import show
 from app.web.shared.services import PageServices, ThePageServices
 
 router = APIRouter(include_in_schema=False)
-ON_HOME = 4  # designs, with pictures: the first page is light
+ON_HOME = 4  # designs with pictures; few, so that the page loads fast
 TAGS_ON_HOME = 30
 
 
 @router.get("/")
 async def home(request: Request, services: ThePageServices, template: Search = "") -> Response:
-    """Show designs, templates, models, and where to start; `template` searches the templates."""
+    """Return the home page: designs, templates, models, and where to start; `template` searches templates."""
     designs, tags, templates, models, faulty = await asyncio.gather(
         services.run(list_designs, services.database, limit=ON_HOME),
         services.run(list_tags, services.database),

@@ -1,4 +1,4 @@
-// A picture that is still being drawn is asked for again.
+// Request a picture again while it is still being drawn.
 const AGAIN = 2000, TIMES = 8; // ms
 
 for (const image of document.querySelectorAll("img[data-thumbnail]")) {

@@ -41,7 +41,7 @@ class Line:
 
     @property
     def margin(self) -> str:
-        """Return the margin that is lost most: `0.59 µm of thick (114 %)`."""
+        """Return the largest loss of margin: `0.59 µm of thick (114 %)`."""
         lost = self.impact.margin
         if lost is None:
             return ""
@@ -100,7 +100,7 @@ async def impact_page(
 
 @forms.post("/templates/{id}/{version}/impact")
 async def ask(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Start a calculation, and redirect to its page."""
+    """Start a calculation of the impact, and redirect to its page."""
     typed = await fields(request)
     asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
     try:
@@ -117,7 +117,7 @@ async def ask(id: Id, version: Number, request: Request, services: ThePageServic
 
 @forms.post("/templates/{id}/{version}/impact/cancel")
 async def cancel(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Cancel a calculation; one that has ended meanwhile stays unchanged."""
+    """Cancel a calculation; one that has already ended stays unchanged."""
     job = (await fields(request)).get("job", "")[:64]
     await services.cancel(job)
     return go(f"/templates/{id}/{version}/impact?{urlencode({'job': job})}")

@@ -35,11 +35,13 @@ SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
 """Largest error of the last angle against a whole cycle [deg], of the last value against the first [-]."""
-DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
+DIGITS = 12  # digits of a shifted angle, so that 0.1 + 0.2 is 0.3
 
 
 def paste(pasted: PastedTable) -> ReadTable:
-    """Read a table into the fields of a form; without chosen columns they are proposed by their names.
+    """Return the texts for the fields of a form, read from a table.
+
+    Columns that the user has not assigned are matched by their names.
 
     Raises
     ------
@@ -75,7 +77,7 @@ def paste(pasted: PastedTable) -> ReadTable:
 
 
 def _sent(pasted: PastedTable) -> FileText:
-    """Return the text of the file that was chosen, else what was pasted.
+    """Return the text of the chosen file, or else the pasted text.
 
     Raises
     ------
@@ -99,7 +101,7 @@ def text_of(column: TableColumn) -> str:
 def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenColumn]:
     """Return the user's choice of columns.
 
-    Without one, or with that of another table, the proposal by names.
+    Without a choice, or with that for another table, return the proposal by names.
     """
     if pasted.columns is not None and len(pasted.columns) == len(columns):
         return pasted.columns
@@ -112,7 +114,7 @@ def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenC
 
 
 def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> list[str]:
-    """Return a field for each column, the best match first, none twice; empty where no name fits."""
+    """Return a field for each column, assigned by best match and each only once; empty if no name fits."""
     scores = [
         (_likeness(column, field), -place, field.name)
         for place, column in enumerate(columns)
@@ -129,7 +131,7 @@ def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> l
 def _alone(
     columns: Sequence[TableColumn], fields: Sequence[TableField], taken: Mapping[int, str]
 ) -> dict[int, str]:
-    """Return what is left by its kind: the only column of a kind goes to the only free field of it."""
+    """Return the remaining assignments by kind: the only column of a kind gets the only free field."""
     free = [field for field in fields if field.name not in taken.values()]
     left = [n for n, column in enumerate(columns) if n not in taken and column.unit not in ("", "1")]
     fits = {n: [f.name for f in free if compatible(unit(columns[n].unit), unit(f.unit))] for n in left}
@@ -138,7 +140,7 @@ def _alone(
 
 
 def _likeness(column: TableColumn, field: TableField) -> float:
-    """Return a likeness from 0, nothing in common or another kind of quantity, to 1, the same name."""
+    """Return the similarity from 0 (nothing in common, or another kind of quantity) to 1 (the same name)."""
     if column.unit and not compatible(unit(column.unit), unit(field.unit)):
         return 0.0
     own, name = _words(column.name), Reference.parse(field.name).own_name
@@ -153,9 +155,9 @@ def _words(text: str) -> set[str]:
 
 
 def _plain(text: str) -> str:
-    """Return only the letters and digits: `F_{x}` and `Fx` are the same.
+    """Return only the letters and digits of a name: `F_{x}` and `Fx` become equal.
 
-    A text without any matches no other.
+    A text without letters and digits matches nothing.
     """
     return re.sub(r"[^a-z0-9]", "", text.lower()) or text
 
@@ -163,13 +165,13 @@ def _plain(text: str) -> str:
 def _faults(
     columns: Sequence[TableColumn], chosen: Sequence[ChosenColumn], fields: Sequence[TableField]
 ) -> Iterator[str]:
-    """Yield the faults of the choice: a unit that does not fit, a field that takes two columns."""
+    """Yield the faults of the choice: a unit that does not fit, or a field assigned to two columns."""
     by_name = {field.name: field for field in fields}
     taken = [choice.field for choice in chosen if choice.field]
     if not taken:
         yield "choose a field for at least one column"
     for name in sorted({name for name in taken if taken.count(name) > 1}):
-        yield f"two columns go to {_said(name)}; choose one of them"
+        yield f"two columns are assigned to {_said(name)}; choose one of them"
     for column, choice in zip(columns, chosen, strict=True):
         if choice.field and choice.field not in by_name:
             yield f"column {column.name}: this form has no field {_said(choice.field)}"
@@ -210,12 +212,12 @@ def _adjusted(
 
 
 def _is_angle(field: TableField) -> bool:
-    """Return whether a field is an angle, such as that of the crank."""
+    """Return whether a field is an angle, such as the crank angle."""
     return unit(field.unit).base == unit("deg").base and "angle" in _words(field.name)
 
 
 def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], bool]:
-    """Return a remark on the last point, and whether it is the first one again."""
+    """Return a remark on the last point, and whether it repeats the first one."""
     degrees = unit(axis.unit).factor / unit("deg").factor
     span = abs(axis.values[-1] - axis.values[0]) * degrees
     cycle = next((c for c in CYCLES if abs(span - c) <= SAME_ANGLE), None)
@@ -229,7 +231,7 @@ def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], 
 
 
 def _jump(values: Sequence[float]) -> float:
-    """Return the difference of the last value from the first, over the largest."""
+    """Return the difference between the last value and the first, relative to the largest."""
     largest = max(map(abs, values))
     return abs(values[-1] - values[0]) / largest if largest else 0.0
 
@@ -262,9 +264,9 @@ def refused(error: InvalidInputs) -> ReadTable:
 
 @router.post("/tables", dependencies=[needs("viewer")])
 async def read_pasted_table(pasted: PastedTable) -> ReadTable:
-    """The columns of a pasted table, and the texts of the fields that take them.
+    """Return the columns of a pasted table, and the texts for the fields.
 
-    A text that is not a table is not an error: the page shows what is wrong with it while it is typed.
+    A text that is not a table is not an error: while the user types, the page shows what is wrong.
     """
     return await run_in_threadpool(_read, pasted)
 

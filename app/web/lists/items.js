@@ -5,7 +5,7 @@ import { valueOf } from "../shared/typed.js";
 const MOST_ITEMS = 500;
 const NUMBER = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
-// The items of a text such as `[1, 2] mm` or `["= a", "3 mm"]`; null for a table of several rows.
+// Return the items of a text such as `[1, 2] mm` or `["= a", "3 mm"]`; null for a table of several rows.
 export function itemsOf(text) {
   const value = valueOf(text);
   if (value === "") return [];
@@ -20,7 +20,7 @@ function written(item, unit) {
   return typeof item === "number" && unit && unit !== "1" ? `${item} ${unit}` : String(item);
 }
 
-// Items as the text of a field: numbers of one unit as `[1, 2] mm`, others one by one.
+// Return items as the text of a field: numbers of one unit as `[1, 2] mm`, others one by one.
 export function textOf(items) {
   const filled = items.map((item) => item.trim()).filter(Boolean);
   if (!filled.length) return "";
@@ -90,5 +90,5 @@ export function startItems(dialog) {
   };
 }
 
-// One relation that gives the whole list, such as `= load.crank_angle`, stays one.
+// A single relation for the whole list, such as `= load.crank_angle`, stays unchanged.
 const isWhole = (before, items) => items.length === 1 && /^\s*=/.test(before) && items[0].trim().startsWith("=");

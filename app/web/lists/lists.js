@@ -1,8 +1,8 @@
-// Fields of lists and curves: their buttons open a dialog that edits the items, or takes a pasted table.
+// Fields of lists and curves: their buttons open a dialog to edit the items, or to paste a table.
 import { startItems } from "./items.js";
 import { startPasting } from "./pasting.js";
 
-let edit, paste; // of the page's two dialogs
+let edit, paste; // functions that open the page's two dialogs
 
 export function startLists(root = document) {
   edit ??= startItems(document.querySelector("[data-items-dialog]"));

@@ -1,4 +1,4 @@
-// The dialog that takes a pasted table or a CSV file: the service reads it, the user chooses what goes where.
+// The dialog for a pasted table or a CSV file: the service reads it, the user assigns columns to fields.
 import { call } from "../shared/api.js";
 import { isolated } from "../shared/isolated.js";
 import { asDialog, fill } from "./dialogs.js";
@@ -38,14 +38,14 @@ export function startPasting(dialog) {
     else preview.querySelector("tbody").replaceWith(body(payload));
     signature = JSON.stringify(payload.columns.map(({ name }) => name));
     apply.disabled = !Object.keys(payload.texts ?? {}).length;
-    apply.textContent = apply.disabled ? "Take over" : `Take over ${payload.rows} rows`;
+    apply.textContent = apply.disabled ? "Insert" : `Insert ${payload.rows} rows`;
     const assumed = payload.assumed?.length ? [`Assumed: ${payload.assumed.join(", ")}.`] : [];
     find("[data-paste-state]").replaceChildren(isolated([...(payload.notes ?? []), ...assumed].join(" ")));
   }
 
   function table({ columns, first, rows }) {
     const all = document.createElement("table"), head = document.createElement("thead");
-    all.createCaption().textContent = "Columns, and the first rows";
+    all.createCaption().textContent = "Columns and first rows";
     head.append(
       line("th", columns.map(({ name }) => name)),
       line("td", columns.map(({ name, unit }) => named("input", { value: unit, placeholder: "unit", autocomplete: "off" }, `Unit of ${name}`))),

@@ -1,4 +1,4 @@
-// A model's page: its part in three dimensions, analysed by finite elements; asked for again while it is being built.
+// The script of a model's page: 3-D view and finite elements; it reloads the page while the model is being built.
 import { startDownloads } from "../shared/downloads.js";
 import { startElements } from "../elements/elements.js";
 import { startSolids } from "../solid/solids.js";

@@ -25,14 +25,14 @@ from cad.export import MEDIA_TYPES
 from cad.model import CadModel
 from cad.regenerate import build_key
 
-SHOWN = ("step", "glb")  # made at once; other kinds when they are asked for
+SHOWN = ("step", "glb")  # created at once; other kinds only on request
 ABOUT = {"units"}
 
 
 async def model_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """Return the page, with the build of what the address asks for.
+    """Return the page, with the build of the parameters in the address.
 
-    Of the example, where it asks for nothing.
+    Without parameters it shows the build of the example.
     """
     model = await services.run(show_model, id, version, services.catalogues, services.database)
     typed = {n: text for n, text in request.query_params.items() if n not in ABOUT and text.strip()}
@@ -62,10 +62,7 @@ async def finished_analyses(
     model: Model,
     declared: Mapping[str, ModelAnalysis] | None = None,
 ) -> list[Analysis]:
-    """Return the analyses of a build that have results by now.
-
-    Those of a design under the load that it gives.
-    """
+    """Return the analyses of a build that have results, under the load of the design if it sets one."""
     if not model.analyses or build is None:
         return []
     units = units_of(request)
@@ -82,9 +79,9 @@ async def finished_analyses(
 async def _built(
     services: PageServices, model: Model, cells: Mapping[str, Given]
 ) -> tuple[Build | None, dict[str, str]]:
-    """Return the build with its files, or what is wrong.
+    """Return the build with its files, or its faults.
 
-    While it is being built, neither its files nor measures.
+    While the build is running, it has neither files nor measurements.
     """
     try:
         key = await _begun(services, model, cells)
@@ -99,7 +96,7 @@ async def _built(
 
 
 async def _begun(services: PageServices, model: Model, cells: Mapping[str, Given]) -> str:
-    """Begin the build and return its key, after waiting a moment for it.
+    """Start the build, wait a moment for it, and return its key.
 
     Raises
     ------
@@ -134,5 +131,5 @@ async def newest_model(id: Id, services: ThePageServices) -> Response:
 
 @router.get("/models/{id}/{version}")
 async def model(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Return the page of a CAD model, with a form to build it; the address holds the entries."""
+    """Return the page of a CAD model, with a form to build it; the address contains the entries."""
     return await model_page(request, services, id, version)

@@ -1,4 +1,4 @@
-"""The page of a model import, and the available programs."""
+"""The page for importing a model, which also lists the available drawing programs."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
 
 
 class NewModel(Upload):
-    """The id of a model to be imported, and the name of its file."""
+    """The id of a model to import, and the name of its file."""
 
     id: NewId
     file: FileName = "model"
 
 
 def imported_version(result: str) -> tuple[str, int] | None:
-    """Return the id and version of the model that an import made, by the result of its job."""
+    """Return the id and version of the imported model from the result of its job."""
     version = _VERSION.fullmatch(result)
     return version and (version[1], int(version[2]))
 
@@ -54,11 +54,11 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 async def model_import_form(
     request: Request, services: ThePageServices, job: Text = "", id: Text = ""
 ) -> Response:
-    """Show the form for a file; while its job runs, the wait; then the model or the refusal."""
+    """Return the form for a file; while its job runs, its progress; then the model or the refusal."""
     return await FORM.show(request, services, job, id)
 
 
 @forms.post(FORM.path)
 async def import_model_file(request: Request, services: ThePageServices) -> Response:
-    """Send the chosen file; where it is refused at once, the form again with the reason."""
+    """Import the chosen file; if it is refused at once, return the form with the reason."""
     return await FORM.send(request, services)

@@ -1,1 +1,1 @@
-"""The form of a new design's first step, or of one more step."""
+"""The form for the first step of a new design, or for another step."""

@@ -1,4 +1,4 @@
-"""The form of a new step; it is empty, so that no example value is mistaken for the user's.
+"""The form for a new step; it is empty, so that no example value is mistaken for the user's.
 
 It creates a design, or adds a step to one. Nothing is saved until the form is complete.
 """
@@ -32,7 +32,7 @@ FIELDS = ("design_name", "name", "template", "model")
 
 @dataclass(frozen=True)
 class NewStep:
-    """A step to be made: its name, its template, and what was typed into its fields."""
+    """A new step: its name, its template, and the typed texts of its fields."""
 
     name: str
     template: Template
@@ -41,11 +41,11 @@ class NewStep:
 
     @property
     def is_filled(self) -> bool:
-        """Return whether anything was typed into its fields."""
+        """Return whether the user typed anything into the fields."""
         return any([*self._tails(".").values(), *self._limits().values()])
 
     def plain(self) -> dict[str, JsonValue]:
-        """Return the step as the interface takes it."""
+        """Return the step in the form that the interface accepts."""
         step: dict[str, JsonValue] = {"template": self.template.id, "version": self.template.version}
         step["inputs"] = {tail: value_of(text) for tail, text in self._tails(".").items() if text}
         if limits := {tail: value_of(text) for tail, text in self._limits().items() if text}:
@@ -54,24 +54,24 @@ class NewStep:
         return step | {option: option_of(option, text) for option, text in options.items() if text}
 
     def fields(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """Return the fields of its inputs, empty or as typed."""
+        """Return the fields of the step's inputs, empty or as typed."""
         fields = sheet.of_block(self.template.inputs, self.name, {}, {}, self.typed, faults)
         return with_rows(fields, self.tables)
 
     def limits(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """Return the fields of the limits of its criteria."""
+        """Return the fields for limits of the step's criteria."""
         return limit_fields(self.template, self.name, {}, self.typed, faults, self.tables)
 
     def options(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """Return the fields that choose how exact it is."""
+        """Return the fields that choose the accuracy of the step."""
         return sheet.of_options(self.template, self.name, {}, self.typed, faults)
 
     def _limits(self) -> dict[str, str]:
-        """Return the typed texts, by the name of the limit."""
+        """Return the typed limits by name."""
         return self._tails(f"@{LIMITS}")
 
     def _tails(self, sign: str) -> dict[str, str]:
-        """Return the typed texts, by the rest of the control's name behind a sign."""
+        """Return the typed texts by the part of the control's name after a sign."""
         begins = f"{self.name}{sign}"
         return {
             key.removeprefix(begins): text.strip()
@@ -81,7 +81,7 @@ class NewStep:
 
 
 async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
-    """Return the step that a form asks for; named as its template, if it has no name."""
+    """Return the step that a form describes; without a name it has that of its template."""
     id, version = versioned(typed.get("template", ""))
     number = services.read(Number, version)
     template = await services.run(show_template, id, number, services.catalogues)
@@ -89,13 +89,13 @@ async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
 
 
 def versioned(chosen: str) -> tuple[str, int | str]:
-    """Return `oil_film/2` as the id and version that the interface takes."""
+    """Return the id and version in a text such as `oil_film/2`."""
     id, _, version = chosen.partition("/")
     return id, int(version) if _NUMBER.fullmatch(version) else "latest"
 
 
 def beside(typed: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts of a form beside the values of the step."""
+    """Return the texts of a form apart from the values of the step."""
     return {name: typed[name] for name in FIELDS if typed.get(name)}
 
 
@@ -112,7 +112,7 @@ def step_page(
     refusal: Refusal | None = None,
     notice: str | None = None,
 ) -> Response:
-    """Return the form, empty; or refused, with what was typed and what is wrong."""
+    """Return the empty form, or a refused form with its texts and faults."""
     faults = refusal.faults if refusal else {}
     fields, options, limits = step.fields(faults), step.options(faults), step.limits(faults)
     return show(

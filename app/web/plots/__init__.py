@@ -1,1 +1,1 @@
-"""Plots and pictures of results as several pages show them."""
+"""Plots and pictures of results that several pages share."""

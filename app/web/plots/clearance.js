@@ -1,7 +1,7 @@
-// The journal in its clearance circle: moved by eccentricity and attitude. The page draws it at first.
+// Move the journal in its clearance circle to its eccentricity and attitude angle. The server draws it first.
 import { plain, quantityText } from "../shared/numbers.js";
 
-const TRAVEL = 22; // of the drawing, at full eccentricity
+const TRAVEL = 22; // displacement in the drawing at full eccentricity
 
 export function showClearance(place, picture, values) {
   const eccentricity = values[picture.eccentricity].value, film = values[picture.film];

@@ -1,4 +1,4 @@
-// The pictures of a calculation. Which ones there are is said by app/reports/pictures.py; here each kind is drawn.
+// Draw the pictures of a calculation, each kind by its own function; app/reports/pictures.py chooses them.
 import { showClearance } from "./clearance.js";
 import { unit } from "../shared/numbers.js";
 import { draw } from "./plots.js";
@@ -68,7 +68,7 @@ function square(place, traces, [x, y]) {
   return draw(place, traces, { height: 380, xaxis: { title: { text: x } }, yaxis: { title: { text: y }, scaleanchor: "x" } });
 }
 
-// Draw all pictures within an element; `scope` is the step whose `answer` it is. Only what is in view is drawn.
+// Draw all pictures within an element once they are in view; `scope` is the step that `answer` belongs to.
 export function drawPictures(root, scope, answer) {
   const values = { ...answer.inputs, ...answer.outputs };
   for (const figure of root.querySelectorAll("[data-picture]")) {

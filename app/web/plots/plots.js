@@ -18,7 +18,7 @@ export const CONFIG = { displaylogo: false, responsive: true, displayModeBar: fa
 export const COLOURS = ["#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "#0f8a8a"];
 const FAMILY = "Liberation Sans, Segoe UI, Arial, sans-serif";
 
-// A colour of the page's scheme.
+// Return a colour of the page's scheme.
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 export function layout(more = {}) {
@@ -32,7 +32,7 @@ export function layout(more = {}) {
   };
 }
 
-// A scale of colours with its ends, in the place of Plotly's own, which sets style attributes.
+// Draw a colour scale with its ends; Plotly's own scale would set style attributes.
 export function scale(low, high, unit) {
   const bar = Object.assign(document.createElement("p"), { className: "colours" });
   for (const text of [plain(low), "", `${plain(high)} ${unit}`]) bar.append(Object.assign(document.createElement("span"), { textContent: text }));

@@ -1,4 +1,4 @@
-// The pressure of a journal's film: asked for once for equal inputs, drawn unrolled or as a surface.
+// The pressure of a journal's film: requested once for equal inputs, drawn unrolled or as a surface.
 import { call, units } from "../shared/api.js";
 import { unit } from "../shared/numbers.js";
 import { draw, scale } from "./plots.js";
@@ -23,7 +23,7 @@ export async function drawPressure(place, picture, values) {
   legend.replaceChildren(scale(0, field.maximum_pressure.value, shown));
   await draw(map, [{ type: "contour", x, y, z, ...colours, contours: { showlines: false }, ncontours: 24 }], {
     height: 230, margin: { l: 55, r: 10, t: 10, b: 45 },
-    xaxis: { title: { text: "angle from the narrowest gap, with the rotation [°]" }, dtick: 60 }, yaxis: { title: { text: `along the shaft [${unit(field.place.unit)}]` } },
+    xaxis: { title: { text: "angle from the narrowest gap, in the sense of rotation [°]" }, dtick: 60 }, yaxis: { title: { text: `along the shaft [${unit(field.place.unit)}]` } },
   });
   await draw(middle, [{ x, y: z[(z.length - 1) / 2], mode: "lines", fill: "tozeroy" }], {
     height: 200, margin: { l: 55, r: 10, t: 10, b: 45 },

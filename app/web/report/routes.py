@@ -12,5 +12,5 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/designs/{id}/report")
 async def report(id: Id, request: Request) -> Response:
-    """Return the report as a page."""
+    """Redirect to the report of a design."""
     return go(f"/api/v1/designs/{id}/report.html?units={units_of(request)}")

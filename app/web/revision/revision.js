@@ -1,4 +1,4 @@
-// The pictures of a revision, from what the interface answers about it.
+// Draw the pictures of a revision from the answer of the interface.
 import { call, units } from "../shared/api.js";
 import { startDownloads } from "../shared/downloads.js";
 import { drawPictures } from "../plots/pictures.js";

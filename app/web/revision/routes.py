@@ -74,7 +74,7 @@ def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]
 
 
 class Difference(NamedTuple):
-    """One value that differs; empty where a revision has none."""
+    """One value that differs between two revisions; empty where a revision does not have it."""
 
     name: str
     old: str
@@ -82,7 +82,7 @@ class Difference(NamedTuple):
 
 
 def differences(old: Revision, new: Revision) -> list[Difference]:
-    """Return all differing parameters, inputs, outputs and model parameters, ordered as in the newer."""
+    """Return all differing parameters, inputs, outputs and model parameters, in the newer one's order."""
     before, after = dict(_values(old)), dict(_values(new))
     names = dict.fromkeys([*after, *before])
     return [
@@ -103,21 +103,21 @@ def _values(revision: Revision) -> Iterator[tuple[str, object]]:
 
 
 def _comparable(value: object) -> object:
-    """Return a quantity as plain data without its origin; return a value as its user typed it."""
+    """Return a quantity as plain data without its origin; return any other value as its user typed it."""
     if not isinstance(value, Answer):
         return value
     return {name: part for name, part in value.plain().items() if name != "from"}
 
 
 def is_unusable(refused: Refused) -> bool:
-    """Return whether a service refused because a version is quarantined, or its file was taken away."""
+    """Return whether a service refused because a version is quarantined, or its file was removed."""
     return refused.problem.type in REASONS
 
 
 async def stored_page(
     request: Request, services: PageServices, id: str, number: int | None, reason: str
 ) -> Response:
-    """Return one revision, the newest if none is named, as it is stored."""
+    """Return the page of a stored revision without calculating anything, by default of the newest one."""
     design = await services.run(services.designs.show, id)
     shown = number or design.revision
     revision = await services.run(show_revision, id, shown, services.database)
@@ -135,7 +135,7 @@ async def stored_page(
 async def or_stored(
     request: Request, services: PageServices, id: str, number: int | None, page: Awaitable[Response]
 ) -> Response:
-    """Return a page of a design; what is stored of it, if one of its templates is quarantined."""
+    """Return a page of a design; if one of its templates is quarantined, the page of the stored revision."""
     try:
         return await page
     except Refused as refused:
@@ -156,6 +156,6 @@ async def revision(
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
     comments: Text = "",
 ) -> Response:
-    """Return the page of a revision and its differences; `comments` is the start of a page of comments."""
+    """Return the page of a revision and its differences; `comments` is the cursor of a page of comments."""
     page = revision_page(request, services, id, number, other, cursor=comments)
     return await or_stored(request, services, id, number, page)

@@ -28,7 +28,7 @@ PATIENCE = 15.0
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
-_FIXED = "Fixed part "  # the title of an imported STEP file begins so
+_FIXED = "Fixed part "  # the title of an imported STEP file begins with this
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
 
@@ -38,7 +38,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 @router.get("/designs/{id}/models/{name}/beside")
 async def beside_form(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
-    """Return the form that chooses the part and its position."""
+    """Return the form to choose the part and its position."""
     design = await services.run(services.designs.show, id)
     return await _form(request, services, design, name, {})
 
@@ -68,7 +68,7 @@ def _model(design: Design, name: str) -> DesignModel:
 async def _manifest(
     services: PageServices, model: DesignModel, typed: Mapping[str, str]
 ) -> dict[str, JsonValue]:
-    """Return the manifest of the model's assembly with the part from the form.
+    """Return the manifest of the model's assembly, including the part in the form.
 
     If the model is not an assembly, the manifest is new.
     """
@@ -85,7 +85,7 @@ async def _manifest(
 
 
 def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the entry of a part from the filled fields."""
+    """Return the manifest entry for the part in the form."""
     entry: dict[str, JsonValue] = {"name": typed.get("component", "")}
     if model := typed.get("source", ""):
         id, _, version = model.partition(":")
@@ -104,7 +104,7 @@ async def _imported(
     Raises
     ------
     Refused
-        With the reason, if it is refused, or takes too long.
+        With the reason, if the import is refused, or takes too long.
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
@@ -148,6 +148,6 @@ async def _form(
 
 
 async def _bought(services: PageServices) -> list[TemplateSummary]:
-    """Return the imported STEP files, the newest of each."""
+    """Return the newest version of each imported STEP file."""
     items = (await services.run(list_models, services.catalogues, limit=500)).items
     return [item for item in items if item.latest and item.title.startswith(_FIXED)]

@@ -1,4 +1,4 @@
-"""Answers to questions that may take long: the answer itself, or the job that makes it."""
+"""Answers to requests that may take long: the answer itself, or the job that computes it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ACCEPTED = 202
 
 @dataclass(frozen=True)
 class AnswerOrJob(Generic[Kind]):
-    """An answer, or the id of the job that makes it."""
+    """An answer, or the id of the job that computes it."""
 
     answer: Kind | None
     job: str = ""
@@ -35,7 +35,7 @@ class AnswerOrJob(Generic[Kind]):
 
 @dataclass(frozen=True)
 class TemplateQuestion(Generic[Body]):
-    """A question about a version of a template: an operation, its body, and the units of its answer."""
+    """A request about a version of a template: an operation, its body, and the units of its answer."""
 
     template: str
     version: int
@@ -51,7 +51,7 @@ async def calculated(
     kind: type[Kind],
     within: float,
 ) -> AnswerOrJob[Kind]:
-    """Return the answer about a template; of an expensive one the job, if it is not there in time [s].
+    """Return the answer about a template, or the job if the calculation takes longer than this time [s].
 
     Raises
     ------
@@ -69,7 +69,7 @@ async def calculated(
 
 
 async def stored(services: PageServices, job: str, kind: type[Kind]) -> AnswerOrJob[Kind]:
-    """Return the answer of a job, or the job while it still runs.
+    """Return the answer of a job, or the job itself while it is running.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-// Calls of the REST interface. A refusal is thrown with its problem: what is wrong stands in `errors`, by name.
+// Call the REST interface. A refusal is thrown with its problem; its `errors` has the faults by name.
 export class Refused extends Error {
   constructor(status, problem) {
     super(problem.detail ?? problem.title ?? `answer ${status}`);
@@ -10,7 +10,7 @@ export class Refused extends Error {
   }
 }
 
-// What is wrong, and the other inputs that it is about, as app/web/shared/services.py writes it.
+// Return a fault with the other inputs that it concerns, as app/web/shared/services.py does.
 const withRelated = (detail, also = []) => (also.length ? `${detail}. See also ${also.join(", ")}` : detail);
 
 export async function call(method, path, body, { headers = {}, signal } = {}) {

@@ -1,4 +1,4 @@
-// A page whose answer is still calculated: follows its job, then shows what came of it.
+// A page whose answer is still being calculated: follow its job, then show the result.
 import { follow } from "./progress.js";
 import { renewed } from "./renewed.js";
 

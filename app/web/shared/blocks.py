@@ -1,4 +1,4 @@
-"""The steps and models of a design or revision, for its page."""
+"""Prepare the steps and models of a design or revision for its page."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from app.web.shared import sheet
 from app.web.shared.limits import limit_fields, with_rows
 from app.web.shared.sheet import Field
 
-MOST_AT_ONCE = 16  # results
+MOST_AT_ONCE = 16  # largest number of results shown at first
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class StepBlock:
     fields: list[Field] = field(default_factory=list)
     options: list[Field] = field(default_factory=list)
     limits: list[Field] = field(default_factory=list)
-    keys: list[str] = field(default_factory=list)  # outputs in its fold line
+    keys: list[str] = field(default_factory=list)  # outputs in the summary line
 
     @property
     def main(self) -> list[str]:
-        """Return the results shown at once: all if they are few, else those that no formula uses."""
+        """Return the results shown at first: all if they are few, else those that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}
@@ -56,7 +56,7 @@ class StepBlock:
 
     @property
     def intermediate(self) -> list[str]:
-        """Return the results that are folded away."""
+        """Return the results that are folded at first."""
         main = set(self.main)
         return [name for name in self.outputs if name not in main]
 
@@ -68,7 +68,7 @@ class StepBlock:
 
 @dataclass(frozen=True)
 class ModelBlock:
-    """A model; on the page of a design also with its fields, and what its parameters were before."""
+    """A model; on the page of a design also with its fields and the previous values of its parameters."""
 
     name: str
     model: Model
@@ -79,15 +79,15 @@ class ModelBlock:
 
     @property
     def targets(self) -> set[str]:
-        """Return the names of its parameters in a design."""
+        """Return the names of the model's parameters in a design."""
         return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """The texts of a refused form, and its faults by name; all empty without such a form.
+    """The texts of a refused form, and its faults by name; all empty if no form was refused.
 
-    `typed` are fields of the worksheet; `part` is the form of one parameter, analysis or iteration.
+    `typed` are fields of the worksheet; `part` is the form for one parameter, analysis or iteration.
     """
 
     typed: Mapping[str, str] = field(default_factory=dict)
@@ -100,7 +100,7 @@ def steps_of(
     templates: Mapping[str, Template],
     computed: Mapping[str, Sequence[str] | None] | None = None,
 ) -> list[StepBlock]:
-    """Return every step with its results and pictures; `computed` names outputs where only some are."""
+    """Return every step with its results and pictures; `computed` names outputs if only some are."""
     return [
         _step(name, template, revision.steps[name], (computed or {}).get(name))
         for name, template in templates.items()
@@ -115,14 +115,14 @@ def _step(name: str, template: Template, step: PreviewedStep, computed: Sequence
 
 
 def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
-    """Return a step whose results are awaited, with places for the page's script to fill in."""
+    """Return a step without results yet, with empty places that the page's script will fill in."""
     waiting = Output(value=None, reason="is not calculated yet")
     names = list(names)
     return step.model_copy(update={"outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)})
 
 
 def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
-    """Return a step with its formulas, if they are `written` out; one whose results are awaited has none."""
+    """Return a step with its formulas if they are `written` out; a step without results yet has none."""
     return block if written is None or written.pending else replace(block, result=written)
 
 
@@ -173,7 +173,7 @@ def _status(change: ParameterChange | None) -> str | None:
 
 
 def _changed(before: RevisionModel | None, values: Mapping[str, Shown]) -> dict[str, Shown]:
-    """Return the parameters of a model before, where they differ from the values now."""
+    """Return the previous values of a model's parameters that have changed."""
     old = before.parameters if before else {}
     return {name: value for name, value in old.items() if value != values.get(name)}
 
@@ -181,7 +181,7 @@ def _changed(before: RevisionModel | None, values: Mapping[str, Shown]) -> dict[
 def painted(steps: Iterable[StepBlock], models: Sequence[ModelBlock]) -> dict[str, object] | None:
     """Return the film pressure to paint on a plain bearing.
 
-    That of the step to whose diameter its bore is tied.
+    It is the pressure of the step whose bearing diameter drives the bore.
     """
     bores = {block.name: block.model.film_bore for block in models if block.model.film_bore}
     texts = {field.name: field.text for block in models for field in block.fields}

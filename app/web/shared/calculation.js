@@ -1,9 +1,9 @@
-// What takes long is a job: how far it is, a way to stop it, and its answer. Who types or leaves stops it as well.
+// Follow a long calculation, which is a job: progress, cancellation, answer. Typing or leaving the page also cancels it.
 import { call } from "./api.js";
 import { follow } from "./progress.js";
 
 export async function calculated(job, signal, progress = document.querySelector("[data-progress]")) {
-  const stop = () => fetch(job, { method: "DELETE", keepalive: true }).catch(() => {}); // it has ended meanwhile
+  const stop = () => fetch(job, { method: "DELETE", keepalive: true }).catch(() => {}); // the job may have ended meanwhile
   if (signal?.aborted) stop();
   signal?.addEventListener("abort", stop);
   addEventListener("pagehide", stop);

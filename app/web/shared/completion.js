@@ -1,8 +1,8 @@
-// Completes names while they are typed, by keyboard and by mouse: of relations in their fields, and of worksheets.
-// `names` says which fields take them, where a name begins, what fits, and where the list opens.
+// Complete names while they are typed, by keyboard or mouse, in fields for relations and in worksheets.
+// `names` defines which fields accept names, where a name begins, which ones fit, and where the list opens.
 import { unit } from "./numbers.js";
 
-const MOST = 40; // options at once; typing on narrows them
+const MOST = 40; // largest number of options shown; more typing narrows them
 const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 
 export function startCompletion(form, names) {
@@ -73,7 +73,7 @@ export function startCompletion(form, names) {
     for (const [name, value] of Object.entries(attributes(input, list.id))) input.setAttribute(name, value);
     input.addEventListener("input", () => isInserting || open(input));
     input.addEventListener("blur", close);
-    input.addEventListener("pointerdown", close); // the caret goes elsewhere
+    input.addEventListener("pointerdown", close); // the caret moves
     input.addEventListener("keydown", (event) => onKey(event));
   }
 
@@ -96,10 +96,10 @@ export function startCompletion(form, names) {
 
   const watchAll = (fields) => [...fields].filter((one) => names.takes(one)).forEach(watch);
   watchAll(form.elements);
-  return watchAll; // for fields that come later
+  return watchAll; // for fields added later
 }
 
-// A field of one line is a combobox; a text of many lines may not be called so, and does not expand.
+// A one-line field is a combobox; a text area cannot have that role, and does not expand.
 function attributes(field, list) {
   const shared = { "aria-autocomplete": "list", "aria-controls": list };
   return field.matches("textarea") ? { ...shared, "aria-haspopup": "listbox" } : { ...shared, role: "combobox", "aria-expanded": "false" };

@@ -1,4 +1,4 @@
-// A long array in the cell of a table, as app/presentation/environment.py has it: its ends, where they are, a line.
+// A long array in a table cell, as in app/presentation/environment.py: its extremes, their positions, a line.
 import { FEW, extremes, plain, quantityText, unit } from "./numbers.js";
 
 const SVG = "http://www.w3.org/2000/svg", WIDTH = 120, HEIGHT = 24, MOST_POINTS = 240;

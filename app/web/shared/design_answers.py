@@ -1,4 +1,4 @@
-"""Answers about a design that its page and its revisions' pages share."""
+"""Answers about a design that the pages of the design and of its revisions share."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ async def described_models(services: PageServices, design: Design | RevisionWork
 
 
 class Upgrade(NamedTuple):
-    """A step for which there is a newer version, or of which the version is withdrawn."""
+    """A step with a newer version available, or whose version was withdrawn."""
 
     step: str
     template: str
@@ -74,7 +74,7 @@ class Upgrade(NamedTuple):
 
 
 async def upgrades_of(services: PageServices, templates: Mapping[str, Template]) -> list[Upgrade]:
-    """Return the steps of a design, by name with their templates, that do not use the latest version."""
+    """Return the steps of a design that do not use the latest version, by name, with their templates."""
     old = {name: template for name, template in templates.items() if not template.latest}
     newest = {id: await _newest(services, id) for id in {template.id for template in old.values()}}
     return [
@@ -88,7 +88,7 @@ async def _newest(services: PageServices, id: str) -> int:
     return next(item.version for item in versions if item.latest)
 
 
-ON_DESIGN = 10  # comments on the page of a design; that of a revision has all, page by page
+ON_DESIGN = 10  # comments on the page of a design; the page of a revision lists all
 
 
 async def approval_of(services: PageServices, id: str, number: int) -> Approvals:
@@ -99,7 +99,7 @@ async def approval_of(services: PageServices, id: str, number: int) -> Approvals
 async def comments_of(
     services: PageServices, id: str, number: int | None, limit: int, cursor: str = ""
 ) -> CommentList:
-    """Return comments on a revision, or on all of a design."""
+    """Return comments on a revision, or on all revisions of a design."""
     if number:
         return await services.run(list_comments, id, number, services.comments, limit, cursor or None)
     return await services.run(list_all_comments, id, services.comments, limit, cursor or None)

@@ -1,4 +1,4 @@
-// Downloads: a file that still has to be made is waited for, and an answer that is not a file is never saved.
+// Downloads: wait for a file that must be created first, and never save a response that is not a file.
 import { Refused, call } from "./api.js";
 import { isolated } from "./isolated.js";
 import { watched } from "./progress.js";
@@ -7,14 +7,14 @@ export function startDownloads() {
   startDownloadForms();
   for (const link of document.querySelectorAll("[data-download]")) {
     link.addEventListener("click", (event) => {
-      if (event.ctrlKey || event.metaKey || event.shiftKey) return; // in another tab: the browser's own way
+      if (event.ctrlKey || event.metaKey || event.shiftKey) return; // opened in another tab: leave it to the browser
       event.preventDefault();
       download(link);
     });
   }
 }
 
-// A form whose fields go into the address of a file: empty ones stay out of it.
+// A form whose fields become part of a file's address, without the empty ones.
 function startDownloadForms() {
   for (const form of document.querySelectorAll("[data-download-form]")) {
     form.addEventListener("submit", async (event) => {
@@ -37,13 +37,13 @@ async function download(link) {
     save(await answer.blob(), nameIn(answer) ?? (link.download || link.pathname.split("/").pop()));
     status.textContent = "";
   } catch (error) {
-    status.replaceChildren(isolated(error instanceof Refused ? error.message : "The file could not be fetched; try again."));
+    status.replaceChildren(isolated(error instanceof Refused ? error.message : "The file could not be downloaded; try again."));
   } finally {
     link.ariaBusy = "false";
   }
 }
 
-// The answer with the file, once no job has to make it first.
+// Return the response with the file, after any job that must create it.
 async function fileOf(path, say) {
   for (;;) {
     const answer = await fetch(path, { headers: { Prefer: "respond-async" } });
@@ -52,7 +52,7 @@ async function fileOf(path, say) {
       if (!answer.ok) throw new Refused(answer.status, await answer.json().catch(() => ({})));
       return answer;
     }
-    say(0, "The file is being written …");
+    say(0, "The file is being created …");
     await watched(job, say);
     const { payload } = await call("GET", job);
     if (payload.state !== "done") throw new Refused(payload.problem?.status ?? 409, payload.problem ?? { detail: "The job was cancelled." });
@@ -71,7 +71,7 @@ function nameIn(answer) {
   return wide ? decodeURIComponent(wide[1]) : plain?.[1];
 }
 
-// Where it says how far a download is: behind the links.
+// The place for the progress of a download: after the links.
 function statusOf(link) {
   const shown = link.parentElement.querySelector("[data-download-status]");
   if (shown) return shown;

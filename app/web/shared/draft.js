@@ -1,11 +1,11 @@
-// What was typed and not saved, kept by the tab of the browser: one draft for every design or worksheet, and revision.
+// Unsaved changes, stored by the tab of the browser: one draft for each design or worksheet, and revision.
 import { reveal } from "./reveal.js";
 
 export class Draft {
   constructor(form, was, { of = form.dataset.design, revision = form.dataset.revision } = {}) {
     Object.assign(this, { form, was, prefix: `draft:${of}:` });
     this.key = this.prefix + revision;
-    this.waiting = {}; // what was typed into fields that the page fetches later
+    this.waiting = {}; // typed texts of fields that the page loads later
   }
 
   fields() {
@@ -22,7 +22,7 @@ export class Draft {
     return Object.keys(this.changed()).length > 0;
   }
 
-  // Keep what differs; true if anything does.
+  // Store the changes; return true if there are any.
   keep() {
     const changed = this.changed();
     for (const field of this.fields()) field.classList.toggle("changed", Object.hasOwn(changed, field.name));
@@ -32,7 +32,7 @@ export class Draft {
     return any;
   }
 
-  // Put back what was kept, for this revision; for an older one if somebody else saved since. Returns its revision.
+  // Restore the draft of this revision, or of an older one if somebody else has saved since; return its revision.
   restore() {
     const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(this.prefix)).sort(byRevision);
     const key = keys.at(-1);
@@ -43,7 +43,7 @@ export class Draft {
     return key.slice(this.prefix.length);
   }
 
-  // Put what waits for its field into the fields that are there by now.
+  // Restore the texts of fields that have been loaded in the meantime.
   fill() {
     for (const field of this.fields().filter(({ name }) => Object.hasOwn(this.waiting, name))) {
       field.value = this.waiting[field.name];

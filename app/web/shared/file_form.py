@@ -1,4 +1,4 @@
-"""A form by which a user sends a file that a job imports: the form, the wait for the job, and the refusal."""
+"""A form to upload a file that a job imports: the form, its progress, and the result or refusal."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
 
 
 class Upload(BaseModel):
-    """The id of what a file becomes, and the name of the file."""
+    """The id for the imported object, and the name of the file."""
 
     id: str
     file: str
@@ -33,22 +33,23 @@ async def _nothing(services: PageServices) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class FileForm:
-    """The page of such a form.
+    """The page of an upload form.
 
     Parameters
     ----------
     path, page
-        The address of the page, and its file.
+        The address of the page, and its template file.
     choose
         The sentence that asks for a file.
     upload
-        The model that checks id and name.
+        The model that validates id and name.
     begin
-        The service that begins the import.
+        The service that starts the import.
     address
-        Returns that of what the import made, by the result of its job; None for a job of another kind.
+        Function that returns the address of the imported object from the result of its job; None for a job of
+        another kind.
     context
-        Returns what else the form shows.
+        Function that returns further data for the form.
     """
 
     path: str
@@ -70,7 +71,7 @@ class FileForm:
             address = self.address(work.result or "")
             return go(address) if address else await self._form(request, services, id)
         answer = show(request, self.page, notice="", waiting=work)
-        answer.headers["Refresh"] = "1"  # the page needs no script to wait
+        answer.headers["Refresh"] = "1"  # so that the page can wait without a script
         return answer
 
     async def send(self, request: Request, services: PageServices) -> Response:

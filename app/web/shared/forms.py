@@ -25,8 +25,8 @@ from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.input_text import text_of, value_of
 from app.web.shared.session import check_form_token
 
-OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
-LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins
+OPTIONS = ("level", "tolerance")  # options of a step, besides its inputs
+LIMITS = "limits."  # prefix of the controls for limits of its criteria
 MOST_FIELDS = 20_000
 
 Patch = dict[str, dict[str, JsonValue]]
@@ -35,7 +35,7 @@ _WAS = TypeAdapter(dict[str, JsonValue])
 
 
 class Names(Protocol):
-    """The names in a design."""
+    """The names of parameters, steps and models in a design."""
 
     @property
     def parameters(self) -> Collection[str]:
@@ -43,11 +43,11 @@ class Names(Protocol):
 
     @property
     def steps(self) -> Collection[str]:
-        """Return names of its steps."""
+        """Return the names of the design's steps."""
 
     @property
     def models(self) -> Collection[str]:
-        """Return names of its models."""
+        """Return the names of the design's models."""
 
 
 async def fields(request: Request) -> dict[str, str]:
@@ -56,7 +56,7 @@ async def fields(request: Request) -> dict[str, str]:
     Raises
     ------
     BodyTooLarge
-        If there are more fields than in any of our forms.
+        If there are more fields than in any form of the service.
     """
     body = (await request.body()).decode(errors="replace")
     try:
@@ -66,7 +66,7 @@ async def fields(request: Request) -> dict[str, str]:
 
 
 async def forms_only(request: Request) -> None:
-    """Accept only bodies that are forms; within a session, only forms of its own pages."""
+    """Accept only bodies that are forms; within a session, only forms from its own pages."""
     check_type(request, FORM_TYPES, NotForm)
     if request.scope.get(FORM_TOKEN):
         check_form_token(request, await fields(request))
@@ -83,7 +83,7 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
 
 
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
-    """Return the fields that differ from the first state of the form, stored in its hidden field `was`."""
+    """Return the fields that differ from the initial state of the form, stored in its hidden field `was`."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
@@ -104,9 +104,9 @@ def _parts(name: str) -> tuple[str, str, str]:
 
 
 def texts(design: Design) -> dict[str, str]:
-    """Return the texts of a design, field by field.
+    """Return the texts of a design by control.
 
-    `.scale`, `film.radial_load`, `film@level`, `model.width`.
+    Controls are named like `.scale`, `film.radial_load`, `film@level` and `model.width`.
     """
     blocks = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
@@ -120,7 +120,7 @@ def texts(design: Design) -> dict[str, str]:
 
 
 def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
-    """Put one value in its place, or remove it if it was emptied."""
+    """Store one value in its place, or remove it if the field was emptied."""
     block, kind, tail = _parts(name)
     new = None if value == "" else value
     if kind == "@" and tail.startswith(LIMITS):
@@ -136,14 +136,14 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
 
 
 def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
-    """Return the object with a name; an empty one if it does not exist yet."""
+    """Return the object under a name; an empty one if there is none yet."""
     inner = outer.setdefault(name, {})
     assert isinstance(inner, dict)
     return inner
 
 
 def option_of(name: str, value: JsonValue) -> JsonValue:
-    """Return an option, a tolerance as a number; the interface refuses one that is no number."""
+    """Return an option, with a tolerance as a number; the interface refuses a text that is not a number."""
     if name != "tolerance" or not isinstance(value, str):
         return value
     try:

@@ -1,4 +1,4 @@
-// A text of a user in an element of its own, so that signs in it turn nothing beside it. As app/bidi.py has it.
+// Put a user's text into a separate element, so that direction marks in it affect no other text; see app/presentation/bidi.py.
 const BREAKS = /[\u2028\u2029\u0085]/g, CLOSES = "\u2069", OPENS = ["\u2066", "\u2067", "\u2068"];
 
 export const isolated = (text) => Object.assign(document.createElement("bdi"), { textContent: balanced(String(text)) });

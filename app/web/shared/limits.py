@@ -1,4 +1,4 @@
-"""Fields that library rows can fill: limits of criteria, and inputs."""
+"""Fields that rows of the library can fill: limits of criteria, and inputs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.web.shared.sheet import Field
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the non-empty limit fields of a template's form."""
+    """Return the non-empty limits in a template's form."""
     return {name.removeprefix(LIMITS): value_of(text) for name, text in filled.items() if is_limit(name)}
 
 
@@ -43,9 +43,9 @@ def limit_fields(
     faults: Mapping[str, str],
     tables: Sequence[LibraryTable],
 ) -> list[Field]:
-    """Return a choice for each table that gives limits of this template, then a field for each limit.
+    """Return a choice for each table that supplies limits of this template, then a field for each limit.
 
-    `block` is the name of the step; empty on the page of the template, which calculates without one.
+    `block` is the name of the step; it is empty on the page of the template, which has no step.
     """
     limits = properties(template.given_limits)
     fields = []
@@ -77,14 +77,14 @@ def _field(name: str, control: str, declared: DeclaredValue) -> Field:
 def _rows(
     id: str | None, limits: Mapping[str, DeclaredValue], tables: Sequence[LibraryTable]
 ) -> Iterator[LibraryRow]:
-    """Yield the rows of a table that have a value for one of its limits."""
+    """Yield the rows of a table that have a value for one of these limits."""
     taken = {name for name, limit in limits.items() if id and limit.filled_by == id}
     rows = (row for table in tables if table.id == id for row in table.rows)
     yield from (row for row in rows if not taken.isdisjoint(row.values))
 
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
-    """Return the fields of inputs, with the rows of the library that may fill them as suggestions."""
+    """Return the fields of inputs, with suitable rows of the library as suggestions."""
     filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
     return [
         replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
@@ -92,7 +92,7 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 
 
 def _tail(name: str) -> str:
-    """Return the name of an input without the name of its step."""
+    """Return the name of an input without that of its step."""
     return Reference.parse(name).own_name
 
 

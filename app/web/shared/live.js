@@ -1,5 +1,5 @@
-// Asks for a preview while something is typed: at most one call at a time, the newest wins; it can be cancelled.
-const PAUSE = 80; // ms without a key
+// Request previews while the user types: at most one call at a time, the newest wins; it can be cancelled.
+const PAUSE = 80; // pause in typing before a request [ms]
 
 export function live(ask, show, refuse, pause = PAUSE) {
   let timer, running;

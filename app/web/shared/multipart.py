@@ -1,6 +1,7 @@
 """Parse the fields and files of a form sent as `multipart/form-data` (RFC 7578), as browsers upload files.
 
-Our forms send one file each, and the service limits the body, so the whole body is split at once.
+The service's forms send one file each, and the size of the body is limited, so the whole body is split at
+once.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class Part:
 async def forms_with_files(request: Request) -> None:
     """Accept only bodies that are forms, with or without files.
 
-    Within a session, only forms of its own pages.
+    Within a session, only forms from its own pages are accepted.
     """
     check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
     if request.scope.get(FORM_TOKEN):
@@ -48,12 +49,15 @@ async def forms_with_files(request: Request) -> None:
 
 
 async def parts_of(request: Request) -> dict[str, Part]:
-    """Return the parts of a form that was sent with a file; of one without files none."""
+    """Return the parts of a form that was sent with a file; empty for a form without files."""
     return read_parts(await request.body(), request.headers.get("content-type", ""))
 
 
 def read_parts(body: bytes, content_type: str) -> dict[str, Part]:
-    """Return the parts of a form by name; linear in the length of the body. What is not part is left out."""
+    """Return the parts of a form by name, in time linear in the length of the body.
+
+    Bytes outside of parts are ignored.
+    """
     boundary = _BOUNDARY.search(content_type)
     if boundary is None:
         return {}

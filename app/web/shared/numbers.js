@@ -1,4 +1,4 @@
-// Numbers and units as app/web/numbers.py writes them: five digits, aligned at the point, the unit once.
+// Numbers and units as in app/presentation/numbers.py: five digits, aligned at the point, the unit once.
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const WORDS = { deg: "°", degC: "°C", degF: "°F", delta_degC: "K", delta_degF: "Δ°F", um: "µm", ohm: "Ω", thou: "mil", inch: "in", ureyn: "µreyn" };
 const raised = (text) => [...text].map((sign) => RAISED[sign]).join("");
@@ -37,19 +37,19 @@ function written(value) {
   return extremes(flat)?.map((place) => written(flat[place])).join(" … ") ?? "[…]";
 }
 
-// Of a long list, how many values there are, and where the least and the largest are.
+// Describe a long list: the number of values, and the positions of the smallest and the largest.
 function remark(values) {
   if (!Array.isArray(values) || values.flat(Infinity).length <= FEW) return "";
   const ends = values.some(Array.isArray) ? null : extremes(values);
   return `(${counted(values)} values${ends ? `; least no. ${ends[0] + 1}, largest no. ${ends[1] + 1}` : ""})`;
 }
 
-export const FEW = 20; // values that are shown whole
+export const FEW = 20; // longest list that is shown completely
 
-// How many values there are: 720, or 3 × 24 of a table.
+// Return the number of values: 720, or 3 × 24 for a table.
 export const counted = (values) => (Array.isArray(values[0]) ? `${values.length} × ${counted(values[0])}` : String(values.length));
 
-// The places of the least and the largest number; null without any.
+// Return the positions of the smallest and the largest number; null if there is none.
 export function extremes(values) {
   let least = -1, largest = -1;
   values.forEach((value, place) => {

@@ -1,4 +1,4 @@
-"""Lists for forms: the values of a design that may vary, its results, and the names for its relations."""
+"""Lists for forms: the values of a design that can be varied, its results, and names for its relations."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from app.reference import Reference
 
 @dataclass(frozen=True)
 class PlaceOption:
-    """One name that a form offers: its words, its unit and, of an input, its value as typed."""
+    """One name that a form offers: its words, its unit and, for an input, its value as typed."""
 
     name: str
     words: str
     unit: str
     value: str = ""
-    relation: str = ""  # that sets it
-    instead: tuple[str, ...] = ()  # on which that depends, and which hold values of their own
+    relation: str = ""  # the relation that sets it
+    instead: tuple[str, ...] = ()  # typed values on which the relation depends
 
 
 def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
-    """Return parameters and inputs with a single typed quantity, without relations."""
+    """Return parameters and inputs with a single typed quantity, not a relation."""
     typed = dict(_typed(design))
     return [
         PlaceOption(name.name, name.words, name.unit, typed[name.name])
@@ -39,9 +39,9 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
 def set_aside(
     design: Design, network: DesignNetwork, own: list[PlaceOption], values: Mapping[str, object]
 ) -> list[PlaceOption]:
-    """Return parameters and inputs that a relation sets, which a study may set aside.
+    """Return parameters and inputs that a relation sets, and whose relation a study may replace.
 
-    `own` are the others.
+    `own` are the parameters and inputs with values of their own.
     """
     typed, single = dict(_typed(design)), {place.name for place in own}
     return [
@@ -56,7 +56,7 @@ def set_aside(
 
 
 def _instead(network: DesignNetwork, target: str, single: set[str]) -> tuple[str, ...]:
-    """Return the values on which a relation depends, also through other relations."""
+    """Return the values on which a relation depends, directly or through other relations."""
     seen, left = dict[str, None](), [target]
     while left:
         name = left.pop(0)
@@ -67,7 +67,7 @@ def _instead(network: DesignNetwork, target: str, single: set[str]) -> tuple[str
 
 
 def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
-    """Return the values of parameters, of inputs of steps and of parameters of models, as calculated."""
+    """Return the calculated values of parameters, inputs of steps and parameters of models."""
     values: dict[str, object] = {name: _plain(value) for name, value in (preview.parameters or {}).items()}
     for block, step in revision.steps.items():
         values |= {f"{block}.{name}": _plain(value) for name, value in step.inputs.items()}
@@ -77,7 +77,7 @@ def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """Return a quantity with its number and unit only."""
+    """Return a quantity with only its number and unit."""
     number, unit = getattr(value, "value", value), getattr(value, "unit", None)
     return {"value": number, "unit": unit} if unit else number
 
@@ -97,13 +97,13 @@ def outputs(network: DesignNetwork) -> list[NetworkName]:
 
 
 def suggested(place: PlaceOption) -> tuple[str, str]:
-    """Return suggested bounds for a place: half and twice its value, or nothing if that is not useful."""
+    """Return suggested bounds: half and twice the value, or nothing if that is not useful."""
     low, high = (times(place.value, factor) for factor in (0.5, 2.0))
     return low, high
 
 
 def times(text: str, factor: float) -> str:
-    """Return a typed quantity above zero, multiplied; nothing for other texts and for temperatures."""
+    """Return a typed positive quantity multiplied by a factor; empty for other texts and for temperatures."""
     number, _, symbol = text.partition(" ")
     try:
         value = float(number)
@@ -114,7 +114,7 @@ def times(text: str, factor: float) -> str:
 
 
 def _typed(design: Design) -> Iterator[tuple[str, str]]:
-    """Yield every value as a text, by the name that relations use."""
+    """Yield every typed value as a text, by its name in relations."""
     yield from ((name, text_of(value)) for name, value in design.parameters.items())
     blocks: dict[str, Mapping[str, object]] = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
@@ -123,7 +123,7 @@ def _typed(design: Design) -> Iterator[tuple[str, str]]:
 
 
 def _is_single(text: str) -> bool:
-    """Return whether a text is one number with its unit, and no relation, list or choice."""
+    """Return whether a text is one number with its unit, not a relation, list or choice."""
     head = text.lstrip("+-.")
     return head[:1].isdigit() and "," not in text
 
@@ -138,7 +138,7 @@ def values_of(
 ) -> dict[str, str]:
     """Return the values of parameters, inputs, outputs and measures as texts.
 
-    No text where none is calculated.
+    A value that was not calculated is left out.
     """
     quantities: dict[str, object] = dict((preview.parameters if preview else None) or {})
     for block, step in revision.steps.items():
@@ -151,7 +151,7 @@ def values_of(
 
 
 def _measures(part: ModelMeasurements) -> dict[str, object]:
-    """Return the measures of a solid, by their names in relations, as far as the page has them."""
+    """Return the available measures of a solid by their names in relations."""
     kinds = {
         f"{kind}.{name}": output
         for kind, analysis in part.analyses.items()

@@ -1,4 +1,4 @@
-"""Show errors as pages if a browser asks for a page; the REST interface returns problems."""
+"""Show errors as pages if a browser requests a page; the REST interface returns problems."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Handler = Callable[[Request, Exception], Awaitable[Response]]
 
 
 def install(app: FastAPI) -> None:
-    """Answer errors of pages with a page; call it after `problems.install`."""
+    """Make errors of pages appear as pages; call this after `problems.install`."""
     app.add_exception_handler(Refused, _refused)
     for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn, Exception):
         app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
 
 
 def _page_or(others: Handler) -> Handler:
-    """Return a handler that answers browsers with a page, and leaves other clients to another handler."""
+    """Return a handler that sends a page to browsers, and calls another handler for other clients."""
 
     async def handle(request: Request, error: Exception) -> Response:
         if not _is_page(request):
@@ -55,9 +55,9 @@ def _is_page(request: Request) -> bool:
 
 
 def _place(request: Request) -> str:
-    """Return the page to continue with after signing in.
+    """Return the page to open after signing in.
 
-    The one requested, or the one whose form was sent.
+    It is the requested page, or the page whose form was sent.
     """
     place = request.url
     if request.method not in ("GET", "HEAD"):
@@ -66,7 +66,7 @@ def _place(request: Request) -> str:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    """Return the page for a refusal of a service."""
+    """Return the page that shows a service's refusal."""
     assert isinstance(error, Refused)
     if not _is_page(request):
         return JSONResponse(

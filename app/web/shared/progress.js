@@ -1,4 +1,4 @@
-// How a job goes on: its events in a bar of the page; it can be cancelled there.
+// Show the progress of a job in a bar on the page, where it can be cancelled.
 import { call } from "./api.js";
 import { isolated } from "./isolated.js";
 
@@ -11,7 +11,7 @@ export function follow(path, place = document.querySelector("[data-progress]"), 
   words.textContent = begins;
   place.querySelector("[data-cancel]").onclick = (event) => {
     event.preventDefault(); // without this script it is the button of a form
-    call("DELETE", path).catch(() => {}); // it has ended meanwhile
+    call("DELETE", path).catch(() => {}); // the job may have ended meanwhile
   };
   place.scrollIntoView({ block: "nearest" });
   return watched(path, (progress, text) => {
@@ -20,7 +20,7 @@ export function follow(path, place = document.querySelector("[data-progress]"), 
   });
 }
 
-// Until a job has ended, however it did; `say` hears how far it is.
+// Wait until a job has ended, whatever its outcome; `say` receives its progress.
 export function watched(path, say) {
   return new Promise((ended) => {
     const events = new EventSource(`${path}/events`);
@@ -33,6 +33,6 @@ export function watched(path, say) {
       ended();
     };
     for (const state of ENDED) events.addEventListener(state, end);
-    events.onerror = () => call("GET", path).then(({ payload }) => ENDED.includes(payload.state) && end(), () => {}); // it tries again
+    events.onerror = () => call("GET", path).then(({ payload }) => ENDED.includes(payload.state) && end(), () => {}); // the browser reconnects by itself
   });
 }

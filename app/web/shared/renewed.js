@@ -1,5 +1,5 @@
-// The content of this page as the server has it now, in the place of what is shown: what has ended needs no reload.
-// Where that fails, `words` says so.
+// Replace the content of this page by the server's present version, without a reload.
+// If that fails, show a message in `words`.
 export async function renewed(words) {
   try {
     const answer = await fetch(location.href, { headers: { Accept: "text/html" } });
@@ -7,6 +7,6 @@ export async function renewed(words) {
     const page = new DOMParser().parseFromString(await answer.text(), "text/html");
     document.querySelector("main").replaceWith(document.adoptNode(page.querySelector("main")));
   } catch (error) {
-    words.textContent = `It has ended, but the page could not be fetched: ${error.message}. Reload the page.`;
+    words.textContent = `The job has ended, but the page could not be loaded: ${error.message}. Reload the page.`;
   }
 }

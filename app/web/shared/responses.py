@@ -21,7 +21,7 @@ HEADERS = {
     "Content-Security-Policy": PAGE_POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "same-origin",
-    "Cache-Control": "no-store",  # going back shows what is, not what was
+    "Cache-Control": "no-store",  # going back must show the present state
     "Vary": "Cookie",
 }
 YEAR = 365 * 24 * 3600  # s
@@ -33,13 +33,13 @@ jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:
-    """Return the system of units: from the address, else from the cookie, else SI."""
+    """Return the system of units in the address, else in the cookie, else SI."""
     asked = request.query_params.get("units") or request.cookies.get("units")
     return next((system for system in get_args(System) if system == asked), "si")
 
 
 def show(request: Request, name: str, status: int = 200, **context: object) -> Response:
-    """Return a page."""
+    """Return a rendered page as a response."""
     units = units_of(request)
     page = jinja.get_template(name)
     html = page.render(
@@ -59,17 +59,17 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
 
 
 def _scheme(request: Request) -> str:
-    """Return the chosen colour scheme; empty for that of the system."""
+    """Return the chosen colour scheme; empty for the system's scheme."""
     kept = request.cookies.get("scheme")
     return next((scheme for scheme in SCHEMES if scheme == kept), "")
 
 
 def _beside_units(request: Request) -> str:
-    """Return the query without the units, to be followed by them."""
+    """Return the query without its units, so that other units can be appended."""
     rest = [(name, text) for name, text in request.query_params.multi_items() if name != "units"]
     return f"{urlencode(rest)}&" if rest else ""
 
 
 def go(path: str) -> Response:
-    """Redirect to another page after a form has succeeded."""
+    """Redirect to another page after a form was processed."""
     return RedirectResponse(path, 303)

@@ -1,11 +1,11 @@
-// Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
+// Write an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { isolated } from "./isolated.js";
 import { aligned, percent, quantityText, unit } from "./numbers.js";
 import { courseCell, isCourse } from "./course.js";
 import { reveal } from "./reveal.js";
 import { isOf } from "./typed.js";
 
-const TEXT = "\\text{"; // how an answer in words begins
+const TEXT = "\\text{"; // beginning of a result in words
 
 export function showResults(scope, answer) {
   for (const row of answer.formulas ?? []) showFormula(`${scope}.${row.name}`, row);
@@ -80,12 +80,12 @@ export function warning({ name, detail }) {
   return item;
 }
 
-// Marks the results that are shown as those of the last input that was possible, or takes the mark away.
+// Mark the results shown as those of the last valid input, or remove the mark.
 export function markOutdated(isOutdated) {
   document.getElementById("main").classList.toggle("outdated", isOutdated);
 }
 
-// Likewise for one step of a design, whose results are still being calculated.
+// Do the same for one step of a design whose results are still being calculated.
 export function markWaiting(step, isWaiting) {
   const parts = document.querySelectorAll(`[data-step="${step}"], [data-pictures="${step}"]`);
   for (const part of parts) part.classList.toggle("outdated", isWaiting);
@@ -93,7 +93,7 @@ export function markWaiting(step, isWaiting) {
 
 export const OUTDATED = "the results shown belong to the last valid input";
 
-// Messages beside the fields of a form; those of no field are returned.
+// Show messages next to the fields of a form, and return those that belong to no field.
 export function showFaults(form, faults) {
   const loose = new Map(faults);
   for (const field of form.querySelectorAll("input[id], select[id]")) {

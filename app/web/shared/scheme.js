@@ -1,4 +1,4 @@
-// The switch of colours: the choice is kept in a cookie, so that the next page comes in its colours at once.
+// The switch for the colour scheme: a cookie keeps the choice, so that the next page has these colours at once.
 const YEAR = 365 * 24 * 3600; // s
 const group = document.querySelector("[data-schemes]");
 

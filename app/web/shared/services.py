@@ -43,12 +43,12 @@ ERRORS = tuple(TABLE)
 
 
 def with_related(detail: str, also: list[str]) -> str:
-    """Return a fault's sentence and the other inputs that it concerns; `shared/api.js` writes the same."""
+    """Return the sentence of a fault, with the other inputs that it concerns, as `shared/api.js` does."""
     return f"{detail}. See also {', '.join(also)}" if also else detail
 
 
 class Refused(Exception):
-    """A service refused; `problem` is what the interface answers then."""
+    """A service refused; `problem` is the interface's response in this case."""
 
     def __init__(self, problem: Problem) -> None:
         self.status, self.problem = problem.status, problem
@@ -56,12 +56,12 @@ class Refused(Exception):
 
     @classmethod
     def by(cls, error: Exception) -> Refused:
-        """Return the refusal that an error of a service is."""
+        """Return the refusal for an error of a service."""
         return cls(Problem.model_validate_json(bytes(refusal(error).body)))
 
     @classmethod
     def because(cls, status: int, detail: str) -> Refused:
-        """Return a refusal raised by the pages themselves."""
+        """Return a refusal that a page itself raises."""
         title = HTTPStatus(status).phrase.capitalize()
         return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
 
@@ -77,7 +77,7 @@ class Refused(Exception):
 
 
 def tag_of(revision: str) -> str:
-    """Return the ETag of the revision in a form; of an invalid number, an ETag that matches nothing."""
+    """Return the ETag of the revision in a form; for an invalid number, an ETag that matches nothing."""
     return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
@@ -98,14 +98,14 @@ def refusals() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class PageServices(Services):
-    """The services for one request of a page, and the client who sent it."""
+    """The services for one request of a page, and the client that sent it."""
 
     request: Request
     client: str
 
     @property
     def once(self) -> Once:
-        """Return a change by a form, which names no key: every form is a new one."""
+        """Return the record of a change; every form is a new change, because it has no idempotency key."""
         return Once(None, "", "", self.client)
 
     async def run(
@@ -114,7 +114,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result:
-        """Return the result of a function, which runs in a thread.
+        """Run a function in a thread, and return its result.
 
         Raises
         ------
@@ -141,7 +141,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> SaveResult:
-        """Return the saved state after waiting a moment for the job; the page shows its progress.
+        """Wait a moment for the job of a save, and return the saved state; the page shows the progress.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class PageServices(Services):
     async def change(
         self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = ""
     ) -> SaveResult:
-        """Save a merge patch of a design as read at a revision, which is a text as a form names it.
+        """Save a merge patch of a design at a revision, given as the text in a form.
 
         Raises
         ------
@@ -203,9 +203,9 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result:
-        """Return the result of a function that evaluates steps; those not ended in time [s] are deferred.
+        """Return the result of a function that evaluates steps; steps that take longer [s] are deferred.
 
-        Without a time none is deferred.
+        Without a time no step is deferred.
 
         Raises
         ------
@@ -219,12 +219,12 @@ class PageServices(Services):
             return await self.threads.run_within(seconds, self.request, function, *arguments, **options)
 
     def read(self, kind: type[Kind], body: object) -> Kind:
-        """Return a form as the model of a body, read as strictly as a client's body.
+        """Return a form as the model of a request body, validated as strictly as a client's body.
 
         Raises
         ------
         Refused
-            With everything that is wrong.
+            With all faults.
         """
         with refusals():
             refuse_nul_in(body)
@@ -237,7 +237,7 @@ class PageServices(Services):
 async def get_services(request: Request, client: TheClient) -> PageServices:
     """Return the services for this request.
 
-    Files of a team's catalogue are read first if they have changed.
+    If files of a team's catalogue have changed, they are read first.
     """
     services = services_of(request)
     await services.catalogues.refresh()

@@ -1,6 +1,6 @@
 """Cookies of a browser: one that identifies its requests, and one for a session after sign-in.
 
-The first does not identify a principal. With the second, every form carries a token of the session, in
+The first does not identify a principal. With the second, every form contains a token of the session, in
 addition to the rule that forms must come from the service's own pages.
 """
 
@@ -22,7 +22,7 @@ _FORM = re.compile(r'<form\b[^>]*\bmethod="post"[^>]*>')
 
 
 def keep_session(request: Request, response: Response) -> None:
-    """Give a browser a session cookie, unless it has one; the service does not store it."""
+    """Give a browser a session cookie, unless it has one; the service does not store the session."""
     if is_session(request.cookies.get(COOKIE, "")):
         return
     response.set_cookie(
@@ -36,7 +36,7 @@ def keep_session(request: Request, response: Response) -> None:
 
 
 def who_signed_in(request: Request) -> str:
-    """Return the name of the principal that signed in or sent a key; empty without one."""
+    """Return the name of the principal of the session or key; empty without either."""
     who = request.scope.get(PRINCIPAL, ANONYMOUS)
     return "" if who is ANONYMOUS else str(who.name)
 
@@ -48,7 +48,7 @@ def with_form_token(html: str, request: Request) -> str:
 
 
 def check_form_token(request: Request, typed: dict[str, str]) -> None:
-    """Compare the token of a form with that of the session, if the request belongs to one.
+    """Compare the token of a form with that of the session, if the request has a session.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
 
 
 def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:
-    """Set the cookie of a signed-in session in a browser, for a time [h]."""
+    """Set the cookie of a signed-in session in a browser, valid for a time [h]."""
     response.set_cookie(
         SIGN_IN,
         token,

@@ -16,7 +16,7 @@ from templates.core.units.relation import is_relation
 
 @dataclass(frozen=True)
 class Field:
-    """One input of a form; errors of the interface carry its `name`, the form that of its `control`."""
+    """One input of a form; errors of the interface use its `name`, the form uses its `control`."""
 
     name: str
     control: str
@@ -27,12 +27,12 @@ class Field:
     unit: str | None = None
     hint: str = ""
     options: tuple[str, ...] = ()
-    value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
+    value: object = None  # result of a relation, or a default; None if the text states the value
     needed: bool = True
-    is_list: bool = False  # several values, to be edited item by item or pasted
-    own: bool = False  # a design's own parameter: its name is all its words
+    is_list: bool = False  # whether it has several values, to be edited item by item or pasted
+    own: bool = False  # whether it is a design's own parameter, which has only its name
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
-    suggestions: Mapping[str, str] = field(default_factory=dict)  # texts to take, and what each stands for
+    suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
 
     @property
     def id(self) -> str:
@@ -45,7 +45,7 @@ class Field:
 
     @property
     def main(self) -> bool:
-        """Return whether it is shown at once: it is needed, or was set, or is wrong."""
+        """Return whether the field is shown at first: it is required, has a value, or is wrong."""
         return self.needed or bool(self.text) or self.error is not None
 
 
@@ -57,9 +57,9 @@ def of_block(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """Return the fields of a step's inputs, or a model's parameters, in the order they are declared.
+    """Return the fields for a step's inputs, or a model's parameters, in the order of their declarations.
 
-    `values` are the used quantities; `typed` are the texts of a refused form.
+    `values` are the quantities used; `typed` are the texts of a refused form.
     """
     needed = required(schema)
     fields = []
@@ -77,7 +77,7 @@ def of_parameters(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """Return the fields of a design's own parameters."""
+    """Return the fields for a design's own parameters."""
     return [
         Field(
             name=name,
@@ -99,7 +99,7 @@ def of_options(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """Return the fields that choose how exact a step is; none where its template has one level only."""
+    """Return the fields that choose the accuracy of a step; empty if its template has only one level."""
     if not template.levels or template.default_level is None:
         return []
     level, tolerance = OPTIONS

@@ -1,6 +1,6 @@
-// Fields and the JSON of the interface, as app/web/shared/forms.py turns one into the other.
+// Convert between fields and JSON of the interface, as app/web/shared/forms.py does.
 
-// What the interface calls a control: `.scale` → `scale`, `film@level` → `film.level`.
+// Return the interface's name of a control: `.scale` → `scale`, `film@level` → `film.level`.
 export const nameOf = (control) => control.replace("@", ".").replace(/^\./, "");
 
 export function valueOf(text) {
@@ -11,20 +11,20 @@ export function valueOf(text) {
     const inside = JSON.parse(stripped.slice(0, end)), unit = stripped.slice(end).trim();
     return unit ? { value: inside, unit } : inside;
   } catch {
-    return stripped; // the interface says what is wrong with it
+    return stripped; // the interface will report what is wrong with it
   }
 }
 
-// Whether a fault is that of a control; one of an option may tell where it stands (`steps.film.tolerance`) or its value.
+// Return whether a fault belongs to a control; for an option it may name the place (`steps.film.tolerance`) or the value.
 export function isOf(fault, control) {
   const name = nameOf(control);
   const isOption = control.includes("@");
   return fault === name || (isOption && (fault === `steps.${name}` || fault.startsWith(`${name}.`)));
 }
 
-const LIMITS = "limits."; // how the rest of the name of a limit's control begins
+const LIMITS = "limits."; // prefix in the name of a limit's control
 
-// The merge patch of a design for the fields that were changed: { "film.radial_load": "25 kN" } → { steps: … }.
+// Return the merge patch of a design for the changed fields: { "film.radial_load": "25 kN" } → { steps: … }.
 export function patchOf(changed, models) {
   const patch = {};
   for (const [name, text] of Object.entries(changed)) {
@@ -41,6 +41,6 @@ export function patchOf(changed, models) {
 
 const inside = (patch, ...path) => path.reduce((place, key) => (place[key] ??= {}), patch);
 
-// A tolerance is a number; the interface says what is wrong with one that is none.
+// A tolerance must be a number; the interface reports any other text.
 export const optionOf = (name, value) =>
   name === "tolerance" && typeof value === "string" && Number.isFinite(Number(value)) ? Number(value) : value;

@@ -1,1 +1,1 @@
-"""The pages of signing in, with a password or a provider, and of an account's keys."""
+"""The pages for signing in, with a key or through a provider, and for an account's keys."""

@@ -1,4 +1,4 @@
-"""Sign-in by the organisation's provider: redirect the browser there, and handle its return."""
+"""Sign in through the organisation's provider: redirect the browser there, and handle its return."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ async def leave(request: Request, back: Text = "/") -> Response:
 async def come_back(
     request: Request, identity: TheIdentity, state: Text = "", code: Text = "", error: Text = ""
 ) -> Response:
-    """Finish the sign-in; then redirect, so that the browser sends the new cookie.
+    """Finish the sign-in, then redirect, so that the browser sends the new cookie.
 
     Raises
     ------

@@ -23,7 +23,7 @@ from app.web.shared.services import PageServices, ThePageServices
 from app.web.shared.session import keep_signed_in
 
 _BACK = re.compile(r"/(?![/\\])[!-~]*")
-LONGEST = 300  # characters of what may be typed as a key
+LONGEST = 300  # longest text accepted as a key [characters]
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -33,7 +33,7 @@ Prefix = Annotated[str, Path(pattern=r"^[a-z0-9]{10}$")]
 
 @router.get("/sign-in", dependencies=[public()])
 async def sign_in_page(request: Request, back: str = "/") -> Response:
-    """Show the form for a key."""
+    """Return the form for a key."""
     return _page(request, back)
 
 
@@ -50,7 +50,7 @@ async def sign_in(request: Request, identity: TheIdentity) -> Response:
 
 
 def begun(request: Request, token: str, back: str) -> Response:
-    """Redirect to a page, signed in."""
+    """Redirect to a page with the cookie of a new session."""
     response = go(own(back))
     keep_signed_in(request, response, token, services_of(request).settings.session_hours)
     return response
@@ -67,13 +67,13 @@ async def sign_out(request: Request, identity: TheIdentity) -> Response:
 
 @router.get("/account", dependencies=[needs()])
 async def account(request: Request, services: ThePageServices) -> Response:
-    """Show the principal: name, roles, usage, and keys."""
+    """Return the page of the principal: name, roles, usage, and keys."""
     return await _account(request, services)
 
 
 @forms.post("/account/keys", dependencies=[needs()])
 async def add_key(request: Request, services: ThePageServices) -> Response:
-    """Create a key and show it on this page only."""
+    """Create a key, and show it once on this page."""
     typed = await fields(request)
     me = await services.run(routes.show_me, services.identity)
     days = typed.get("days", "").strip()
@@ -104,7 +104,7 @@ def _page(request: Request, back: str, *, status: int = 200, wrong: str = "") ->
 
 
 def sent(request: Request) -> str:
-    """Return the session cookie of a browser, whether or not the session exists."""
+    """Return the session cookie that a browser sent, whether or not the session exists."""
     return request.cookies.get(SIGN_IN, "")[:LONGEST]
 
 

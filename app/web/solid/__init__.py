@@ -1,1 +1,1 @@
-"""Solids drawn in the browser."""
+"""Draw solids in the browser."""

@@ -1,4 +1,4 @@
-// Reads a GLB file as cad/gltf.py writes it: every body with the triangles of all its places, in millimetres.
+// Read a GLB file as cad/gltf.py writes it: every body with the triangles of all its instances, in millimetres.
 const JSON_CHUNK = 0x4e4f534a;
 
 export function readGlb(buffer) {
@@ -25,7 +25,7 @@ function accessor(about, buffer, start, index) {
   return componentType === 5126 ? new Float32Array(buffer, offset, length) : new Uint32Array(buffer, offset, length);
 }
 
-// The triangles of a body at each of its places (4 × 4, column by column).
+// Return the triangles of a body for each of its instances (4 × 4 matrices, column by column).
 function placed(points, normals, corners, places) {
   const mesh = { x: [], y: [], z: [], i: [], j: [], k: [] }, light = [];
   for (const m of places) {
@@ -46,7 +46,7 @@ function placed(points, normals, corners, places) {
   return { mesh, light };
 }
 
-// How bright a surface is: two lamps, which turn with the part, and the light of the room.
+// Return the brightness of a surface: two lamps, which turn with the part, and ambient light.
 const LAMPS = [{ x: -0.42, y: -0.68, z: 0.6, power: 0.62 }, { x: 0.8, y: -0.1, z: 0.59, power: 0.28 }];
 const ROOM = 0.42;
 
@@ -57,7 +57,7 @@ function brightness(m, x, y, z) {
 
 const screenColour = (linear) => linear.slice(0, 3).map((part) => Math.round(255 * part ** (1 / 2.2)));
 
-// The colours of the corners, if a field is painted on a body; it has one place then.
+// Return the colours of the corners if a field is painted on a body, which then has one instance.
 function cornerColours(linear) {
   return Array.from({ length: linear.length / 3 }, (_, corner) => screenColour(Array.from(linear.subarray(3 * corner, 3 * corner + 3))));
 }

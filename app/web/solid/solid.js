@@ -1,4 +1,4 @@
-// The part in three dimensions: a GLB file read and drawn by Plotly, with its size below.
+// The 3-D view of the part: a GLB file, drawn by Plotly, with the size of the part below.
 import { units } from "../shared/api.js";
 import { readGlb } from "./glb.js";
 import { unit } from "../shared/numbers.js";
@@ -6,9 +6,9 @@ import { plotly } from "../plots/plots.js";
 import { pressureOf } from "../plots/pressure.js";
 import { FIELD, drawScene, showColours } from "./scene.js";
 
-const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the light is in the colours of the corners
+const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the colours of the corners already include the light
 const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
-const LEAST = 0.003; // of the largest pressure: what is painted
+const LEAST = 0.003; // smallest painted pressure, relative to the largest
 const AGAIN = 1500, TIMES = 20; // ms
 
 export async function showSolid(place) {
@@ -24,7 +24,7 @@ export async function showSolid(place) {
   }
 }
 
-// The file; while it is still being made (202), it is asked for again.
+// Return the file; request it again while it is still being created (202).
 async function fetched(path) {
   for (let tried = 0; tried < TIMES; tried++) {
     const answer = await fetch(path, { headers: { Prefer: "wait=10" } });
@@ -32,7 +32,7 @@ async function fetched(path) {
     if (answer.status !== 202) throw new Error((await answer.json()).detail);
     await new Promise((done) => setTimeout(done, AGAIN));
   }
-  throw new Error("it takes too long to be drawn");
+  throw new Error("drawing it takes too long");
 }
 
 async function drawSolid(place, bodies) {
@@ -42,7 +42,7 @@ async function drawSolid(place, bodies) {
   await drawScene(figure, traces);
 }
 
-// Show the part in the colours of a field, whose file, range and unit an option of a choice names; or plain again.
+// Show the part in the colours of a field, with the file, range and unit in the chosen option; or plain again.
 export async function colourBy(place, { value, dataset }) {
   place.setAttribute("aria-busy", "true");
   try {
@@ -59,7 +59,7 @@ function tellSize(place) {
   place.append(caption);
 }
 
-// Paint the film pressure on the bore, its load towards +y; or take it away.
+// Paint the film pressure on the bore, with the load towards +y; or remove it.
 export async function paint(place, picture, values, wanted) {
   const Plotly = await plotly();
   const figure = place.querySelector(".js-plotly-plot");
@@ -69,11 +69,11 @@ export async function paint(place, picture, values, wanted) {
   showColours(place);
   if (!wanted) return;
   const field = await pressureOf(picture, values), { pressure, maximum_pressure: most } = await pressureOf(picture, values, units());
-  const radius = 0.497 * field.bearing_diameter.value; // mm, as the solid
+  const radius = 0.497 * field.bearing_diameter.value; // in mm, as in the solid
   const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
   const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
   const rows = field.place.value, least = LEAST * field.maximum_pressure.value;
-  const lowest = figure.data.reduce((low, { y }) => y.reduce((one, other) => Math.min(one, other), low), Infinity); // of a half shell: 0
+  const lowest = figure.data.reduce((low, { y }) => y.reduce((one, other) => Math.min(one, other), low), Infinity); // 0 for a half shell
   const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
   const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
   const surface = {

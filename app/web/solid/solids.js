@@ -1,4 +1,4 @@
-// Starts the 3-D views of a page when they come into view, the choice of a field that colours them, and the switch that paints the film pressure.
+// Start the 3-D views of a page when they come into view, the choice of a field for their colours, and the switch for the film pressure.
 import { isolated } from "../shared/isolated.js";
 import { whenSeen } from "../plots/pictures.js";
 
@@ -23,7 +23,7 @@ export function startSolids(stepsNow) {
   }
 }
 
-// Act on each change of a control, one after the other, once the part is shown; also if it was used before this script came.
+// Act on each change of a control, one after another, once the part is shown; also on changes made before this script loaded.
 function obey(control, shown, trouble, act) {
   if (!control) return;
   let last = shown;
@@ -34,7 +34,7 @@ function obey(control, shown, trouble, act) {
   if (control.checked || control.selectedIndex > 0) next();
 }
 
-// Say what went wrong, below a control.
+// Show an error below a control.
 function tell(control, words) {
   const line = control.closest("p"), said = line.querySelector("[data-said]") ?? line.appendChild(Object.assign(document.createElement("span"), { role: "alert" }));
   said.dataset.said = "";

@@ -33,7 +33,7 @@ WIDER = 5.0
 
 @dataclass(frozen=True)
 class Wider:
-    """Bounds farther apart, and the address of the question between them."""
+    """Bounds farther apart, and the address of the page with these bounds."""
 
     low: str
     high: str
@@ -48,17 +48,17 @@ class SolveForm:
 
     @classmethod
     def of(cls, request: Request) -> SolveForm:
-        """Return the question in the address."""
+        """Return the form with the texts in the address."""
         return cls({name: request.query_params.get(name, "").strip()[:200] for name in FIELDS})
 
     @property
     def is_whole(self) -> bool:
-        """Return whether everything is given that an answer needs."""
+        """Return whether the form has everything that an answer needs."""
         is_paired = bool(self.typed["other"]) == bool(self.typed["other_value"])
         return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
 
     def body(self) -> dict[str, object]:
-        """Return the question as a request body."""
+        """Return the form as a request body."""
         typed = self.typed
         body: dict[str, object] = {
             "unknown": typed["unknown"],
@@ -70,7 +70,7 @@ class SolveForm:
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
 
     def wider(self) -> Wider | None:
-        """Return the same question with wider bounds, if they can be multiplied."""
+        """Return the form with wider bounds, if the bounds can be multiplied."""
         low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
         query = urlencode({**self.typed, "low": low, "high": high})
         return Wider(low, high, query) if low and high else None
@@ -81,7 +81,7 @@ class SolveForm:
 
 
 async def solve_page(request: Request, services: PageServices, id: str) -> Response:
-    """Return the form, and the answer once the form is filled in."""
+    """Return the form, with the answer once the form is filled in."""
     design = await services.run(services.designs.show, id)
     network = await services.run(services.designs.network, id)
     places = varied(design, network)
@@ -115,7 +115,7 @@ async def solve_page(request: Request, services: PageServices, id: str) -> Respo
 async def _solved(
     request: Request, services: PageServices, id: str, question: SolveForm
 ) -> AnswerOrJob[DesignSolution]:
-    """Return the solution, or the job that calculates it where the page does not wait so long."""
+    """Return the solution, or the job that calculates it if the page does not wait so long."""
     body = services.read(SolveDesignIn, question.body())
     wanted = questions.DesignQuestion(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
@@ -125,7 +125,7 @@ async def _solved(
 
 
 def _drawing(solution: DesignSolution) -> Drawing:
-    """Return the curve of an answer with the solutions marked."""
+    """Return the drawing of an answer's curve with its solutions."""
     target = solution.target
     return Drawing(
         solution.unknown,
@@ -141,7 +141,7 @@ def _drawing(solution: DesignSolution) -> Drawing:
 
 
 def _level(curve: TracedCurve, levels: Mapping[str, str | None], others: Mapping[str, str | None]) -> str:
-    """Return the level of a curve, with those other steps whose level differs from the other curve."""
+    """Return the level of a curve, and the steps whose levels differ from those of the other curve."""
     apart = {step: level for step, level in levels.items() if others and others.get(step) != level}
     if len(apart) < 2 and curve.level in apart.values():
         return in_words(curve.level)
@@ -149,7 +149,7 @@ def _level(curve: TracedCurve, levels: Mapping[str, str | None], others: Mapping
 
 
 def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
-    """Return half and twice the present value as bounds, where a value was chosen and no bound is given."""
+    """Return the form; if a value was chosen without bounds, with half and twice that value as bounds."""
     chosen = next((place for place in places if place.name == asked.typed["unknown"]), None)
     if chosen is None or asked.typed["low"] or asked.typed["high"]:
         return asked
@@ -158,7 +158,7 @@ def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
 
 
 def _number(text: str) -> float | str:
-    """Return a number as typed; the interface reports a text that is not a number."""
+    """Return a typed number; the interface reports a text that is not a number."""
     try:
         return float(text)
     except ValueError:
@@ -170,7 +170,7 @@ COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
 def _words(root: DesignRoot, name: str) -> str:
-    """Return the verdict of a criterion at a root in words, with any unknown error."""
+    """Return the verdict of a criterion at a root in words, and whether its error is unknown."""
     words = WORDS[root.verdicts[name]]
     return f"{words}; {UNKNOWN}" if name in root.error_unknown else words
 
@@ -185,7 +185,7 @@ def _counted(root: DesignRoot) -> str:
 
 @dataclass(frozen=True)
 class SavedRoot(ShownRoot):
-    """A root of a design, and the field of the design's form that takes it."""
+    """A root of a design, and the field of the design's form that receives it."""
 
     open: list[tuple[str, str, str]]  # criteria that are not met or undecided, with verdict and its words
     rest: str  # how many are met, and not checked
@@ -194,7 +194,7 @@ class SavedRoot(ShownRoot):
 
 
 def _control(name: str) -> str:
-    """Return the field of the design's form for a place."""
+    """Return the field of the design's form for a name."""
     return name if "." in name else f".{name}"
 
 

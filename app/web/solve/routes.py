@@ -14,11 +14,11 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/templates/{id}/{version}/solve")
 async def solve_template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Show the values of one input that give a wanted output; the address holds question and inputs."""
+    """Return the page that solves a template for one input; the address holds the request and the inputs."""
     return await template_solve_page(request, services, id, version)
 
 
 @router.get("/designs/{id}/solve")
 async def solve(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Show the values of one parameter that give a wanted output; the address holds the question."""
+    """Return the page that solves a design for one parameter; the address contains the request."""
     return await solve_page(request, services, id)

@@ -22,7 +22,7 @@ Kind = TypeVar("Kind")
 
 @dataclass(frozen=True)
 class ShownRoot:
-    """A root as a page lists it."""
+    """A root as a list on the page shows it."""
 
     text: str  # as it is typed
     shown: str
@@ -44,14 +44,14 @@ class ShownRoot:
 
 @dataclass(frozen=True)
 class Drawing:
-    """The curves between two bounds, the value that is wanted, in their unit, and what gives it."""
+    """The curves between two bounds, the wanted value in their unit, and the solutions."""
 
     unknown: str
     target: str
     wanted: float
     curve: TracedCurve
     finer: Sequence[TracedCurve]
-    roots: Sequence[Root]  # and extrema that touch
+    roots: Sequence[Root]  # including extrema that touch the target
     jumps: Sequence[Jump]
     level: str  # of the curve that was searched, in words; empty without levels
     finer_levels: Sequence[str]
@@ -100,7 +100,7 @@ def in_words(level: str | None) -> str:
 
 
 def _series(name: str, curve: TracedCurve, *, is_sparse: bool = False) -> Series:
-    """Return a curve as a line, or as points where it has few."""
+    """Return a curve as a line, or as points if it has only a few."""
     x = [float(value) for value in curve.x.value]
     y = [None if value is None else float(value) for value in _list(curve.y.value)]
     return Series(name, x, y, marked=is_sparse, joined=not is_sparse)
@@ -125,10 +125,10 @@ def _list(value: object) -> list[float | None]:
 
 @dataclass(frozen=True)
 class Reply(Generic[Kind]):
-    """The reply to a question: an answer, a job that makes it, or faults."""
+    """The reply to a request: an answer, a job that computes it, or faults."""
 
     answer: Kind | None = None
-    job: str = ""  # that still makes the answer
+    job: str = ""  # the job that is still computing the answer
     refusal: Refused | None = None
 
     @property
@@ -138,12 +138,12 @@ class Reply(Generic[Kind]):
 
 
 async def replied(answer: Awaitable[AnswerOrJob[Kind]]) -> Reply[Kind]:
-    """Return the reply to a question.
+    """Return the reply to a request.
 
     Raises
     ------
     Refused
-        For any error except a faulty question.
+        For any error except faults of the request itself.
     """
     try:
         answered = await answer

@@ -28,31 +28,31 @@ from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit
 
 FIELDS = ("unknown", "low", "high", "output", "value")
-MARK = "?"  # before the names of these fields in the address: no input is called so
+MARK = "?"  # prefix of these fields in the address; no input name has it
 JOB = f"{MARK}job"
 
 
 @dataclass(frozen=True)
 class Question:
-    """The texts of the form, and the inputs that came with it from the template's page."""
+    """The texts of the form, and the inputs taken over from the template's page."""
 
     typed: Mapping[str, str]  # by field
-    inputs: Mapping[str, str]  # and options, by control of the template's form; empty: the example
+    inputs: Mapping[str, str]  # inputs and options, by control of the template's form; empty: the example
 
     @classmethod
     def of(cls, request: Request) -> Question:
-        """Return the question in the address."""
+        """Return the form with the texts in the address."""
         query = typed_in(request)
         inputs = {name: text for name, text in query.items() if not name.startswith(MARK)}
         return cls({name: query.get(f"{MARK}{name}", "").strip()[:200] for name in FIELDS}, inputs)
 
     @property
     def is_whole(self) -> bool:
-        """Return whether everything is given that an answer needs."""
+        """Return whether the form has everything that an answer needs."""
         return all(self.typed.values())
 
     def body(self, template: Template) -> dict[str, object]:
-        """Return the question as a request body."""
+        """Return the form as a request body."""
         typed, (inputs, options) = self.typed, self._given(template)
         return {
             "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
@@ -72,7 +72,7 @@ class Question:
         return inputs, options
 
     def with_bounds(self, places: list[PlaceOption]) -> Question:
-        """Return half and twice the present value as bounds, where an input is chosen without bounds."""
+        """Return the form; if an input was chosen without bounds, with half and twice its value as bounds."""
         chosen = next((place for place in places if place.name == self.typed["unknown"]), None)
         if chosen is None or self.typed["low"] or self.typed["high"]:
             return self
@@ -80,18 +80,18 @@ class Question:
         return Question({**self.typed, "low": low, "high": high}, self.inputs)
 
     def address(self, **more: str) -> str:
-        """Return the query of this page for the same question."""
+        """Return the query of this page for the same request."""
         marked = {f"{MARK}{name}": text for name, text in self.typed.items()}
         return urlencode({**self.inputs, **marked, **more})
 
     def tried_with(self, template: Template, value: str) -> str:
-        """Return the query of the template's page with a value of the unknown."""
+        """Return the query of the template's page with a given value of the unknown."""
         inputs = self.inputs or self.present(template)
         return urlencode({**inputs, self.typed["unknown"]: value})
 
 
 async def template_solve_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """Return the form, and the answer once the form is filled in."""
+    """Return the form, with the answer once the form is filled in."""
     template = await services.run(show_template, id, version, services.catalogues)
     question, job = Question.of(request), request.query_params.get(JOB, "")
     places = list(_varied(template, question.present(template)))
@@ -122,7 +122,7 @@ async def template_solve_page(request: Request, services: PageServices, id: str,
 
 
 async def _solved(services: PageServices, template: Template, question: Question) -> AnswerOrJob[Solution]:
-    """Return the solution, or the job that calculates it where the page does not wait so long."""
+    """Return the solution, or the job that calculates it if the page does not wait so long."""
     body = services.read(SolveIn, question.body(template))
     asked = TemplateQuestion(template.id, template.version, "solve", body)
     return await calculated(services, asked, _seconds, Solution, PATIENCE)
@@ -134,14 +134,14 @@ def _seconds(cls: type[language.Template], body: SolveIn) -> float:
 
 
 def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:
-    """Yield the inputs with a single quantity."""
+    """Yield the inputs that have a single quantity."""
     for name, declared in properties(template.inputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "", present.get(name, ""))
 
 
 def _outputs(template: Template) -> Iterator[PlaceOption]:
-    """Yield the outputs that are one quantity."""
+    """Yield the outputs that are a single quantity."""
     for name, declared in properties(template.outputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "")
@@ -152,7 +152,7 @@ def _is_single(declared: DeclaredValue) -> bool:
 
 
 def _drawing(question: Question, solution: Solution) -> Drawing | None:
-    """Return the curve of an answer; answers of earlier program versions have none."""
+    """Return the drawing of an answer's curve; answers of earlier program versions have none."""
     curve = solution.curve
     if curve is None or curve.y.unit is None:
         return None

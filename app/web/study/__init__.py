@@ -1,1 +1,1 @@
-"""The pages of a study and of its form."""
+"""The page of a study, and the form for a new one."""

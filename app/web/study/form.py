@@ -1,4 +1,4 @@
-"""The form of a new study: varied values, method, and wanted results."""
+"""The form for a new study: varied values, method, and wanted results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LINES = 4
 METHODS = {
     "grid": "every combination of evenly spaced values (sweeps, contours)",
     "sample": "rows spread over all intervals (histograms, parallel coordinates)",
-    "sensitivity": "how much each input moves each output",
+    "sensitivity": "how much each input affects each output",
     "optimise": "the best row that meets the criteria",
 }
 POINTS = "1024"
@@ -47,12 +47,12 @@ class StudyForm:
         return self.fields.get(name, default)
 
     def wrong(self, *names: str) -> list[str]:
-        """Return the faults of these members of a study, or of parts of them."""
+        """Return the faults of these members of a study, or of their parts."""
         heads = tuple(f"{name}." for name in names if name)
         return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
 
     def wrong_in(self, line: int) -> list[str]:
-        """Return the faults of the place that a line varies."""
+        """Return the faults of the varied value in a line."""
         place = self.text(f"place.{line}")
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
@@ -61,7 +61,7 @@ class StudyForm:
         return self.fields.get(name) == ON
 
     def ticked(self, group: str) -> list[str]:
-        """Return the names of the boxes of a group that are ticked."""
+        """Return the names of the ticked boxes in a group."""
         head = f"{group}."
         return [name.removeprefix(head) for name in self.fields if name.startswith(head) and self.is_on(name)]
 
@@ -82,7 +82,7 @@ class StudyForm:
         return body | self._of_method(method)
 
     def _vary(self) -> dict[str, JsonValue]:
-        """Return the values of each place: a list, or two bounds."""
+        """Return the values of each varied quantity: a list, or two bounds."""
         vary: dict[str, JsonValue] = {}
         for line in range(LINES):
             place, values = self.text(f"place.{line}"), self.text(f"values.{line}").strip()
@@ -115,7 +115,7 @@ class StudyForm:
         return {}
 
     def with_bounds(self, bounds: Mapping[str, tuple[str, str]]) -> StudyForm:
-        """Return half and twice the present value as bounds where only a place was chosen."""
+        """Return the form; a quantity without bounds gets half and twice its present value as bounds."""
         filled = dict(self.fields)
         for line in range(LINES):
             ends = (f"low.{line}", f"high.{line}")
@@ -139,7 +139,7 @@ class StudyForm:
 
 
 def _whole(text: str) -> JsonValue:
-    """Return a whole number; other texts are passed on, for the interface to report."""
+    """Return a text as a whole number; other texts are passed on, so that the interface reports them."""
     return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
 
 
@@ -189,7 +189,7 @@ async def study_form(
 async def _governing(services: PageServices, design: Design) -> str:
     """Return the governing variant of a design, which a study of the design itself does not calculate.
 
-    It is empty if the design itself governs.
+    The result is empty if the design itself governs.
     """
     if not design.variants:
         return ""
@@ -205,14 +205,14 @@ def has_limit(criterion: Criterion) -> bool:
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """Return the outputs named by criteria with limits, which a study keeps by default."""
+    """Return the outputs in criteria with limits, which a study keeps by default."""
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
 
 
 def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
-    """Return outputs by their steps, in the order of the design."""
+    """Return outputs by step, in the order of the design."""
     groups: dict[str, list[NetworkName]] = {}
     for name in named:
         groups.setdefault(Reference.parse(name.name).block, []).append(name)
@@ -220,12 +220,12 @@ def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
 
 
 def _words(criterion: str, require: str) -> set[str]:
-    """Return the names in a criterion, with the step in front where it belongs to a template."""
+    """Return the names in a criterion, with the step in front if it belongs to a template."""
     name = Reference.parse(criterion)
     bare = require.replace(">=", " ").replace("<=", " ").split()
     return {f"{name.block}.{word}" if name.output else word for word in bare}
 
 
 def again(typed: Mapping[str, str], refused: Refused) -> StudyForm:
-    """Return the same texts, with the faults for which they were refused."""
+    """Return a form with the same texts, and the faults for which they were refused."""
     return StudyForm(typed, refused.faults, None if refused.faults else refused.problem.detail)

@@ -1,7 +1,7 @@
-// The form of a new study: bounds are suggested for the place that is chosen, each method shows its own fields, and
-// what the study takes is estimated while the form is filled in.
+// The form for a new study: it suggests bounds for the chosen quantity, shows the fields of the chosen method, and
+// estimates the time of the study while the user fills it in.
 const form = document.querySelector("[data-new-study]"), estimate = form.querySelector("[data-estimate]");
-const PAUSE = 500; // after the last change, before the estimate is asked for [ms]
+const PAUSE = 500; // pause after the last change before the estimate is requested [ms]
 
 for (const line of form.querySelectorAll("[data-vary]")) {
   const choice = line.querySelector("select"), [low, high] = ["low", "high"].map((end) => line.querySelector(`[name^="${end}."]`));
@@ -14,7 +14,7 @@ for (const line of form.querySelectorAll("[data-vary]")) {
   showRelation(line);
 }
 
-// What is set aside if a value that a relation sets is varied, and what could be varied instead.
+// Name the relation that is ignored if its value is varied, and the values that could be varied instead.
 function showRelation(line) {
   const choice = line.querySelector("select"), words = line.querySelector("[data-aside]");
   const { relation, instead = "" } = choice.selectedOptions[0].dataset;
@@ -58,7 +58,7 @@ async function ask() {
   }
 }
 
-// Of many outputs those whose name or words hold all that is typed; a ticked one stays in sight.
+// Show only the outputs whose name or words contain the typed text; ticked outputs stay visible.
 const MANY = 12, more = form.querySelector("[data-more]"), boxes = [...more.querySelectorAll("[data-words]")];
 const narrow = more.querySelector("[data-narrow]"), typed = narrow.querySelector("input");
 narrow.hidden = boxes.length <= MANY;
@@ -69,10 +69,10 @@ typed.addEventListener("input", () => {
   more.querySelector("[data-narrowed]").textContent = `${boxes.filter((box) => !box.hidden).length} of ${boxes.length}`;
 });
 typed.addEventListener("keydown", (event) => {
-  if (event.key === "Enter") event.preventDefault(); // it filters; it does not start the study
+  if (event.key === "Enter") event.preventDefault(); // Enter must not start the study
 });
 
-form.querySelector("[data-ask]").hidden = true; // it is asked for by itself
+form.querySelector("[data-ask]").hidden = true; // the estimate is requested automatically
 form.addEventListener("change", () => {
   showOwn();
   askSoon();

@@ -22,7 +22,7 @@ UNFINISHED = ("queued", "running")
 
 
 class Rows(BaseModel):
-    """The rows of a study that are wanted, as the interface takes it."""
+    """The requested rows of a study, as the interface accepts the request."""
 
     where: Fits = None
     sort: Sort = None
@@ -32,7 +32,7 @@ class Rows(BaseModel):
 async def study_page(
     request: Request, services: PageServices, id: str, notice: str | None = None
 ) -> Response:
-    """Return a study, and the first of its rows."""
+    """Return the page of a study with the first of its rows."""
     units = units_of(request)
     study = await services.run(show_study, id, services.studies, units)
     design = await services.run(services.designs.show, study.design)
@@ -62,7 +62,7 @@ async def study_page(
 
 
 async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
-    """Return the criteria of a study from its revision; none if it does not store them."""
+    """Return the criteria of a study from its revision; empty if the revision does not store them."""
     if not study.criteria:
         return []
     try:
@@ -86,7 +86,7 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
 
 
 def _sides(one: Criterion) -> tuple[str, str]:
-    """Return the output that a criterion judges, with its step in front, and the text of its limit."""
+    """Return the output that a criterion judges, with its step in front, and the text of the limit."""
     left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
     name = Reference.parse(one.name)
     return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right
@@ -109,7 +109,7 @@ async def studies_of(services: PageServices, design: str) -> list[Study]:
 
 @dataclass(frozen=True)
 class IndexLine:
-    """The influence of a place on an output, as the page lists and draws it."""
+    """The influence of a varied quantity on an output, for the list and the chart."""
 
     place: str
     cells: list[str]
@@ -120,7 +120,7 @@ class IndexLine:
 
 @dataclass(frozen=True)
 class IndexTable:
-    """The indices of one output, the largest first."""
+    """The sensitivity indices of one output, largest first."""
 
     output: str
     heads: list[str]
@@ -128,7 +128,7 @@ class IndexTable:
     lines: list[IndexLine]
 
     def parts(self) -> list[dict[str, object]]:
-        """Return the bars of its tornado."""
+        """Return the bars of the output's tornado chart."""
         return [
             {"name": line.place, "value": line.value}
             | ({} if line.low is None else {"low": line.low, "high": line.high})
@@ -176,5 +176,5 @@ def _plain(value: float | None) -> str:
 
 
 def values_of(best: Best) -> list[tuple[str, str]]:
-    """Return the places and outputs of a row, as texts."""
+    """Return the varied values and outputs of a row, as texts."""
     return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

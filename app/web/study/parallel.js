@@ -1,11 +1,11 @@
-// Parallel coordinates of a study: one line a row over upright axes. A drag along an axis keeps its rows only.
+// Parallel coordinates of a study: one line for each row, over vertical axes. Dragging along an axis selects its rows.
 //
-// Plotly's own needs code that is node while it runs, which the pages' policy forbids.
+// Plotly's own chart generates code at run time, which the pages' security policy forbids.
 import { plain, unit } from "../shared/numbers.js";
 
 const SVG = "http://www.w3.org/2000/svg", WIDTH = 900, HEIGHT = 320, TOP = 46, BOTTOM = 26, SIDE = 60, MOST_LINES = 2000;
 
-// `names` are the columns; `pick` is called with the row of a line that is clicked, `kept` with the number of rows kept.
+// `names` are the columns; `pick` receives the row of a clicked line, `kept` the number of selected rows.
 export function drawParallel(place, table, names, { pick, kept }) {
   const axes = names.map((name, n) => axisOf(table.columns[name], name, SIDE + (n * (WIDTH - 2 * SIDE)) / Math.max(1, names.length - 1)));
   const drawing = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "parallel", role: "img", "aria-label": `${table.rows.length} rows over ${names.join(", ")}` });
@@ -34,7 +34,7 @@ function axisOf({ values, unit: symbol }, name, x) {
 const share = ({ low, high }, value) => (high > low ? (value - low) / (high - low) : 0.5);
 const heightOf = (axis, value) => TOP + (1 - share(axis, value)) * (HEIGHT - TOP - BOTTOM);
 
-// A row that is refused has no value on some axis: its line ends there.
+// A refused row has no value on some axis, where its line ends.
 function pathOf(axes, row) {
   let pieces = "", isDown = false;
   for (const axis of axes) {

@@ -21,33 +21,33 @@ ILL_NAMED, STALE = 422, 412
 
 @router.get("/designs/{id}/studies/new")
 async def new_study(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Return the form of a new study."""
+    """Return the form for a new study."""
     return await study_form(request, services, id, StudyForm(dict(request.query_params)))
 
 
 @router.get("/designs/{id}/studies/estimate")
 @router.get("/designs/{id}/studies")
 async def after_a_new_study(id: Id) -> Response:
-    """Return the form of a new study; a refused form is shown at the address to which it was sent."""
+    """Return the form for a new study; a refused form is shown at the address to which it was sent."""
     return go(f"/designs/{id}/studies/new")
 
 
 @router.get("/studies/{id}")
 async def study(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Show a study: its progress and results."""
+    """Return the page of a study: its progress and results."""
     return await study_page(request, services, id)
 
 
 @router.get("/studies/{id}/choose")
 @router.get("/studies/{id}/cancel")
 async def after_a_form(id: Id) -> Response:
-    """Show the study; a refused form is shown at the address to which it was sent."""
+    """Return the page of the study; a refused form is shown at the address to which it was sent."""
     return go(f"/studies/{id}")
 
 
 @forms.post("/designs/{id}/studies")
 async def start(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Start a study and show it; if it is refused, return the form with the faults."""
+    """Start a study and redirect to it; if it is refused, return the form with the faults."""
     typed = await fields(request)
     try:
         body = services.read(StudyIn, StudyForm(typed).body(id))
@@ -61,9 +61,9 @@ async def start(id: Id, request: Request, services: ThePageServices) -> Response
 
 @forms.post("/designs/{id}/studies/estimate")
 async def estimate(id: Id, request: Request, services: ThePageServices, part: bool = False) -> Response:
-    """Show the cost of a new study above its form.
+    """Return the form for a new study with its estimated cost.
 
-    With `part`, only this part, for the script of the form.
+    With `part`, return only the estimate, for the script of the form.
     """
     typed = await fields(request)
     estimated, faulty, status = None, StudyForm(typed), 200

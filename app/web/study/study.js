@@ -1,4 +1,4 @@
-// The page of a study: follows its job, draws its rows with the chosen axes, and takes the row that is clicked.
+// The page of a study: follow its job, draw its rows with the chosen axes, and select the clicked row.
 import { call, units } from "../shared/api.js";
 import { plain, unit } from "../shared/numbers.js";
 import { drawParallel } from "./parallel.js";
@@ -48,7 +48,7 @@ async function startCharts(section) {
   await redraw();
 }
 
-// All rows that have values, as far as a chart can show them.
+// Return all rows with values, up to the number that a chart can show.
 async function tableOf(section) {
   const names = [...JSON.parse(section.dataset.varied), ...JSON.parse(section.dataset.outputs)], symbols = JSON.parse(section.dataset.unitsOf);
   const columns = Object.fromEntries(names.map((name) => [name, { unit: symbols[name], values: [] }])), rows = [], verdicts = [], each = [];
@@ -66,12 +66,12 @@ async function tableOf(section) {
   return { rows, verdicts, each, columns, isWhole: !cursor };
 }
 
-// The table with the verdicts of one criterion in the place of the worst of all, if one is named.
+// Return the table with the verdicts of a chosen criterion instead of the worst verdict of each row.
 function judgedBy(table, criterion) {
   return criterion ? { ...table, verdicts: table.each.map((verdicts) => verdicts?.[criterion]) } : table;
 }
 
-// The first output that is not the same in all rows.
+// Return the first output that is not the same in all rows.
 function firstThatVaries(table, outputs) {
   return outputs.find((name) => new Set(table.columns[name].values).size > 1);
 }
@@ -91,7 +91,7 @@ async function draw(section, table, kind, x, y, z) {
   }
   if (kind === "histogram") {
     const limits = JSON.parse(section.dataset.limits)[x] ?? [];
-    words.textContent = `How many rows have which value${limits.length ? "; dashed: the limit of a criterion" : ""}${rest}.`;
+    words.textContent = `Number of rows by value${limits.length ? "; dashed: the limit of a criterion" : ""}${rest}.`;
     return drawHistogram(place, table, x, limits);
   }
   if (kind === "contour" && isGrid(table, [x, y])) return drawContour(place, table, x, y, z, pick);
@@ -99,7 +99,7 @@ async function draw(section, table, kind, x, y, z) {
   return drawScatter(place, table, x, y, pick);
 }
 
-// A drawing without what another chart left in it.
+// Return the drawing area, cleared of a previous chart.
 function fresh(section) {
   const old = section.querySelector("[data-drawing]"), drawing = old.cloneNode(false);
   old.replaceWith(drawing);

@@ -9,7 +9,7 @@ const WORDS = { met: "met", undecided: "undecided", not_checked: "not checked", 
 
 export const axisTitle = (table, name) => `${name}${unit(table.columns[name].unit) ? ` [${unit(table.columns[name].unit)}]` : ""}`;
 
-// One mark a row, coloured by its worst verdict; `pick` is called with the row that is clicked.
+// Draw one mark for each row, coloured by its worst verdict; `pick` receives the clicked row.
 export async function drawScatter(place, table, x, y, pick) {
   const traces = groups(table).map(([verdict, rows]) => ({
     type: "scatter", mode: "markers", name: WORDS[verdict] ?? "no criteria", customdata: rows.map((row) => table.rows[row]),
@@ -20,7 +20,7 @@ export async function drawScatter(place, table, x, y, pick) {
   picked(place, pick);
 }
 
-// An output over two inputs of a grid, with the rows that meet every criterion marked.
+// Draw an output over two inputs of a grid, and mark the rows that meet every criterion.
 export async function drawContour(place, table, x, y, z, pick) {
   const across = distinct(table.columns[x].values), upright = distinct(table.columns[y].values);
   const cells = upright.map(() => across.map(() => null)), worst = upright.map(() => across.map(() => null));
@@ -38,14 +38,14 @@ export async function drawContour(place, table, x, y, z, pick) {
   picked(place, pick && ((_, point) => pick(rowAt(table, x, y, point))));
 }
 
-// How often an output has which value; the limit of a criterion is a line.
+// Draw the histogram of an output; the limit of a criterion is a line.
 export async function drawHistogram(place, table, name, limits = []) {
   const shapes = limits.map((limit) => ({ type: "line", x0: limit, x1: limit, y0: 0, y1: 1, yref: "paper", line: { color: TONES.not_met, width: 2, dash: "dash" } }));
   const title = { text: axisTitle(table, name) };
   await draw(place, [{ type: "histogram", x: table.columns[name].values, marker: { color: COLOURS[0] } }], { height: 300, shapes, bargap: 0.05, xaxis: { title }, yaxis: { title: { text: "rows" } } });
 }
 
-// How much each input moves an output: bars, the largest on top. `parts` are `{ name, value, low?, high? }`.
+// Draw the effect of each input on an output as bars, largest on top. `parts` are `{ name, value, low?, high? }`.
 export async function drawTornado(place, parts, words) {
   const sorted = [...parts].sort((a, b) => Math.abs(a.value) - Math.abs(b.value));
   const spread = sorted.map(({ value, low, high }) => [high === undefined ? 0 : high - value, low === undefined ? 0 : value - low]);
@@ -61,7 +61,7 @@ function axes(table, x, y) {
   return { xaxis: { title: { text: axisTitle(table, x) } }, yaxis: { title: { text: axisTitle(table, y) } }, hovermode: "closest" };
 }
 
-// The rows of each verdict.
+// Return the rows of each verdict.
 function groups(table) {
   const rows = new Map();
   table.verdicts.forEach((verdict, row) => {
@@ -78,7 +78,7 @@ function rowAt(table, x, y, point) {
   return table.rows[row];
 }
 
-// A drawing that another one replaced while Plotly was loading hears no clicks.
+// A drawing that was replaced while Plotly was loading receives no clicks.
 function picked(place, pick) {
   place.removeAllListeners?.("plotly_click");
   if (pick) place.on?.("plotly_click", ({ points }) => pick(points[0].customdata, points[0]));

@@ -1,1 +1,1 @@
-"""The page of a template, with a form to try it."""
+"""The page of a template, with a form to evaluate it."""

@@ -1,4 +1,4 @@
-"""A table of a template's levels: cost and measured errors."""
+"""Prepare the table of a template's levels: cost and measured errors."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pydantic import BaseModel, JsonValue
 
 from app.catalogue.schemas.templates import Accuracy
 
-SHOWN = 6  # outputs; all are in the answer of the interface
+SHOWN = 6  # number of outputs shown; the interface returns all
 
 
 class Level(NamedTuple):
-    """One level: milliseconds of one point, microseconds of a point among many, errors by output."""
+    """One level: milliseconds for one point, microseconds for a point among many, errors by output."""
 
     name: str
     single: float | None
@@ -23,28 +23,28 @@ class Level(NamedTuple):
 
 
 class Table(NamedTuple):
-    """All levels, and the outputs that are shown of them."""
+    """All levels, and the outputs whose errors are shown."""
 
     levels: list[Level]
     outputs: list[str]
 
 
 class _Cost(BaseModel):
-    """Seconds of one point, and of a point among many."""
+    """The seconds for one point, and for a point among many."""
 
     single: float | None = None
     vectorised: float | None = None
 
 
 class _MeasuredErrors(BaseModel):
-    """The measured errors of one level by output, of every cell of the plane."""
+    """The measured errors of one level by output, for every cell of the plane."""
 
     cost: _Cost | None = None
     errors: dict[str, JsonValue]
 
 
 def table(measured: Accuracy) -> Table:
-    """Return the levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
+    """Return the levels in an answer of `GET …/accuracy`, with the outputs that were measured."""
     levels = [_level(name, _MeasuredErrors.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])

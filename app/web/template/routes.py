@@ -1,4 +1,4 @@
-"""A template's page: its description, and a form to try it."""
+"""A template's page: its description, and a form to evaluate it."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from app.web.shared.services import PageServices, Refused, ThePageServices
 from app.web.template.accuracy import table
 from templates.core.language import template as language
 
-ABOUT = {"units"}  # of the address, beside the inputs
-PATIENCE = 2.0  # time that the page waits for an answer [s]; it shows how the rest goes on
+ABOUT = {"units"}  # query fields besides the inputs
+PATIENCE = 2.0  # longest wait of the page for an answer [s]; then it shows the progress
 
 
 async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """Return the page, with the answer to what the address asks; to the example, where it asks nothing."""
+    """Return the page with the results for the inputs in the address, or for the example without inputs."""
     template = await services.run(show_template, id, version, services.catalogues)
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)
@@ -70,12 +70,12 @@ Values = dict[str, JsonValue]
 
 
 def typed_in(request: Request) -> dict[str, str]:
-    """Return the typed texts, by control."""
+    """Return the typed texts by control."""
     return {name: text for name, text in request.query_params.items() if name not in ABOUT}
 
 
 def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
-    """Return the inputs, the options and the limits of a calculation for what was typed."""
+    """Return the inputs, the options and the limits of a calculation from the typed texts."""
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}
     limits = limits_of(filled)
@@ -88,7 +88,7 @@ def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Val
 async def _tried(
     services: PageServices, template: Template, body: Mapping[str, JsonValue], units: System
 ) -> tuple[Worksheet | None, str, dict[str, str]]:
-    """Return the answer, or the address of the job that calculates it, or what is wrong."""
+    """Return the answer, the address of the job that calculates it, or the faults."""
     try:
         given = services.read(EvaluateIn, body)
         asked = TemplateQuestion(template.id, template.version, "worksheet", given, units)
@@ -107,7 +107,7 @@ def _seconds(cls: type[language.Template], body: EvaluateIn) -> float:
 
 
 def _empty(template: Template) -> Worksheet:
-    """Return an empty worksheet, shown while results are calculated; the page's script fills it in."""
+    """Return an empty worksheet, which the page's script fills in once results are calculated."""
     names = properties(template.outputs)
     return Worksheet(
         template=CalculatedBy(id=template.id, version=template.version),
@@ -126,12 +126,12 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/templates/{id}")
 async def newest_template(id: Id, services: ThePageServices) -> Response:
-    """Redirect to the latest version."""
+    """Redirect to the latest version of a template."""
     versions = await services.run(list_template_versions, id, services.catalogues)
     return go(f"/templates/{id}/{next(item.version for item in versions.items if item.latest)}")
 
 
 @router.get("/templates/{id}/{version}")
 async def template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
-    """Show a template with a form to try it; the address holds the typed values."""
+    """Return the page of a template with a form to evaluate it; the address contains the typed values."""
     return await template_page(request, services, id, version)

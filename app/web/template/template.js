@@ -1,4 +1,4 @@
-// A template's page while it is used: results follow what is typed; the address keeps it.
+// The script of a template's page: update the results while the user types, and keep the values in the address.
 import { drawAccuracy } from "./accuracy.js";
 import { Refused, call, units } from "../shared/api.js";
 import { calculated } from "../shared/calculation.js";
@@ -10,12 +10,12 @@ import { OUTDATED, markOutdated, showFaults, showResults } from "../shared/resul
 import { optionOf, valueOf } from "../shared/typed.js";
 import { drawnVerdict, followLinks } from "../verdict/verdict.js";
 
-const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
+const form = document.querySelector("[data-try]"); // its inputs have bare names, and one may be called `dataset`
 const path = form.getAttribute("data-try");
 const state = form.querySelector("[data-state]");
 const headline = document.querySelector("[data-headline]"), criteria = document.querySelector("[data-criteria]");
 
-const LIMIT = "limits."; // of the controls of limits, as app/web/shared/limits.py names them
+const LIMIT = "limits."; // prefix of the controls for limits, as in app/web/shared/limits.py
 
 function asked() {
   const typed = [...new FormData(form)].filter(([, text]) => text.trim());
@@ -58,16 +58,16 @@ async function showCriteria({ verdict, criteria: judged = [] }) {
 function refuse(error) {
   progress.hidden = true;
   const loose = error instanceof Refused ? showFaults(form, error.faults) : new Map();
-  const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+  const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message next to the field" : error.message);
   const hasResults = document.querySelector("[data-output]");
   markOutdated(true);
   state.replaceChildren(isolated(hasResults ? `${words}; ${OUTDATED}` : words));
 }
 
-const LONGEST_ADDRESS = 30_000; // characters; the service takes a head of 64 kB, and a reload sends the address twice
+const LONGEST_ADDRESS = 30_000; // [characters]; the service accepts a head of 64 kB, and a reload sends the address twice
 
 function keepInAddress(filled) {
-  if (new URLSearchParams(filled).toString().length > LONGEST_ADDRESS) return; // it keeps what was typed before
+  if (new URLSearchParams(filled).toString().length > LONGEST_ADDRESS) return; // the address keeps the previous values
   history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
   for (const link of document.querySelectorAll(".switch a")) {
     const chosen = new URLSearchParams(link.search).get("units");

@@ -39,12 +39,12 @@ class Line:
 
     @property
     def low(self) -> Quantity | None:
-        """Return the least value of all but 0.135 % of the products."""
+        """Return the value below which 0.135 % of the products lie."""
         return self.quantity(self.output.quantiles.get(LOW))
 
     @property
     def high(self) -> Quantity | None:
-        """Return the largest value of all but 0.135 % of the products."""
+        """Return the value above which 0.135 % of the products lie."""
         return self.quantity(self.output.quantiles.get(HIGH))
 
 
@@ -58,9 +58,9 @@ def toleranced(design: Design) -> bool:
 async def tolerances_page(
     request: Request, services: PageServices, id: str, job: str | None, *, is_part: bool
 ) -> Response:
-    """Return the analysis of the newest revision, or that of a finished job.
+    """Return the analysis of the newest revision, or of a finished job.
 
-    Alone, or as a part of the page.
+    It is returned as a page, or as a part of the design's page.
     """
     design = await services.run(services.designs.show, id)
     template = "tolerances/tolerances_part.html" if is_part else "tolerances/tolerances_page.html"
@@ -76,7 +76,7 @@ async def tolerances_page(
 async def _analysis(
     request: Request, services: PageServices, id: str, job: str | None
 ) -> tuple[ToleranceAnalysis | None, str | None]:
-    """Return the analysis, or the job that still makes it."""
+    """Return the analysis, or the job that is still computing it."""
     if job is not None:
         reply = await stored(services, job, ToleranceAnalysis)
         return reply.answer, reply.job or None
@@ -104,7 +104,7 @@ def _marks(output: OutputScatter) -> Iterator[bars.Mark]:
 
 
 def _near(one: Yield, edges: list[float]) -> bool:
-    """Return whether a limit lies so near that the histogram is not squeezed by it."""
+    """Return whether a limit is near enough to be shown without compressing the histogram."""
     assert one.limit is not None
     width = edges[-1] - edges[0]
     return edges[0] - width <= one.limit <= edges[-1] + width
@@ -121,5 +121,5 @@ async def tolerances(
     job: Annotated[str | None, Query(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = None,
     part: Annotated[str, Query(max_length=1)] = "",
 ) -> Response:
-    """Show the effects of a design's tolerances; `part` returns only the part for the design page."""
+    """Return the page on the effects of a design's tolerances; `part` returns only its main part."""
     return await tolerances_page(request, services, id, job, is_part=bool(part))

@@ -20,10 +20,10 @@ export function startTolerances(api, patch) {
     }
   };
   form.addEventListener("submit", (event) => {
-    event.preventDefault(); // without this script it opens a page of its own
+    event.preventDefault(); // without this script the form opens a separate page
     analyse();
   });
-  const { waits } = form.dataset; // early.js has kept what was asked before this script came
+  const { waits } = form.dataset; // early.js has kept requests made before this script loaded
   delete form.dataset.waits;
   if (waits === "asked") analyse();
 }

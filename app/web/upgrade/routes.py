@@ -1,4 +1,4 @@
-"""The page that upgrades a design to another version of a template: a preview, and a button that saves it."""
+"""The page that upgrades a design to another version of a template: a preview, and a button to save it."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 ILL_NAMED, STALE, MISSING = 422, 412, 404
-PATIENCE = 10  # for steps that take long [s]; what does not end by then is shown as pending
+PATIENCE = 10  # longest wait for slow steps [s]; those that take longer are shown as pending
 _ID = re.compile(r"[A-Za-z0-9_]{1,64}")
 _VERSION = re.compile(r"[1-9][0-9]{0,5}")
 
 
 class ValueChange(NamedTuple):
-    """A value that is not the same, as text."""
+    """A value that changes, as text."""
 
     name: str
     old: str
@@ -44,7 +44,7 @@ class ValueChange(NamedTuple):
 async def upgrade_page(
     id: Id, request: Request, services: ThePageServices, template: Text = "", version: Text = ""
 ) -> Response:
-    """Show the effects of the upgrade; nothing is saved."""
+    """Return the page with the effects of the upgrade; nothing is saved."""
     return await _page(request, services, id, template, version)
 
 
@@ -65,12 +65,12 @@ async def upgrade(id: Id, request: Request, services: ThePageServices) -> Respon
 
 
 def _number(template: str, version: str) -> int:
-    """Return the version that a form or an address names.
+    """Return the version in a form or an address.
 
     Raises
     ------
     Refused
-        If it names none.
+        If it is missing or not a number.
     """
     if not (_ID.fullmatch(template) and _VERSION.fullmatch(version)):
         raise Refused.because(
@@ -108,7 +108,7 @@ async def _page(
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise
-        if newer is None:  # no version at all, or a draft with faults: its own answer says which
+        if newer is None:  # no version, or a draft with faults; the error states which
             await services.run(show_template, template, number, services.catalogues)
         refused = refused or wrong
     revision = await services.run(show_revision, id, design.revision, services.database)
@@ -134,7 +134,7 @@ async def _page(
 
 
 def _moved(preview: Preview) -> list[ValueChange]:
-    """Return the outputs of both versions that are not the same."""
+    """Return the outputs of both versions that differ."""
     both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
     rows = [
         ValueChange(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()

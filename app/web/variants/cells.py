@@ -1,4 +1,4 @@
-"""The cells of the table of variants on a page, and the equivalent CSV file for the interface.
+"""Convert between the cells of the table of variants on a page, and the CSV file of the interface.
 
 A control of the page is named after the address of its cell: `cell.B3`. The page shows relations in their
 cells, after an equals sign. The file has them in separate columns, whose addresses map back to the page.
@@ -24,13 +24,13 @@ FIRST_VARIANT = 2
 
 @dataclass(frozen=True)
 class CsvFile:
-    """A table as a CSV file, and where its cells stand on the page."""
+    """A table as a CSV file, and the positions of its cells on the page."""
 
     content: bytes
-    columns: Mapping[int, int]  # of the page, by those of the file that it does not have
+    columns: Mapping[int, int]  # column of the page, by column of the file
 
     def on_page(self, fault: Fault) -> Fault:
-        """Return a fault, named by the cell of the page."""
+        """Return a fault with the cell's address on the page."""
         match = _ADDRESS.fullmatch(fault.name)
         if match is None or (column := column_of(match[1])) not in self.columns:
             return fault
@@ -38,7 +38,7 @@ class CsvFile:
 
 
 def grid_of_form(typed: Mapping[str, str]) -> Grid:
-    """Return the cells of a form; the row named by its field `drop` is emptied."""
+    """Return the cells of a form; the row in its field `drop` is emptied."""
     cells: dict[tuple[int, int], str] = {}
     for name, text in typed.items():
         match = _ADDRESS.fullmatch(name.removeprefix(CONTROL)) if name.startswith(CONTROL) else None
@@ -65,12 +65,12 @@ def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
 
 
 def _declared(grid: Grid, at: int, units: Mapping[str, str]) -> str:
-    """Return the declared unit of the place that a column names."""
+    """Return the declared unit of the value that a column is for."""
     return units.get(place_named(grid.cell(0, at), units), "")
 
 
 def csv_of(grid: Grid) -> CsvFile:
-    """Return the CSV file of a page's cells, with relations without their sign in separate columns."""
+    """Return the CSV file for a page's cells; relations are in separate columns, without equals sign."""
     related = [at for at in range(1, grid.width) if _has_relation(grid, at)]
     rows = [
         [_own(grid, row, at, related) for at in range(grid.width)]
@@ -91,12 +91,12 @@ def _is_relation(grid: Grid, row: int, at: int) -> bool:
 
 
 def _own(grid: Grid, row: int, at: int, related: Collection[int]) -> str:
-    """Return a cell of the page's own column, empty for a relation."""
+    """Return a cell for the page's own column; empty for a relation."""
     return "" if at in related and _is_relation(grid, row, at) else grid.cell(row, at)
 
 
 def _relation(grid: Grid, row: int, at: int) -> str:
-    """Return a cell of the column of relations that follows from column `at` of the page."""
+    """Return a cell for the column of relations that belongs to column `at` of the page."""
     if row == 0:
         return f"{grid.cell(0, at)} {RELATION}"
     return grid.cell(row, at).removeprefix("=").strip() if _is_relation(grid, row, at) else ""

@@ -1,4 +1,4 @@
-"""One variant of a design on its page: its verdict, and its curves, drawn by the server."""
+"""One variant of a design on its page: its verdict, and its curves, which the server draws."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WITHOUT_ANSWER = (404, 422)
 
 @dataclass(frozen=True)
 class ChosenVariant:
-    """A variant as the page shows it; without lines and plots where it is not, or cannot be, calculated."""
+    """A variant as the page shows it; without lines and plots while it is not, or cannot be, calculated."""
 
     NONE: ClassVar[ChosenVariant]
 
@@ -34,7 +34,7 @@ class ChosenVariant:
     lines: Sequence[Line] = ()
     plots: Sequence[Plot] = ()
     problem: str = ""
-    job: str = ""  # that calculates it
+    job: str = ""  # the job that calculates the variant
 
 
 ChosenVariant.NONE = ChosenVariant("")
@@ -63,7 +63,7 @@ async def chosen_variant(
 async def _calculated(
     request: Request, services: PageServices, design: Design, name: str
 ) -> AnswerOrJob[VariantDetail]:
-    """Return the variant, or the job that calculates it where the page does not wait so long."""
+    """Return the variant, or the job that calculates it if the page does not wait so long."""
     wanted = WantedVariant(design.id, name, system=units_of(request))
     answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
     return AnswerOrJob(answer, job or "")
@@ -76,7 +76,7 @@ def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:
 
 
 def _plots(detail: VariantDetail, step: StepBlock) -> list[Plot]:
-    """Return the pictures of a step with the outputs of the variant in the place of the design's own."""
+    """Return the pictures of a step, with the outputs of the variant instead of the design's own."""
     outputs = {
         name: detail.outputs.get(f"{step.name}.{name}", output)
         for name, output in step.result.outputs.items()

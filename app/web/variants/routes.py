@@ -1,7 +1,7 @@
-"""Actions of the forms of the table of variants: edited cells, a pasted table, an uploaded file.
+"""Handle the forms of the table of variants: edited cells, a pasted table, an uploaded file.
 
-Each saves a sheet, as `PUT /designs/{id}/variants` does. If the sheet is refused, the page shows the
-submitted table with a message beside each faulty cell.
+Each form saves a table, as `PUT /designs/{id}/variants` does. If the table is refused, the page shows it
+again with a message next to each faulty cell.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from app.web.variants.table import EMPTY, RefusedTable, places_of
 from templates.core.errors import InvalidInputs
 
 STALE, WRONG = 412, 422
-CHANGED = "Somebody else saved this design meanwhile: {}. Look at your table once more, then save it."
+CHANGED = "Somebody else saved this design meanwhile: {}. Check your table again, then save it."
 
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])
@@ -31,7 +31,7 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_fil
 
 @router.post("/designs/{id}/variants")
 async def save_cells(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Save the table as edited in place."""
+    """Save the table as edited on the page."""
     typed = await fields(request)
     design = await services.run(services.designs.show, id)
     network = await services.run(services.designs.network, id)
@@ -53,7 +53,7 @@ async def save_pasted(id: Id, request: Request, services: ThePageServices) -> Re
 
 @router.post("/designs/{id}/variants/file")
 async def save_file(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Save a file of a spreadsheet."""
+    """Save a table from a spreadsheet file."""
     parts = await parts_of(request)
     content = parts["file"].content if "file" in parts else b""
     revision = parts["revision"].text if "revision" in parts else ""
@@ -63,7 +63,7 @@ async def save_file(id: Id, request: Request, services: ThePageServices) -> Resp
 
 
 class _Upload:
-    """A sheet, its kind, and the revision on which it is based."""
+    """A table, its file type, and the revision on which it is based."""
 
     def __init__(self, content: bytes, kind: Kind, revision: str) -> None:
         self.content, self.kind, self.tag = content, kind, tag_of(revision)
@@ -77,7 +77,7 @@ async def _saved(
     grid: Grid | None = None,
     file: CsvFile | None = None,
 ) -> Response:
-    """Return the design's page after a save, or with the table that was refused."""
+    """Return the design's page after a save, or with the refused table."""
     try:
         await services.save(
             save_sheet, services.designs, id, upload.content, upload.kind, upload.tag, services.once
@@ -96,7 +96,7 @@ def _by_name(errors: list[Fault]) -> dict[str, str]:
 
 
 def _cells(upload: _Upload) -> Grid:
-    """Return the cells of a refused file, as far as they can be shown."""
+    """Return the cells of a refused file, if they can be shown."""
     try:
         return read_sheet(upload.content, upload.kind)
     except InvalidInputs:

@@ -26,7 +26,7 @@ EMPTY = Grid((("variant",), ("unit",)))
 
 @dataclass(frozen=True)
 class RefusedTable:
-    """A table that was not saved: its cells as typed, and their faults by address."""
+    """A table that was refused: its cells as typed, and their faults by address."""
 
     grid: Grid
     faults: Mapping[str, str]
@@ -50,7 +50,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Head:
-    """Heading and unit of a column; a heading can be typed in a new column, or where it is wrong."""
+    """The heading and unit of a column; it is editable in a new column, or if it is wrong."""
 
     name: Cell
     words: str
@@ -60,7 +60,7 @@ class Head:
 
 @dataclass(frozen=True)
 class Files:
-    """A model of a variant: where its files are, or why there are none."""
+    """A model of a variant: the addresses of its files, or why there are none."""
 
     model: str
     step: str | None
@@ -70,7 +70,7 @@ class Files:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The verdicts of a variant, criterion by criterion."""
+    """The verdicts on a variant, criterion by criterion."""
 
     name: str
     state: str
@@ -84,16 +84,16 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Row:
-    """A row of fields, and what came of its variant, if it is saved."""
+    """A row of fields, and the results of its variant if it is saved."""
 
-    number: int  # in the sheet, from 1
+    number: int  # row number in the sheet, from 1
     name: Cell
     cells: list[Cell]
     outcome: Outcome | None
 
     @property
     def is_empty(self) -> bool:
-        """Return whether nothing is typed in it."""
+        """Return whether all fields of the row are empty."""
         return not self.name.text and not any(cell.text for cell in self.cells)
 
 
@@ -103,8 +103,8 @@ class VariantsTable:
 
     heads: list[Head]
     rows: list[Row]
-    criteria: list[str]  # headings of those that were checked in a variant
-    unchecked: list[str]  # the others
+    criteria: list[str]  # headings of criteria that were checked in a variant
+    unchecked: list[str]  # headings of all other criteria
     base: Outcome | None
     own: list[str]  # the design's values as typed, column by column
     count: int
@@ -123,9 +123,9 @@ class VariantsTable:
 def variants_table(
     design: Design, out: VariantsOut, places: Mapping[str, str], refused: RefusedTable | None = None
 ) -> VariantsTable:
-    """Return the section of a design's variants; of a table that was refused, with its faults in place.
+    """Return the section of a design's variants, or of a refused table with its faults in place.
 
-    `places` are those that a variant may override, with their units.
+    `places` are the values that a variant may override, with their units.
     """
     grid = refused.grid if refused else _grid(out)
     faults = refused.faults if refused else {}
@@ -157,13 +157,13 @@ def variants_table(
 
 
 def places_of(network: DesignNetwork, design: Design) -> dict[str, str]:
-    """Return the places that a variant may override, with the unit of the design or the declaration."""
+    """Return the values that a variant may override, with the unit in the design or the declaration."""
     names = [name for name in network.names if name.role in ("parameter", "input")]
     return {name.name: _typed_unit(_own(design, name.name)) or name.unit for name in names}
 
 
 def _typed_unit(text: str) -> str:
-    """Return the unit of a quantity as typed; empty where it has none, or is a relation."""
+    """Return the unit of a typed quantity; empty if it has none, or is a relation."""
     try:
         own = "" if is_relation(text) or not text else read_any(text).unit
     except FaultyText:
@@ -207,7 +207,7 @@ def _cell(grid: Grid, row: int, at: int, title: str, hint: str, faults: Mapping[
 
 
 def _own(design: Design, place: str) -> str:
-    """Return the design's own value of a place, as typed; empty where it sets none."""
+    """Return the design's own value as typed; empty if the design does not set it."""
     reference = Reference.parse(place)
     block, member = reference.block, reference.member
     if not member:
@@ -220,7 +220,7 @@ def _own(design: Design, place: str) -> str:
 def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
     """Return the criteria that were checked in at least one variant, worst first.
 
-    And those that were in none.
+    The second list has the criteria that were checked in none.
     """
     worst = sorted(
         out.by_criterion.values(), key=lambda one: (WORST_FIRST.index(one.verdict), -(one.utilisation or 0))
@@ -267,7 +267,7 @@ def _files(design: Design, row: VariantResult) -> list[Files]:
 
 
 def _governing(out: VariantsOut) -> str:
-    """Return a sentence that names the worst variant, and its criterion."""
+    """Return a sentence that names the worst variant and its criterion."""
     first = out.governing
     if first is None or not out.variants:
         return ""

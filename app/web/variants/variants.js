@@ -1,13 +1,13 @@
-// The table of variants: one more empty row once the last is used, and cells that take a block of a spreadsheet.
+// The table of variants: add an empty row once the last is used, and paste blocks from a spreadsheet.
 const form = document.querySelector("[data-variants]");
-const LAST = 202; // row of the sheet
+const LAST = 202; // largest row number of the sheet
 const address = /^cell\.([A-Z]+)([0-9]+)$/;
 
-// The fields of a row by column, in the order of the page.
+// Return the fields of a row by column, in the order of the page.
 const fieldsOf = (row) => [...row.querySelectorAll("input[name^='cell.']")];
 const rows = () => [...form.querySelectorAll("tr[data-row]")];
 
-// One more empty row below, its fields named after the next row of the sheet.
+// Add an empty row below, whose fields are named after the next row of the sheet.
 function addRow() {
   const last = rows().at(-1), number = Number(last.dataset.row) + 1;
   if (number > LAST) return null;
@@ -26,7 +26,7 @@ function addRow() {
   return row;
 }
 
-// The unit of a column that is being headed, as values without a unit will have it.
+// Show the unit of a new column, which applies to its values without a unit.
 function showUnit({ target }) {
   if (!target.matches(".heading")) return;
   const words = target.value.trim().toLowerCase().split(/\s+/).join("_");
@@ -40,7 +40,7 @@ function changed() {
   form.querySelector("[data-variants-state]").textContent = "not saved";
 }
 
-// A block of cells, as spreadsheets copy it: rows end by line breaks, cells by tabs.
+// Return a block of cells as spreadsheets copy it: line breaks end rows, tabs end cells.
 function paste(event) {
   const text = event.clipboardData.getData("text/plain").replace(/\r\n?/g, "\n").replace(/\n$/, "");
   const start = event.target.closest("tr[data-row]");

@@ -1,1 +1,1 @@
-"""The verdict of a design and its criteria as several pages show them."""
+"""The verdict on a design and its criteria, as several pages show them."""

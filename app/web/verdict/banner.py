@@ -13,13 +13,13 @@ from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.blocks import StepBlock
 from app.web.shared.forms import texts
 
-MOST_KEYS = 4  # results in the fold line of a step
+MOST_KEYS = 4  # results in the summary line of a step
 _NAMES = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*")
 
 
 @dataclass(frozen=True)
 class Banner:
-    """The verdict on top of the page; without `lines`, the headline says why there is none."""
+    """The verdict at the top of the page; without `lines`, the headline states why there is none."""
 
     headline: str
     tone: str  # green, bad, open or plain: the class of its colour
@@ -29,21 +29,21 @@ class Banner:
 
     @property
     def unchecked(self) -> list[Line]:
-        """Return the criteria that were not checked, each with the input to give."""
+        """Return the criteria that were not checked, each with the missing input."""
         return [line for line in self.lines if line.verdict == "not_checked"]
 
     @property
     def undecided(self) -> bool:
-        """Return whether an exacter calculation might decide."""
+        """Return whether a more accurate calculation might decide a criterion."""
         return any(line.is_open for line in self.lines)
 
     def worst_by_step(self) -> dict[str, Line]:
-        """Return the worst criterion of each step that has any."""
+        """Return the worst criterion of each step that has criteria."""
         return {line.step: line for line in reversed(self.lines)}
 
 
 def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
-    """Return the verdict of a revision; of one that has none, the reason: perhaps nothing declares any."""
+    """Return the verdict on a revision, or the reason for a missing verdict, such as no declared criteria."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
         is_judged = revision.criteria is not None or (revision.state == "current" and not has_criteria)
@@ -61,7 +61,7 @@ def banner_over(verdict: Verdict, criteria: Iterable[Criterion]) -> Banner:
 def key_outputs(
     step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], driving: Iterable[str]
 ) -> list[str]:
-    """Return the outputs in the fold line of a step: judged ones, those used elsewhere, else the last ones.
+    """Return the outputs in the summary line of a step: judged ones, those used elsewhere, or the last.
 
     `driving` are the outputs that relations name. Unchecked outputs come last; outputs without a value are
     left out if others have one.
@@ -76,7 +76,7 @@ def key_outputs(
 
 
 def _judged(step: str, criterion: Criterion) -> list[str]:
-    """Return the outputs of a step that a criterion judges; bare names too, in one of the step's template."""
+    """Return the outputs of a step that a criterion judges; its template's own criteria use bare names."""
     own = criterion.name.startswith(f"{step}.")
     names = _NAMES.findall(sides(criterion.require)[0])
     return [n.removeprefix(f"{step}.") for n in names if n.startswith(f"{step}.") or (own and "." not in n)]
@@ -94,7 +94,7 @@ def driving_outputs(design: Design) -> dict[str, list[str]]:
 
 
 def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: Design) -> list[StepBlock]:
-    """Return the steps, each with the outputs of its fold line."""
+    """Return the steps, each with the outputs of its summary line."""
     driving, judged = driving_outputs(design), _by_step(revision.criteria or [])
     return [
         replace(
@@ -118,6 +118,6 @@ def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
 
 
 def opened(names: Sequence[str], verdict: Banner) -> str | None:
-    """Return the step that is unfolded at first: that of the governing criterion, else the first."""
+    """Return the step that is unfolded at first: that of the governing criterion, else the first step."""
     governing = verdict.governing.step if verdict.governing else ""
     return governing if governing in names else next(iter(names), None)

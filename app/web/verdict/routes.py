@@ -1,4 +1,4 @@
-"""`/verdicts`: the verdict of a preview as a part of a page, so that only the server writes it."""
+"""`/verdicts`: the verdict of a preview as a part of a page, so that only the server renders it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ router = APIRouter(include_in_schema=False, route_class=StrictRoute)
 
 
 class JudgedAnswer(Answer):
-    """Verdict and criteria as an answer of the interface has them, and the design, of a saved one."""
+    """The verdict and criteria of an answer of the interface, and the design if it is saved."""
 
     verdict: Verdict
     criteria: list[Criterion]
@@ -26,6 +26,6 @@ class JudgedAnswer(Answer):
 
 @router.post("/verdicts", dependencies=[needs("viewer")])
 def draw_verdict(judged: JudgedAnswer) -> Response:
-    """Return the banner with the table of criteria, and the verdicts of the steps' fold lines, as HTML."""
+    """Return the banner with the table of criteria, and the verdicts for the summary lines, as HTML."""
     drawn = jinja.get_template("verdict/verdict.html").module.drawn  # type: ignore[attr-defined]
     return HTMLResponse(drawn(banner_over(judged.verdict, judged.criteria), judged.design), headers=HEADERS)

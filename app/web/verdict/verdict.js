@@ -1,12 +1,12 @@
-// The verdict on top of the design page and in the fold lines of its steps; the server writes it.
+// The verdict at the top of the design page and in the summary lines of its steps, which the server renders.
 import { fetched, foldOf } from "../shared/later.js";
 import { quantityText } from "../shared/numbers.js";
 import { reveal } from "../shared/reveal.js";
 
 const place = document.querySelector("[data-verdict]");
-let newest = 0; // of the verdicts that were asked for: an older one comes too late
+let newest = 0; // number of the newest request; older responses are ignored
 
-// A verdict and its criteria as parts of a page; null if a newer one was asked for meanwhile.
+// Return a verdict and its criteria as parts of a page; null if a newer one was requested meanwhile.
 export async function drawnVerdict({ verdict, criteria }) {
   const number = (newest += 1), design = document.querySelector("[data-design]")?.dataset.design ?? "";
   const body = JSON.stringify({ verdict, criteria, design });
@@ -16,7 +16,7 @@ export async function drawnVerdict({ verdict, criteria }) {
   return number === newest ? drawn : null;
 }
 
-// Show a verdict and its criteria; of a design without criteria nothing changes.
+// Show a verdict and its criteria; for a design without criteria nothing changes.
 export async function showVerdict({ verdict, criteria = [] }) {
   if (!verdict || criteria.length === 0) return;
   const drawn = await drawnVerdict({ verdict, criteria }).catch(refuse);
@@ -34,13 +34,13 @@ export async function showVerdict({ verdict, criteria = [] }) {
   }
 }
 
-// What stood there before is no longer so.
+// The previous verdict is no longer valid.
 function refuse(error) {
   place.classList.remove("green", "bad", "open", "plain");
-  place.querySelector("[data-verdict-inside]").textContent = `The verdict could not be fetched: ${error.message}`;
+  place.querySelector("[data-verdict-inside]").textContent = `The verdict could not be loaded: ${error.message}`;
 }
 
-// The key results of a step in its fold line.
+// Show the key results of a step in its summary line.
 export function showKeys(step, { outputs = {} }) {
   for (const [name, quantity] of Object.entries(outputs)) {
     const key = document.querySelector(`[data-key="${step}.${name}"]`);
@@ -48,7 +48,7 @@ export function showKeys(step, { outputs = {} }) {
   }
 }
 
-// A link of the verdict opens what it leads to; the page leaves room for the verdict above it, and for the part.
+// A link in the verdict opens its target; the page leaves room for the verdict above it, and for the part.
 export function startVerdict(form) {
   leaveRoom("--verdict", place);
   leaveRoom("--picture", document.querySelector(".part-view"));
@@ -56,13 +56,13 @@ export function startVerdict(form) {
   rememberFolds(`folds:${form.dataset.design}`);
 }
 
-// The height of what stays in view: what a key or a link leads to must not lie behind it.
+// Return the height of the part that stays in view, so that it does not cover the target of a key or link.
 function leaveRoom(name, box) {
   const measure = () => document.body.style.setProperty(name, `${box.offsetHeight}px`);
   if (box) new ResizeObserver(measure).observe(box);
 }
 
-// What is missing leads to its field, the name of a criterion to its step.
+// A missing input links to its field, the name of a criterion to its step.
 export function followLinks(criteria, form) {
   criteria.addEventListener("click", (event) => {
     const target = event.target.closest("[data-give], [data-reveal]");
@@ -83,14 +83,14 @@ export function goTo(leadsTo) {
   leadsTo.scrollIntoView({ block: leadsTo.matches("input, select") ? "center" : "start" });
 }
 
-// The field of an input, or of a limit; on the page of a template both have bare names.
+// Return the field of an input or a limit; on the page of a template both have bare names.
 export function fieldOf(form, name) {
   const [block, ...tail] = name.split(".");
   const controls = [name, `.${name}`, `limits.${name}`, `${block}@limits.${tail.join(".")}`];
   return [...form.querySelectorAll("input, select")].find((field) => controls.includes(field.name));
 }
 
-// Which steps the user folded or unfolded is kept by the tab of the browser; what was refused stays in view.
+// The tab of the browser remembers which steps the user folded or unfolded; refused fields stay visible.
 function rememberFolds(key) {
   const kept = JSON.parse(sessionStorage.getItem(key) ?? "{}");
   for (const fold of document.querySelectorAll("[data-fold]")) {

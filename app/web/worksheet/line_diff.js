@@ -1,7 +1,7 @@
-// What differs between two texts, line by line.
-const MOST = 1_000_000; // pairs of lines that are compared; beyond, all lines between the first and the last difference count
+// Compare two texts line by line.
+const MOST = 1_000_000; // largest number of compared pairs; beyond it, all lines between the first and the last difference count as different
 
-// Lines in order, each as [sign, text]: " " in both, "-" in the old one, "+" in the new one.
+// Return lines in order as [sign, text]: " " in both texts, "-" only in the old one, "+" only in the new one.
 export function lineDiff(old, now) {
   const [before, after] = [linesOf(old), linesOf(now)];
   let head = 0, tail = 0;
@@ -38,7 +38,7 @@ function changes(old, now) {
   return lines;
 }
 
-const AROUND = 2; // equal lines shown beside a difference
+const AROUND = 2; // equal lines shown around a difference
 const SAID = { "-": "removed: ", "+": "added: ", " ": "" };
 
 // Draw a difference; equal lines far from it are left out.

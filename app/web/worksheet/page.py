@@ -1,4 +1,4 @@
-"""The pages of worksheets: their list, the start of a new one, and the editor."""
+"""The pages of worksheets: their list, the form for a new one, and the editor."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine,
 from templates.examples.index import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
-PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads
+PAGE, MOST_PAGES = 500, 10  # worksheets in one response, and responses that a list or a search reads
 
 
 @dataclass(frozen=True)
 class UnsavedText:
-    """A text that was not saved, as its form holds it, and why."""
+    """The text in a form that was not saved, and the reason."""
 
     text: str
     notice: str
@@ -33,14 +33,14 @@ class UnsavedText:
 
 
 async def list_page(request: Request, services: PageServices, wanted: str) -> Response:
-    """Return all worksheets, or those whose id or title contains a text."""
+    """Return the page with all worksheets, or with those whose id or title contains a text."""
     sought = wanted.casefold()
     sheets = [item for item in await _all(services) if sought in f"{item.id} {item.title}".casefold()]
     return show(request, "worksheet/worksheets.html", sheets=sheets, wanted=wanted)
 
 
 async def _all(services: PageServices) -> list[SheetSummary]:
-    """Return every worksheet, as far as the pages show them."""
+    """Return every worksheet, up to the largest number that the pages show."""
     page = await services.run(list_worksheets, services.worksheets, PAGE)
     sheets = page.items
     for _ in range(MOST_PAGES - 1):
@@ -54,7 +54,7 @@ async def _all(services: PageServices) -> list[SheetSummary]:
 async def start_page(
     request: Request, services: PageServices, typed: Mapping[str, str], notice: str = "", status: int = 200
 ) -> Response:
-    """Return the form of a new worksheet: empty, from an example, or from a copy."""
+    """Return the form for a new worksheet: empty, from an example, or from a copy."""
     return show(
         request,
         "worksheet/new_worksheet.html",
@@ -109,7 +109,7 @@ async def editor_page(
 
 
 async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
-    """Return every fault of a text under its line, or every line on paper with the numbers of the example."""
+    """Return every fault of a text under its line, or every line typeset with the numbers of the example."""
     asked = services.read(SheetCheckIn, {"text": text, "id": id})
     calculated = services.threads.run(
         services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
@@ -119,7 +119,7 @@ async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
 
 @dataclass(frozen=True)
 class Row:
-    """A statement on paper, its faults and its test's outcome; `worksheet/typeset.js` draws the same."""
+    """A typeset statement, its faults and its test's outcome; `worksheet/typeset.js` draws the same."""
 
     line: SheetLine | None
     faults: list[SheetFault]
@@ -128,13 +128,13 @@ class Row:
 
     @property
     def says_its_value(self) -> bool:
-        """Return whether it is given with a constant as its default: `T = 20 °C` needs no value beside it."""
+        """Return whether the statement itself shows its value, as the default in `T = 20 °C`."""
         _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
         return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
 
 
 def rows(checked: SheetCheck) -> list[Row]:
-    """Return one row per statement, in the order of the text."""
+    """Return one row for each statement, in the order of the text."""
     tests = {test.line: test for test in checked.tests}
     at = {line.line: line for line in checked.lines}
     starts = {number: line.line for line in checked.lines for number in range(line.line, line.last_line + 1)}
@@ -151,7 +151,7 @@ def rows(checked: SheetCheck) -> list[Row]:
 
 @dataclass(frozen=True)
 class TextLine:
-    """A line of the text with what is wrong in it."""
+    """A line of the text with its fault."""
 
     text: str
     faults: list[SheetFault]
@@ -163,7 +163,7 @@ class TextLine:
 
 
 def listing(text: str, faults: list[SheetFault]) -> list[TextLine]:
-    """Return the text line by line with its faults, for browsers without scripts; nothing without a fault."""
+    """Return the text line by line with its faults, for browsers without scripts; empty without faults."""
     by_line: dict[int, list[SheetFault]] = {}
     for fault in faults:
         by_line.setdefault(fault.line, []).append(fault)

@@ -15,13 +15,13 @@ from app.web.shared.services import PageServices, Refused
 from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
-PATIENCE = 5.0  # for steps of the design that take long [s]
+PATIENCE = 5.0  # longest wait for slow steps of the design [s]
 REFUSED = (404, 409, 413, 422, 429)
 
 
 @dataclass(frozen=True)
 class DraftChange:
-    """A value of a design before and with the draft."""
+    """A value of a design before the change, and with the draft."""
 
     name: str
     old: str
@@ -30,7 +30,7 @@ class DraftChange:
 
 @dataclass(frozen=True)
 class DraftTrial:
-    """A design with the draft: what changes, or why that cannot be said."""
+    """A design with the draft: the changes, or why they cannot be calculated."""
 
     design: str
     step: str
@@ -40,14 +40,14 @@ class DraftTrial:
 
 
 async def offered(services: PageServices, sheet: Sheet) -> list[DesignSummary]:
-    """Return designs in which a draft may be tried: those that use the worksheet before all others."""
+    """Return designs in which a draft may be tried; those that use the worksheet come first."""
     using = await services.run(list_designs, services.database, limit=OFFERED, template=sheet.id)
     rest = await services.run(list_designs, services.database, limit=OFFERED)
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
 async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> DraftTrial:
-    """Return the draft in place of the version that a design uses; as one more step, where it uses none."""
+    """Return a design with the draft instead of the version that it uses, or with the draft as a new step."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
         design = await services.run(services.designs.show, id)
@@ -63,7 +63,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
-    """Return the step that uses the worksheet, or a new name for one, and whether it is new."""
+    """Return the step that uses the worksheet, or the name for a new step, and whether it is new."""
     using = next((name for name, step in design.steps.items() if step.template == sheet.id), None)
     if using is not None:
         return using, False

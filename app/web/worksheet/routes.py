@@ -1,4 +1,4 @@
-"""Routes of the pages of worksheets and of their forms."""
+"""Routes of the pages for worksheets, and of their forms."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ MISSED = (403, NOT_NOW, STALE, ILL_NAMED)
 
 @router.get("/worksheets")
 async def worksheets(request: Request, services: ThePageServices, name: Text = "") -> Response:
-    """Show all worksheets, or the results of a search."""
+    """Return the page with all worksheets, or the results of a search."""
     return await list_page(request, services, name.strip())
 
 
 @router.get("/worksheets/new")
 async def new_worksheet(request: Request, services: ThePageServices) -> Response:
-    """Show the form for a new worksheet."""
+    """Return the form for a new worksheet."""
     return await start_page(request, services, dict(request.query_params))
 
 
@@ -45,7 +45,7 @@ async def worksheet(
     services: ThePageServices,
     design: Annotated[str, Query(max_length=64, pattern=r"^[A-Za-z0-9_]*$")] = "",
 ) -> Response:
-    """Show the editor; `design` names a design in which a draft is previewed."""
+    """Return the editor; `design` names a design in which a draft is previewed."""
     return await editor_page(request, services, id, design=design)
 
 
@@ -55,13 +55,13 @@ async def worksheet(
 @router.get("/worksheets/{id}/withdraw")
 @router.get("/worksheets/{id}/delete")
 async def after_a_form(id: Id) -> Response:
-    """Show the worksheet; a refused form is shown at the address to which it was sent."""
+    """Return the page of the worksheet; a refused form is shown at the address to which it was sent."""
     return go(f"/worksheets/{id}")
 
 
 @forms.post("/worksheets")
 async def create(request: Request, services: ThePageServices) -> Response:
-    """Create a draft and show it; if it is refused, return the form with the faults."""
+    """Create a draft and redirect to it; if it is refused, return the form with the faults."""
     typed = await fields(request)
     id = typed.get("id", "").strip()
     body: dict[str, JsonValue] = {"id": id, "text": await _start(services, typed.get("start", ""), typed)}
@@ -81,7 +81,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
 async def _start(services: PageServices, start: str, typed: dict[str, str]) -> str:
     """Return the initial text of a worksheet.
 
-    It comes from an example or another worksheet, or is only the title.
+    It is copied from an example or another worksheet, or consists of only the title.
     """
     group, _, name = start.partition(":")
     if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
@@ -109,21 +109,23 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
 
 def _unsaved(text: str, refused: Refused) -> UnsavedText:
     if refused.status == STALE:
-        notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
+        notice = (
+            "Somebody else saved this worksheet meanwhile. Your text is kept; theirs is shown next to it."
+        )
         return UnsavedText(text, notice, STALE, is_conflict=True)
     return UnsavedText(text, f"Nothing was saved: {refused.sentence}", refused.status)
 
 
 @forms.post("/worksheets/{id}/test")
 async def test(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Run its tests."""
+    """Run the tests of the worksheet."""
     tested = services.threads.run(services.worksheets.test, id, None, services.client)
     return await _act(id, services.ask(tested), request, services)
 
 
 @forms.post("/worksheets/{id}/review", dependencies=[needs("checker")])
 async def review(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Somebody read the text with this digest."""
+    """Record that a reviewer has read the text with this digest."""
     typed = await fields(request)
     said = {"reviewer": typed.get("reviewer", "").strip(), "digest": typed.get("digest", "")}
 
@@ -135,14 +137,14 @@ async def review(id: Id, request: Request, services: ThePageServices) -> Respons
 
 @forms.post("/worksheets/{id}/release", dependencies=[needs("checker")])
 async def release(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Release it for designs, for good."""
+    """Release the worksheet for designs; the release is final."""
     released = services.threads.run(services.worksheets.release, id, None, services.client)
     return await _act(id, services.ask(released), request, services)
 
 
 @forms.post("/worksheets/{id}/withdraw", dependencies=[needs("checker")])
 async def withdraw(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Say why a released version shall not be used any longer."""
+    """Withdraw a released version, and store the reason."""
     typed = await fields(request)
     version = typed.get("version", "")
     named = {"version": int(version)} if re.fullmatch("[0-9]{1,6}", version) else {}
@@ -156,7 +158,7 @@ async def withdraw(id: Id, request: Request, services: ThePageServices) -> Respo
 
 @forms.post("/worksheets/{id}/delete")
 async def delete(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Remove the newest version, which was never released; then the one before it, or the list."""
+    """Delete the newest version, if it was never released; then show the previous version or the list."""
     try:
         await services.run(services.worksheets.delete, id, None)
     except Refused as refused:
@@ -166,7 +168,7 @@ async def delete(id: Id, request: Request, services: ThePageServices) -> Respons
 
 
 async def _act(id: str, action: Awaitable[object], request: Request, services: PageServices) -> Response:
-    """Carry out one step of its life cycle and show the page, with missing conditions if it was refused."""
+    """Carry out one step of the life cycle and show the page, with missing conditions after a refusal."""
     try:
         await action
     except Refused as refused:

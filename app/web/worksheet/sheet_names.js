@@ -1,4 +1,4 @@
-// What the text of a worksheet completes: its own names, functions, units and keywords.
+// Names for completion in the text of a worksheet: its own names, functions, units and keywords.
 import { replace } from "./sheet_text.js";
 import { completions, wordAt } from "./sheet_tokens.js";
 
@@ -8,7 +8,7 @@ export class SheetNames {
     this.names = [];
   }
 
-  // The names that the service read; the previous ones where it could read none.
+  // Return the names that the service read, or the previous ones if it could not read the text.
   update(names) {
     if (names.length) this.names = names;
   }
@@ -33,7 +33,7 @@ export class SheetNames {
 
 const DECLARATION = /^(?:(?:given|choice|curve|solve)\s+)?([\p{L}_][\p{L}\p{N}_]*)(?:\s*\[([^\]]*)\]|\s*[(=])[^"\n]*(?:"([^"\n]*)")?/gmu;
 
-// Names that the service has not read yet, because the text is not whole.
+// Return names that the service has not read yet, because the text is incomplete.
 function declared(text, listed, { start }) {
   const matches = [...text.matchAll(DECLARATION)].filter(({ index, 1: name }) => !listed.has(name) && (index > start || index + name.length < start));
   return matches.map(([, name, unit = "", words = ""]) => ({ name, unit, words }));

@@ -1,4 +1,4 @@
-// The text of a worksheet: a textarea whose letters are transparent, over its lines in colours, with faults under them.
+// The text of a worksheet: a textarea with transparent letters over its coloured lines, with faults under them.
 import { tokens } from "./sheet_tokens.js";
 
 const MOST_FAULTS = 50; // shown at once
@@ -28,7 +28,7 @@ export class SheetText {
     if (head + tail < Math.max(texts.length, old.length)) this.unmark(head, old.length - tail, texts.length - old.length);
   }
 
-  // Faults of lines that were changed go until the next answer; those below move with their lines.
+  // Hide the faults of changed lines until the next answer; faults below move with their lines.
   unmark(head, end, shift) {
     if (this.faults.length === 0) return;
     this.faults = this.faults
@@ -42,7 +42,7 @@ export class SheetText {
     this.mark();
   }
 
-  // Underline each fault, and say what is wrong in the space under its line.
+  // Underline each fault, and show the message in the space under its line.
   mark() {
     for (const old of this.lines.querySelectorAll(".note, .underline")) old.remove();
     for (const line of this.lines.querySelectorAll(".faulty")) line.classList.remove("faulty");
@@ -53,7 +53,7 @@ export class SheetText {
       const line = this.lines.children[fault.line - 1];
       line.classList.add("faulty");
       line.append(placed(node("span", "underline"), { left: box.left - frame.left, top: box.bottom - frame.top, width: Math.max(box.width, 8) }));
-      if (noted.has(fault.line)) continue; // the others stand beside, in the typeset sheet
+      if (noted.has(fault.line)) continue; // the other faults are shown in the typeset sheet
       noted.add(fault.line);
       const note = node("span", "note", [fault.message, fault.remedy].filter(Boolean).join(" — "));
       note.title = note.textContent;
@@ -67,17 +67,17 @@ export class SheetText {
     }
   }
 
-  // Where the columns of a fault are; its line's end where nothing stands there.
+  // Return the position of a fault's columns; the end of its line if there is no text.
   boxOf({ line, column, end_column: end }) {
     const text = this.texts[line - 1], from = inUnits(text, column - 1), to = end ? inUnits(text, end - 1) : wordEnd(text, from);
     const rects = [...this.range(line - 1, Math.min(from, Math.max(text.length - 1, 0)), Math.max(to, from + 1)).getClientRects()];
-    const row = rects.filter(({ bottom }) => bottom === rects[0].bottom); // a long line is broken: its first part
+    const row = rects.filter(({ bottom }) => bottom === rects[0].bottom); // the first part of a wrapped line
     if (row.length === 0) return this.lines.children[line - 1].firstChild.getBoundingClientRect();
     const left = row[0].left, right = Math.max(...row.map((rect) => rect.right));
     return { left, right, width: right - left, bottom: row[0].bottom };
   }
 
-  // The letters of a line as they are drawn.
+  // Return the letters of a line as they are drawn.
   range(line, from, to) {
     const range = document.createRange(), code = this.lines.children[line].firstChild;
     let begins = 0, isOpen = false;
@@ -97,14 +97,14 @@ export class SheetText {
     return range;
   }
 
-  // Where the caret is, for the list of names.
+  // Return the position of the caret, for the list of names.
   caretBox(caret = this.area.selectionStart) {
     const above = this.area.value.slice(0, caret).split("\n"), column = above.at(-1).length;
     const range = this.range(above.length - 1, Math.max(column - 1, 0), column), box = range.getBoundingClientRect();
     return { left: box.right, right: box.right, width: 0, top: box.top, bottom: box.bottom };
   }
 
-  // How far from the top of the text a line begins.
+  // Return the distance of a line from the top of the text.
   top = (line) => this.lines.children[line - 1]?.offsetTop ?? 0;
 
   goTo(line, column = 1) {
@@ -116,7 +116,7 @@ export class SheetText {
   }
 }
 
-// Put text at the place of another; the browser can undo it.
+// Replace a part of the text, so that the browser can undo it.
 export function replace(area, text, start, end) {
   area.focus({ preventScroll: true });
   area.setSelectionRange(start, end);
@@ -140,7 +140,7 @@ function placed(element, place) {
   return element;
 }
 
-// The service counts letters; a browser counts units of UTF-16, of which some letters take two.
+// The service counts characters; a browser counts UTF-16 units, of which some characters need two.
 const inUnits = (text, letters) => [...text].slice(0, letters).join("").length;
 
 const wordEnd = (text, from) => from + (text.slice(from).match(/^[\p{L}\p{N}_.]+/u)?.[0].length ?? 1);

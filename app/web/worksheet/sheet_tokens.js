@@ -1,4 +1,4 @@
-// The text of a worksheet: the parts of a line for its colours, and what may be typed at the caret.
+// Parse the text of a worksheet: the parts of a line for its colours, and completions at the caret.
 export const STATEMENTS = {
   given: "an input: given F [kN] \"radial load\"",
   choice: "an input in words: choice law = walther \"viscosity law\" (walther | vogel)",
@@ -25,7 +25,7 @@ const TOKEN = new RegExp(
 );
 const KINDS = ["", "words", "unit", "number", "", "name", "sign"];
 
-// The parts of a line, each with its kind; put together they are the line.
+// Return the parts of a line, each with its kind; joined they are the line.
 export function tokens(line) {
   const whole = { "#": "heading", ">": "prose" }[line[0]] ?? (line.startsWith("//") ? "remark" : null);
   if (whole) return [{ kind: whole, text: line }];
@@ -38,7 +38,7 @@ export function tokens(line) {
 
 const WORD = /[\p{L}\p{N}_.]/u;
 
-// What is being typed before the caret: where it begins, and what it may be; null where nothing is completed.
+// Return where the text typed before the caret begins, and its possible kinds; null where nothing is completed.
 export function wordAt(text, caret) {
   const line = text.slice(text.lastIndexOf("\n", caret - 1) + 1, caret);
   if (/^(#|>|\/\/)/.test(line) || (line.split('"').length - 1) % 2) return null;
@@ -68,7 +68,7 @@ const OF_KIND = {
   name: [...worded(INSIDE, "keyword"), ...worded(FUNCTIONS, "function"), ...worded(["pi"], "3.14159…")],
 };
 
-// What could be meant by what is typed: what begins so first, then what holds it in its name or its words.
+// Return completions of the typed text: first those that begin with it, then those whose name or words contain it.
 export function completions({ kind, typed }, names) {
   const all = kind === "name" ? [...names, ...OF_KIND.name.filter(({ name }) => !names.some((own) => own.name === name))] : OF_KIND[kind];
   const wanted = typed.toLowerCase(), begins = [], holds = [];
@@ -77,6 +77,6 @@ export function completions({ kind, typed }, names) {
     if (name.startsWith(wanted)) begins.push(item);
     else if (kind === "name" && (name.includes(wanted) || (wanted.length > 1 && item.words.toLowerCase().includes(wanted)))) holds.push(item);
   }
-  const isWhole = kind !== "unit" && all.some(({ name }) => name === typed); // Enter begins the next line
+  const isWhole = kind !== "unit" && all.some(({ name }) => name === typed); // Enter then begins the next line
   return isWhole ? [] : [...begins, ...holds];
 }

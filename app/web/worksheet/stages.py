@@ -12,7 +12,7 @@ FINISHED = ("released", "withdrawn", "broken")
 
 @dataclass(frozen=True)
 class Stage:
-    """One step of the life; `action` is its name in the interface."""
+    """One step of the life cycle; `action` is its name in the interface."""
 
     action: str
     title: str
@@ -22,12 +22,12 @@ class Stage:
 
     @property
     def is_next(self) -> bool:
-        """Return whether it can be done now."""
+        """Return whether the step can be taken now."""
         return not self.is_done and not self.missing
 
 
 def stages(sheet: Sheet) -> list[Stage]:
-    """Test, review and release of the newest version."""
+    """Return the steps test, review and release for the newest version."""
     reached = len(ORDER) if sheet.state in FINISHED else ORDER.index(sheet.state)
     by = f" by {sheet.reviewer}" if sheet.reviewer else ""
     return [
@@ -41,7 +41,7 @@ def stages(sheet: Sheet) -> list[Stage]:
         Stage(
             "review",
             f"Review{by}",
-            "Somebody else reads the text. Nobody proves the name: reports say ‘review not verified’.",
+            "Somebody else reads the text. The name is not verified: reports state ‘review not verified’.",
             reached >= 2,
             "" if reached >= 1 else "Test it first.",
         ),
@@ -70,5 +70,5 @@ def newest_released(sheet: Sheet) -> SheetVersion | None:
 
 
 def begins_next(sheet: Sheet) -> bool:
-    """Return whether an edit starts another version, because this one is released."""
+    """Return whether an edit creates the next version, because this one is released."""
     return sheet.state in FINISHED

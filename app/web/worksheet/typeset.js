@@ -1,4 +1,4 @@
-// The sheet as it is set on paper, line by line beside the text: formulas, their values, prose, verdicts, tests.
+// The typeset sheet, line by line next to the text: formulas, their values, prose, verdicts, tests.
 import { isolated } from "../shared/isolated.js";
 import { plain, quantityText, unit } from "../shared/numbers.js";
 
@@ -17,7 +17,7 @@ export class Typeset {
     this.keys = [];
   }
 
-  // Draw what the service answers; a line that is as before keeps its element.
+  // Draw the service's answer; an unchanged line keeps its element.
   show({ lines, faults, tests }) {
     const rows = rowsOf(lines, faults, tests), places = this.list.children;
     const keys = rows.map((row) => JSON.stringify(row));
@@ -31,7 +31,7 @@ export class Typeset {
     this.keys = keys;
   }
 
-  // Put each line beside its text, or as near below as the lines above it allow; in a column, one below the other.
+  // Place each line next to its text, or as near below as the lines above it allow; in a column, one below another.
   align(top, isBeside) {
     const rows = [...this.list.children];
     for (const row of rows) row.style.marginTop = "";
@@ -47,7 +47,7 @@ export class Typeset {
   }
 }
 
-// The lines of the last sheet without faults that stand in the text as they did: where they stand now.
+// Return the present positions of unchanged lines of the last sheet without faults.
 export function stillThere(lines, old, texts) {
   let head = 0, tail = 0;
   const most = Math.min(old.length, texts.length), shift = texts.length - old.length;
@@ -59,7 +59,7 @@ export function stillThere(lines, old, texts) {
   });
 }
 
-// One row a statement: with what the service says of it, of its faults and of its test.
+// Draw one row for each statement, with its results, faults and test.
 export function rowsOf(lines, faults, tests) {
   const byLine = new Map();
   for (const line of lines) byLine.set(line.line, { ...line, faults: [] });
@@ -105,7 +105,7 @@ function statement(row) {
   return parts;
 }
 
-// A given quantity whose default is a constant: `T = 20 °C` needs no value beside it.
+// Return whether a statement itself shows its value, as the default in `T = 20 °C`.
 const saysItsValue = ({ kind, mathml }) => kind === "given" && mathml.includes(EQUALS) && !mathml.split(EQUALS)[1].includes("<mi>");
 
 const verdictTag = (words) => element("span", `tag ${words.replace(" ", "_")}`, words);

@@ -1,4 +1,4 @@
-// The editor of a worksheet: the text is checked while it is typed; every action is a call of the API.
+// The editor of a worksheet: it checks the text while the user types; every action calls the API.
 import { Refused, call } from "../shared/api.js";
 import { startCompletion } from "../shared/completion.js";
 import { startDownloads } from "../shared/downloads.js";
@@ -10,7 +10,7 @@ import { SheetNames } from "./sheet_names.js";
 import { SheetText, replace } from "./sheet_text.js";
 import { Typeset, stillThere } from "./typeset.js";
 
-const PAUSE = 300; // ms without a key
+const PAUSE = 300; // pause in typing before a check [ms]
 const STALE = 412;
 const find = (selector) => document.querySelector(selector);
 
@@ -27,13 +27,13 @@ const checking = live(
     const sent = area.value, { payload } = await call("POST", "/api/v1/worksheets/check", { text: sent, id }, { signal });
     return { sent, checked: payload };
   },
-  ({ sent, checked }) => sent === area.value && show(checked), // else a newer one is about to be asked for
+  ({ sent, checked }) => sent === area.value && show(checked), // otherwise a newer request follows
   (error) => (find("[data-sheet-faults]").textContent = error instanceof Refused ? error.message : "The service does not answer; the sheet is unchanged."),
   PAUSE,
 );
 
-// What the service says of a text. With faults it shows the lines that do without the faulty ones; others that are
-// unchanged stay, with their previous values.
+// Show the service's answer about a text. With faults, it has the lines that do not depend on faulty ones; other
+// unchanged lines stay, with their previous values.
 function show(checked, texts = text.texts) {
   const isSound = checked.faults.length === 0;
   if (isSound) sound = { ...checked, texts };
@@ -52,7 +52,7 @@ function faultsIn(faults) {
   return `${faults.length} ${faults.length === 1 ? "fault" : "faults"}, ${faults.length > 1 ? "the first " : ""}in line ${faults[0].line}`;
 }
 
-// Beside each other, each line stands at the height of its text.
+// If text and sheet are next to each other, each line is at the height of its text.
 function align() {
   typeset.align(text.top, isWide.matches);
 }
@@ -95,7 +95,7 @@ async function save() {
   }
 }
 
-// What is stored from now on; what was typed meanwhile stays a draft.
+// Note the newly stored text; what was typed meanwhile remains a draft.
 function keepAs(stored, newTag) {
   draft.forget();
   [saved, tag] = [stored, newTag];
@@ -127,12 +127,12 @@ function tell(error, place = trouble) {
   place.scrollIntoView({ block: "nearest" });
 }
 
-// Somebody else saved: both texts are shown, and the user chooses.
+// After somebody else has saved, show both texts and let the user choose.
 async function conflict() {
   const { payload, tag: newest } = await call("GET", api);
   theirs.hidden = false;
   drawDiff(find("[data-theirs-diff]"), area.value, payload.text);
-  tell(new Error("Somebody else saved this worksheet meanwhile. Your text is kept; what theirs removes and adds is shown below."));
+  tell(new Error("Somebody else saved this worksheet meanwhile. Your text is kept; the differences from theirs are shown below."));
   chosen("[data-take-theirs]", () => {
     replace(area, payload.text, 0, area.value.length); // the browser can undo it
     keepAs(payload.text, newest);
@@ -153,7 +153,7 @@ function chosen(selector, act) {
   };
 }
 
-// Its life
+// Life cycle
 
 document.addEventListener("submit", async (event) => {
   const action = event.target.dataset.act;
@@ -167,7 +167,7 @@ document.addEventListener("submit", async (event) => {
 
 async function act(action, asked) {
   try {
-    const { version } = asked; // the one that is withdrawn, not the one that is edited
+    const { version } = asked; // the version to withdraw, not the one being edited
     const body = version ? { ...asked, version: Number(version) } : Object.keys(asked).length ? asked : undefined;
     await call("POST", `${api}/${action}`, body, { headers: version ? {} : { "If-Match": tag } });
     await refresh(action);
@@ -178,7 +178,7 @@ async function act(action, asked) {
   }
 }
 
-// Take over again what the page says of the state: as the service writes it.
+// Reload the parts of the page that show the state.
 async function refresh(action) {
   const answer = await fetch(location.pathname, { headers: { Accept: "text/html" } });
   if (!answer.ok) return;
@@ -209,7 +209,7 @@ function start() {
   startCompletion(form, names);
   const from = draft.restore();
   if (from !== null) text.draw();
-  if (from !== null && from !== tag.replaceAll(/[":]/g, "")) tell(new Error("This worksheet was saved since you typed these changes; look at them once more."));
+  if (from !== null && from !== tag.replaceAll(/[":]/g, "")) tell(new Error("This worksheet was saved after you typed these changes; check them again."));
   showDraft();
   isWide.addEventListener("change", align);
   new ResizeObserver(align).observe(find("[data-lines]"));

@@ -1,4 +1,4 @@
-"""The pages of an import from Mathcad: the form, its progress, and the outcome of every region."""
+"""The pages for importing from Mathcad: the form, its progress, and the outcome of every region."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SHEET = re.compile(r"/api/v1/worksheets/([a-z0-9_]+)")
 
 
 class NewSheet(Upload):
-    """The id of a worksheet to be imported, and the name of its file."""
+    """The id for an imported worksheet, and the name of its file."""
 
     id: NewId
     file: FileName = "sheet.mcdx"
@@ -43,19 +43,19 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 
 @router.get(FORM.path)
 async def import_form(request: Request, services: ThePageServices, job: Text = "", id: Text = "") -> Response:
-    """Show the form for a file; while its job runs, the wait; then the regions or the refusal."""
+    """Return the form for a file; while its job runs, its progress; then the regions or the refusal."""
     return await FORM.show(request, services, job, id)
 
 
 @forms.post(FORM.path)
 async def import_file(request: Request, services: ThePageServices) -> Response:
-    """Send the chosen file; where it is refused at once, the form again with the reason."""
+    """Import the chosen file; if it is refused at once, return the form with the reason."""
     return await FORM.send(request, services)
 
 
 @router.get("/worksheets/{id}/import")
 async def import_report(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Show every region of the sheet with its outcome."""
+    """Return the page that shows every region of the sheet with its outcome."""
     return await _report(request, services, id)
 
 
@@ -70,7 +70,7 @@ async def _report(request: Request, services: PageServices, id: str) -> Response
 
 
 def _values(region: ImportedRegion) -> tuple[str, str]:
-    """Return both results in words: the first items of a list."""
+    """Return both results as text: the first items of a list."""
     return _written(region.mathcad, region.unit), _written(region.worksheet, region.unit)
 
 

@@ -1,5 +1,5 @@
-"""Jobs on other machines: Dask carries packed functions to them, and each runs in a process of its own there.
+"""Run jobs on other machines: Dask transfers packed functions, and each runs there in a separate process.
 
 `DaskWorker` is the `BatchWorker` of a server; `crankwright worker` runs a `Machine`. Only these import
-`distributed`, of the extra `team`. docs/decisions/052 gives the reasons.
+`distributed`, which belongs to the extra `team`. docs/decisions/052 gives the reasons.
 """

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from distributed import Client, Security
 
-_CONNECT = 5.0  # how long each step of an attempt to connect may take [s]
-_START = 15.0  # and all of them together [s]
-_END = 1.0  # how long a farewell to the scheduler may take [s]
+_CONNECT = 5.0  # longest time for each step of a connection attempt [s]
+_START = 15.0  # longest time for a whole connection attempt [s]
+_END = 1.0  # longest time to disconnect from the scheduler [s]
 
 
 class BoundedClient(Client):
-    """A client that no other part of the process finds.
+    """A Dask client that does not become the default client of the process.
 
-    Dask's own constructor waits without end if the scheduler falls silent at a certain moment of the
-    connection; a client that does not begin, or does not end in time, leaves a thread behind. Here the
-    constructor raises, and the thread ends.
+    Dask's own constructor waits for ever if the scheduler falls silent at a certain moment of the
+    connection, and a client that does not start or end in time leaves a thread behind. This constructor
+    raises, and the thread ends.
 
-    It ends with its scheduler. Dask's own would go on with the next one, which knows neither its tasks nor
-    the addresses of the machines that it has seen.
+    The client ends with its scheduler. Dask's own client would continue with the next scheduler, which knows
+    neither its tasks nor the addresses of the machines.
 
     Raises
     ------
     OSError, TimeoutError
-        There is no scheduler, or it does not answer.
+        If there is no scheduler, or it does not answer.
     """
 
     def __init__(self, address: str, security: Security) -> None:
@@ -35,7 +35,7 @@ class BoundedClient(Client):
         )
 
     def start(self, **how: object) -> None:
-        """Connect; the constructor calls this."""
+        """Connect to the scheduler; the constructor calls this."""
         try:
             super().start(callback_timeout=_START, **how)
         except BaseException:
@@ -43,14 +43,14 @@ class BoundedClient(Client):
             raise
 
     def end(self) -> None:
-        """Say farewell, and end the thread of the connection in any case."""
+        """Close the connection, and end its thread in any case."""
         try:
             self.close(timeout=_END)
         finally:
             self._abandon()
 
     async def _reconnect(self) -> None:
-        """Close; Dask calls this when the connection to the scheduler breaks."""
+        """Close the client; Dask calls this when the connection to the scheduler breaks."""
         await self._close()
 
     def _abandon(self) -> None:

@@ -26,12 +26,12 @@ from templates.core.progress import Reporter
 logger = logging.getLogger(__name__)
 
 LANES: tuple[Lane, ...] = ("geometry", "analysis")
-_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
-_LOOK = 0.25  # time between two looks at the places of all machines [s]
-_PATIENCE = 10.0  # how long the scheduler may take to answer a look [s]
-_PAUSE = 1.0  # before the next [s]
-_TURNS = 5  # machines to which an order is sent, if each goes before it comes there
-_FETCH = 120.0  # how long a result may take on its way [s]
+_GLANCE = 0.05  # time between two checks whether the job was cancelled [s]
+_LOOK = 0.25  # time between two polls of the slots of all machines [s]
+_PATIENCE = 10.0  # longest time for the scheduler to answer a poll [s]
+_PAUSE = 1.0  # time before the next connection attempt [s]
+_TURNS = 5  # attempts to send an order, if machines are lost before it arrives
+_FETCH = 120.0  # longest time to receive a result [s]
 
 Messages = queue.SimpleQueue[tuple[float, str] | None]
 """From a task: how far it is; None when it has ended."""
@@ -40,8 +40,8 @@ Messages = queue.SimpleQueue[tuple[float, str] | None]
 class Cluster:
     """The machines behind a scheduler that run the same program.
 
-    A thread of its own connects and looks around, so nobody waits for a scheduler that does not answer. What
-    this server has submitted it counts itself, at once; what others have, it saw at its latest look.
+    A separate thread connects and polls, so no caller waits for a scheduler that does not answer. The tasks
+    of this server are counted at once, and those of other servers as of the latest poll.
     """
 
     def __init__(self, address: str, security: Security, program: str) -> None:
@@ -57,21 +57,21 @@ class Cluster:
         self._own: Counter[tuple[Lane, str]] = Counter()
         self._changed = threading.Condition()
         self._closed = threading.Event()
-        self._failure = "connecting"  # what came of the latest attempt to connect
+        self._failure = "connecting"  # outcome of the latest connection attempt
         self._thread = threading.Thread(target=self._work, name="scheduler", daemon=True)
         self._thread.start()
 
     def size(self, lane: Lane) -> int:
-        """Return the number of functions of a lane that the machines run at the same time."""
+        """Return how many functions of a lane the machines can run at the same time."""
         return sum(there.size for there in self._places.get(lane, {}).values())
 
     def free(self, lane: Lane) -> int:
-        """Return how many more functions they could start now."""
+        """Return how many more functions of a lane the machines could start now."""
         with self._changed:
             return sum(max(0, count) for count in self._free(lane).values())
 
     def why_silent(self) -> str:
-        """Return why no machine runs anything, if none does."""
+        """Return why no machine runs functions, if none does."""
         if not self._thread.is_alive():
             return f"the thread that connects to {self.address} has ended: start this server again"
         if (client := self._client) is None or client.status != "running":
@@ -86,14 +86,15 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
     ) -> tuple[Outcome, str]:
-        """Wait for a place, preferably on a given machine, run an order there, and return the machine.
+        """Wait for a slot, preferably on a given machine, run an order there, and return the machine.
 
         Raises
         ------
         JobCancelled
-            If somebody has cancelled it.
+            If the job was cancelled.
         WorkerLost
-            If the machine or the scheduler disconnected while it ran, or several machines before it arrived.
+            If the machine or the scheduler was lost during the run, or several machines before the order
+            arrived.
         """
         cancelled = cancelled or threading.Event()
         for _ in range(_TURNS):
@@ -118,7 +119,7 @@ class Cluster:
             except Exception as error:
                 if client.status == "running" and not isinstance(error, WorkerLost):
                     raise
-                if self._closed.is_set():  # it is this server that has gone
+                if self._closed.is_set():  # this server itself has disconnected
                     raise JobCancelled from None
                 if client.status == "running":
                     raise
@@ -129,7 +130,7 @@ class Cluster:
         self._closed.set()
         with self._changed:
             self._changed.notify_all()
-        self._thread.join(_PAUSE)  # an attempt to connect may take longer
+        self._thread.join(_PAUSE)  # a connection attempt may take longer
 
     def _run_there(
         self,
@@ -149,7 +150,7 @@ class Cluster:
                 self._follow(client, future, messages, on_progress, cancelled)
                 return _result(future)
             finally:
-                future.release()  # nobody wants it any more: if it runs, its process is killed
+                future.release()  # no longer wanted; if it runs, its process is killed
         finally:
             del self._listeners[key]
 
@@ -165,7 +166,7 @@ class Cluster:
             pure=False,
             retries=0,
             resources={self._labels[lane]: 1},
-            workers=[machine],  # no other: Dask would take any, even of another program
+            workers=[machine],  # only this one; Dask would use any machine, even with another program
         )
 
     def _follow(
@@ -176,7 +177,7 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event,
     ) -> None:
-        """Pass progress on until the task has ended."""
+        """Pass on the progress until the task has ended."""
         while True:
             if cancelled.is_set() or self._closed.is_set():
                 raise JobCancelled
@@ -189,7 +190,7 @@ class Cluster:
                 continue
             if message is None:
                 if client.status != "running" or future.status in ("lost", "cancelled"):
-                    continue  # it has not ended: nobody is left who could bring its result
+                    continue  # it has not ended, but its result can no longer arrive
                 return
             if on_progress is not None:
                 on_progress(*message)
@@ -198,7 +199,7 @@ class Cluster:
     def _place(
         self, lane: Lane, preferred: str | None, cancelled: threading.Event
     ) -> Iterator[tuple[BoundedClient, str]]:
-        """Hold a free place of a lane, and give the client and the address of the machine."""
+        """Reserve a free slot of a lane, and return the client and the address of the machine."""
         with self._changed:
             while (machine := self._best(lane, preferred)) is None or (client := self._client) is None:
                 if cancelled.is_set() or self._closed.is_set():
@@ -210,7 +211,7 @@ class Cluster:
         finally:
             with self._changed:
                 self._own[lane, machine] -= 1
-                self._own += Counter()  # forgets those of which nothing is left
+                self._own += Counter()  # removes entries with a count of zero
                 self._changed.notify_all()
 
     def _best(self, lane: Lane, preferred: str | None) -> str | None:
@@ -219,12 +220,12 @@ class Cluster:
 
     def _free(self, lane: Lane) -> dict[str, int]:
         if self._client is None or self._client.status != "running":
-            return {}  # what was seen then is no longer true
+            return {}  # the polled data are outdated
         there = self._places.get(lane, {}).items()
         return {machine: its.size - its.of_others - self._own[lane, machine] for machine, its in there}
 
     def _work(self) -> None:
-        """Connect, look around until the connection breaks, and connect again."""
+        """Connect, poll until the connection breaks, and connect again."""
         is_logged = False
         while not self._closed.is_set():
             try:
@@ -234,7 +235,7 @@ class Cluster:
                     while client.status == "running" and not self._closed.is_set():
                         self._look_around(client)
                         self._closed.wait(_LOOK)
-            except Exception as error:  # whatever it is, no job can be sent until it has passed
+            except Exception as error:  # after any error no job can be sent until it is resolved
                 self._failure = str(error) or type(error).__name__
                 if not is_logged:
                     logger.warning("no connection to the scheduler %s: %s", self.address, error)
@@ -243,7 +244,7 @@ class Cluster:
 
     @contextmanager
     def _connected(self) -> Iterator[BoundedClient]:
-        """Open a client, and close it when its scheduler is lost: it and its futures are useless then."""
+        """Open a client, and close it when its scheduler is lost, because its futures are useless then."""
         client = BoundedClient(self.address, self._security)
         try:
             client.subscribe_topic(self._topic, self._hear)
@@ -272,7 +273,9 @@ class Cluster:
         with self._changed:
             self._places = seen
             self._changed.notify_all()
-        self._strays.note(states, time.monotonic())  # last: who looks for another place sees the new ones
+        self._strays.note(
+            states, time.monotonic()
+        )  # last, so that a caller that needs another slot sees the new ones
 
 
 def _result(future: Future[Outcome]) -> Outcome:

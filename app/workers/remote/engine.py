@@ -24,8 +24,8 @@ Ts = TypeVarTuple("Ts")
 class DaskWorker:
     """Runs functions on the machines of a Dask scheduler that run the same program; see `BatchWorker`.
 
-    It submits a function only when a machine has a place for it. So what waits are rows of the queue of jobs,
-    which outlive every process, and no tasks of Dask.
+    It submits a function only when a machine has a free slot. So waiting work stays in the queue of jobs,
+    which outlives every process, and not in Dask.
     """
 
     def __init__(self, cluster: Cluster) -> None:
@@ -33,7 +33,7 @@ class DaskWorker:
 
     @classmethod
     def of(cls, settings: Settings) -> DaskWorker:
-        """Return the worker by the settings of a server; it connects in the background."""
+        """Return the worker for a server's settings; it connects in the background."""
         configure()
         return cls(Cluster(settings.engine, security(settings), program()))
 
@@ -51,11 +51,11 @@ class DaskWorker:
         return once.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
     def batch(self, lane: Lane = GEOMETRY) -> DaskBatch:
-        """Run several functions in one process, where that is possible; see `BatchWorker.batch`."""
+        """Return a batch that runs several functions in one process if possible; see `BatchWorker.batch`."""
         return DaskBatch(self._cluster, lane, uuid.uuid4().hex)
 
     def capacity(self, lane: Lane) -> int:
-        """Return the number of known free places of the lane; 0 without a scheduler."""
+        """Return the known number of free slots of the lane; 0 without a scheduler."""
         return self._cluster.free(lane)
 
     def answers(self) -> bool:
@@ -74,9 +74,9 @@ class DaskWorker:
 class DaskBatch:
     """Runs functions one after another on the machine that ran the first, in the process that it kept.
 
-    If that machine has no place, or has gone, another one begins with a new process: a batch saves time, and
-    nothing else may depend on it. A process that is not used for some seconds ends by itself. Without a name,
-    each function has a process of its own.
+    If that machine has no free slot, or is lost, another one continues with a new process: a batch only
+    saves time. An idle process ends by itself after some seconds. Without a name, each function has its own
+    process.
     """
 
     def __init__(self, cluster: Cluster, lane: Lane, name: str | None = None) -> None:
@@ -104,4 +104,4 @@ class DaskBatch:
             raise WorkerLost("the machine that ran it was stopped") from None
 
     def close(self) -> None:
-        """Do nothing: no function is running, and the waiting process ends by itself."""
+        """Do nothing, because no function is running and an idle process ends by itself."""

@@ -24,7 +24,7 @@ _PACKAGES = (Path(__file__).parents[2], Path(cad.__file__).parent, Path(template
 
 @cache
 def program() -> str:
-    """Return a digest of this program's files, the recipe of solids among them, and of its libraries."""
+    """Return a digest of this program's files, including the recipe of solids, and of its libraries."""
     libraries = [(name, version(name)) for name in LIBRARIES]
     digest = hashlib.sha256(json.dumps([sys.version_info[:2], libraries]).encode())
     for name, file in _files():
@@ -35,7 +35,7 @@ def program() -> str:
 
 
 def label(lane: Lane, of: str) -> str:
-    """Return the Dask resource of a lane for a program's digest: machines offer it, and jobs ask for it."""
+    """Return the Dask resource of a lane and a program's digest, which machines offer and jobs require."""
     return f"{lane}-{of[:12]}"
 
 

@@ -1,7 +1,7 @@
 """The program of `crankwright worker`: a Dask worker whose threads wait for isolated processes.
 
-Dask's worker never imports the geometry kernel: it passes packed bytes on. If the scheduler disconnects, all
-running jobs are killed, and the machine reconnects as soon as a scheduler answers.
+Dask's worker never imports the geometry kernel, because it only passes packed bytes on. If the scheduler is
+lost, all running jobs are killed, and the machine reconnects as soon as a scheduler answers.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ from templates.core.progress import Reporter
 
 logger = logging.getLogger(__name__)
 
-_GLANCE = 0.05  # how often it is looked whether a task is still wanted [s]
+_GLANCE = 0.05  # time between two checks whether a task is still wanted [s]
 _IDLE = 5.0  # how long a process waits for the next function of its batch [s]
-_PAUSE = 0.5  # before the machine connects again [s]
-_START = 20.0  # how long the machine waits for a scheduler before it begins again [s]
-_END = 10.0  # how long its farewell to a scheduler may take [s]
+_PAUSE = 0.5  # time before the machine reconnects [s]
+_START = 20.0  # longest wait for a scheduler before a new attempt [s]
+_END = 10.0  # longest time to disconnect from a scheduler [s]
 _WANTED = ("executing", "long-running")
 
 
 class Processes:
-    """The processes of a machine; those of batches are kept for a while, as many as there are places."""
+    """The processes of a machine; those of batches are kept for a while, at most one for each slot."""
 
     def __init__(self, places: int) -> None:
         self._local = LocalProcesses()
         self._places = places
         self._lock = threading.Lock()
-        self._kept: dict[str, tuple[Batch, float]] = {}  # with when it was last used, latest last
+        self._kept: dict[str, tuple[Batch, float]] = {}  # with the time of last use, latest last
 
     def outcome(self, order: Order, on_progress: Reporter | None, unwanted: threading.Event) -> Outcome:
-        """Run a request in a separate process, or in that of its batch."""
+        """Return the outcome of a request, run in a separate process or in that of its batch."""
         if order.batch is None:
             return self._local.outcome(order.request, on_progress, unwanted)
         batch = self._taken(order.batch)
@@ -57,7 +57,7 @@ class Processes:
             self._keep(order.batch, batch)
 
     def close_idle(self, since: float = _IDLE, most: int | None = None) -> None:
-        """End the processes that were idle for this time [s], and the oldest beyond this number."""
+        """End processes that have been idle for this time [s], and the oldest ones beyond this number."""
         now, most = time.monotonic(), self._places if most is None else most
         with self._lock:
             names = list(self._kept)
@@ -84,7 +84,7 @@ class Processes:
 
 
 class Machine(Worker):
-    """A Dask worker that runs orders in processes, which it kills when nobody wants them any more."""
+    """A Dask worker that runs orders in processes, and kills them when no server waits for them any more."""
 
     def __init__(
         self, address: str, processes: Processes, lanes: Mapping[Lane, int], security: Security
@@ -100,12 +100,14 @@ class Machine(Worker):
             security=security,
         )
         self._isolated = processes
-        self._running: dict[str, threading.Event] = {}  # key of a task -> set when nobody wants it
+        self._running: dict[
+            str, threading.Event
+        ] = {}  # key of a task -> event set when it is no longer wanted
         self._watching = threading.Event()
         threading.Thread(target=self._watch, name="unwanted", daemon=True).start()
 
     def carry_out(self, key: str, order: Order, topic: str) -> Outcome:
-        """Run an order in a thread of this worker; a crash of its process is an outcome too."""
+        """Return the outcome of an order, run in a thread of this worker; a crash is an outcome too."""
         unwanted = self._running[key] = threading.Event()
         reporter = self._reporter(key, topic) if order.is_heard else None
         try:
@@ -118,7 +120,7 @@ class Machine(Worker):
         return outcome
 
     def end_watch(self) -> None:
-        """End the thread that checks for abandoned tasks; call it once the worker is closed."""
+        """End the thread that checks for abandoned tasks; call this once the worker is closed."""
         self._watching.set()
 
     def _reporter(self, key: str, topic: str) -> Reporter:
@@ -137,13 +139,13 @@ class Machine(Worker):
 
 @dataclass(frozen=True)
 class Service:
-    """Serves schedulers, one after another, until it is asked to stop."""
+    """Serves one scheduler after another until it is asked to stop."""
 
     settings: Settings
     stopping: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self) -> None:
-        """Connect, and reconnect when the scheduler is lost."""
+        """Connect to a scheduler, and reconnect when it is lost."""
         for number in (signal.SIGTERM, signal.SIGINT):
             asyncio.get_running_loop().add_signal_handler(number, self.stopping.set)
         processes = Processes(sum(self.settings.lanes.values()))
@@ -172,10 +174,10 @@ class Service:
                 machine.end_watch()
 
     async def _connected(self, machine: Machine) -> None:
-        """Serve the scheduler as long as it is connected."""
+        """Serve the scheduler while it is connected."""
         logger.warning("connecting to %s", self.settings.engine)
         try:
-            await asyncio.wait_for(machine, _START)  # one that falls silent would be waited for without end
+            await asyncio.wait_for(machine, _START)  # otherwise it would wait for a silent scheduler for ever
             logger.warning("at work for %s: %s", machine.scheduler.address, dict(self.settings.lanes))
             await machine.finished()
         except Exception as error:
@@ -184,7 +186,7 @@ class Service:
 
 
 def main() -> None:
-    """Run the worker of this machine by the settings in the environment."""
+    """Run the worker of this machine with the settings in the environment."""
     settings = Settings()
     logging.basicConfig(format="%(asctime)s %(message)s")
     configure()

@@ -1,4 +1,4 @@
-"""Configuration of Dask: the team's certificates, no web pages, no retries, no profiling of threads."""
+"""Configure Dask: the team's certificates, no web pages, no retries, no profiling of threads."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from distributed import Security
 from app.settings import Settings
 
 CONFIGURATION = {
-    "distributed.admin.large-graph-warning-threshold": "1GiB",  # a STEP file travels with its task
-    "distributed.scheduler.allowed-failures": 0,  # the queue of jobs decides whether one runs again
+    "distributed.admin.large-graph-warning-threshold": "1GiB",  # a STEP file is sent with its task
+    "distributed.scheduler.allowed-failures": 0,  # the queue of jobs decides about retries
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.worker.profile.enabled": False,
@@ -19,7 +19,7 @@ CONFIGURATION = {
 
 
 def configure() -> None:
-    """Apply Dask's configuration in this process, and let Dask log like the program."""
+    """Apply this configuration of Dask in the process, and let Dask log like the program."""
     dask.config.set(CONFIGURATION)
     logger = logging.getLogger("distributed")
     logger.handlers.clear()
@@ -28,7 +28,7 @@ def configure() -> None:
 
 
 def security(settings: Settings) -> Security:
-    """Return the certificates of this process; both ends of each connection authenticate themselves."""
+    """Return the certificates of this process; both ends of each connection authenticate each other."""
     if settings.dask_ca is None:
         return Security(require_encryption=False)
     pair = {"cert": str(settings.dask_cert), "key": str(settings.dask_key)}

@@ -1,6 +1,6 @@
 """The program of `crankwright scheduler`: Dask's scheduler without retries and web pages.
 
-It holds nothing that must survive a crash: the queue of jobs is in the database.
+It holds nothing that must survive a crash, because the queue of jobs is in the database.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ async def _run(settings: Settings, host: str, port: int) -> None:
 
 
 def main() -> None:
-    """Run the scheduler at the host and port that the command line ends with."""
+    """Run the scheduler on the host and port at the end of the command line."""
     logging.basicConfig(format="%(asctime)s %(message)s")
     configure()
     asyncio.run(_run(Settings(), sys.argv[-2], int(sys.argv[-1])))

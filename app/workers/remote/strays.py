@@ -1,7 +1,7 @@
 """Find tasks that no machine works on, from repeated reports of the scheduler.
 
-If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Our
-machines never return under the same address, so a server would wait for such a task for ever.
+If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Machines of
+this program never return under the same address, so a server would wait for such a task for ever.
 """
 
 from __future__ import annotations
@@ -12,30 +12,30 @@ from app.workers.errors import WorkerLost
 
 _HELD = ("processing", "memory", "erred")  # on a machine, or at its end
 _WITHOUT_MACHINE = "no-worker"
-_ON_ITS_WAY = 120.0  # how long a task of 1 GiB may take to the scheduler [s]
+_ON_ITS_WAY = 120.0  # longest time for a task of 1 GiB to reach the scheduler [s]
 
 
 class NeverBegun(Exception):
-    """The machine of a task has gone before the task came there; another machine may run it."""
+    """The machine of a task was lost before the task arrived; another machine may run the task."""
 
 
 class Strays:
-    """Which tasks are on no machine, and since when."""
+    """The tasks that are on no machine, and since when."""
 
     def __init__(self) -> None:
-        self._since: dict[str, float] = {}  # when the scheduler was first seen without a task [s]
+        self._since: dict[str, float] = {}  # when the scheduler first did not know a task [s]
         self._without_machine: frozenset[str] = frozenset()
         self._lost: frozenset[str] = frozenset()
 
     def note(self, states: Mapping[str, str | None], now: float) -> None:
-        """Judge all tasks by their reported states; None means that the scheduler does not know the task."""
+        """Record the reported states of all tasks; None means that the scheduler does not know the task."""
         outside = [key for key, state in states.items() if state not in _HELD]
         self._since = {key: self._since.get(key, now) for key in outside}
         self._without_machine = frozenset(key for key in outside if states[key] == _WITHOUT_MACHINE)
         self._lost = frozenset(key for key, since in self._since.items() if now - since > _ON_ITS_WAY)
 
     def check(self, key: str) -> None:
-        """Check that a task is on a machine, or may be on its way.
+        """Check that a task is on a machine, or may still be on its way.
 
         Raises
         ------

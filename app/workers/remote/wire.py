@@ -1,6 +1,6 @@
 """Packed requests and outcomes, which the scheduler and Dask's workers pass on unopened.
 
-The scheduler imports this module, so Crankwright must be installed on its machine too; the version may
+The scheduler imports this module, so Crankwright must also be installed on its machine; the version may
 differ.
 """
 
@@ -23,7 +23,7 @@ MOST_BYTES = 2**30
 
 @dataclass(frozen=True)
 class Order:
-    """A request, the batch whose process it may use, and whether somebody hears how far it is."""
+    """A request, the batch whose process it may use, and whether a listener wants its progress."""
 
     request: Request
     batch: str | None = None
@@ -31,7 +31,7 @@ class Order:
 
 
 class CarriesOut(Protocol):
-    """A Dask worker of ours."""
+    """The interface of this program's Dask worker."""
 
     def carry_out(self, key: str, order: Order, topic: str) -> Outcome:
         """Run a request in a separate process; see `app.workers.remote.machine`."""
@@ -39,7 +39,7 @@ class CarriesOut(Protocol):
 
 
 def carry_out(key: str, order: Order, topic: str) -> Outcome:
-    """Return the one function that Dask runs, in a thread of its worker.
+    """Return the outcome of an order; the only function that Dask runs, in a thread of its worker.
 
     It reports progress under a topic.
     """
@@ -48,17 +48,17 @@ def carry_out(key: str, order: Order, topic: str) -> Outcome:
 
 @dataclass(frozen=True)
 class Places:
-    """Number of functions of a lane that a machine runs at the same time, and of those that others sent."""
+    """How many functions of a lane a machine runs at the same time, and how many of other servers it has."""
 
     size: int
     of_others: int
 
 
 def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
-    """Return the places of each lane by the address of the machine; called in the scheduler.
+    """Return the slots of each lane by the address of the machine; called in the scheduler.
 
-    A machine that is paused or shutting down has none. `own` is part of the keys of the caller's tasks, which
-    it counts itself without delay.
+    A machine that is paused or shutting down has none. `own` is a part of the keys of the caller's tasks,
+    which the caller counts itself without delay.
     """
     return {
         lane: {
@@ -80,7 +80,7 @@ def check_size(packed: PackedMessage) -> None:
     Raises
     ------
     RemoteError
-        `TooLarge`.
+        If the message is too large (`TooLarge`).
     """
     size = len(packed.message) + sum(memoryview(piece).nbytes for piece in packed.pieces)
     if size > MOST_BYTES:

@@ -15,7 +15,7 @@ from app.worksheets.imports.writer import Writer
 
 
 class Arithmetic(Writer):
-    """Writes operators."""
+    """Writes arithmetic operators."""
 
     def times(self, left: Node, right: Node) -> Term:
         """Return a product of two trees."""
@@ -42,11 +42,11 @@ class Arithmetic(Writer):
         return binary(self.value(part), "/", number(100), PRODUCT)
 
     def vectorized(self, part: Node) -> Term:
-        """Return a tree whose operators go item by item."""
+        """Return a tree whose operators apply item by item."""
         return replace(self, is_vectorised=True).term(part)
 
     def product(self, left: Term, right: Term) -> Term:
-        """Return a product, which of two vectors is their scalar product."""
+        """Return a product; for two vectors, their scalar product."""
         result = binary(left, "*", right, PRODUCT)
         if left.is_vector and right.is_vector and not self.is_vectorised:
             if left.is_row == right.is_row and left.is_row:
@@ -81,7 +81,7 @@ class Arithmetic(Writer):
         return raised(under, over)
 
     def _is_euler(self, base: Node) -> bool:
-        """Return whether a base is Euler's number: `e` labelled so, or without a label and a definition."""
+        """Return whether a base is Euler's number: `e` labelled so, or `e` without label and definition."""
         label = base.attributes.get("labels", "")
         is_free = label in UNLABELLED and "e" not in self.scope
         return key_of(base) == "e" and (label == "CONSTANT" or is_free)
@@ -115,7 +115,7 @@ def _is_plain(text: str) -> bool:
 
 
 def _fraction(node: Node) -> Term | None:
-    """Return a quotient of two plain numbers, which an exponent may be."""
+    """Return a quotient of two plain numbers as text, for use as an exponent; None for other trees."""
     while node.tag == "parens" and node.parts:
         node = node.parts[0]
     if node.tag != "apply" or len(node.parts) != 3 or node.parts[0].tag != "div":

@@ -1,4 +1,4 @@
-"""Calls: of the user's functions, of Mathcad's own, and of interpolation."""
+"""Function calls: the user's functions, Mathcad's own functions, and interpolation."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dataclasses import replace
 from app.worksheets.imports import functions
 from app.worksheets.imports.errors import Unnamed, Untranslatable
 from app.worksheets.imports.names import key_of
-from app.worksheets.imports.scope import Choice, FailedName, Function, Range, Scope, Value, Written
+from app.worksheets.imports.scope import Choice, FailedName, Function, InlineTerm, Range, Scope, Value
 from app.worksheets.imports.terms import ATOM, LOOSE, PRODUCT, SUM, Term, binary, called, number, reduced
 from app.worksheets.imports.trees import Node
 from app.worksheets.imports.writer import MOST_INLINED, Writer
 
 
 class Calls(Writer):
-    """Writes calls."""
+    """Writes function calls."""
 
     def call(self, operator: Node, arguments: list[Node]) -> Term:
         """Return a call of a function by its name."""
@@ -26,7 +26,7 @@ class Calls(Writer):
                 return self._own(meant, arguments)
             case FailedName(region):
                 raise Unnamed(key, region)
-            case Value() | Range() | Written() | Choice():
+            case Value() | Range() | InlineTerm() | Choice():
                 raise Untranslatable("the called name is not a function", "write a product with *")
         if key in functions.REFUSED:
             raise Untranslatable(
@@ -101,10 +101,10 @@ class Calls(Writer):
         return self._written_out(function, parts)
 
     def _written_out(self, function: Function, parts: list[Term]) -> Term:
-        """Return the body of a function with its arguments in the place of its parameters."""
+        """Return the body of a function with its parameters replaced by the arguments."""
         inner: Scope = dict(function.scope)
         for key, part in zip(function.parameters, parts, strict=True):
-            inner[key] = Written(part)
+            inner[key] = InlineTerm(part)
         return replace(self, scope=inner, depth=self.depth + 1).term(function.body)
 
 

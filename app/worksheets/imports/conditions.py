@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.worksheets.imports.errors import Untranslatable
 from app.worksheets.imports.names import key_of
-from app.worksheets.imports.scope import Choice, Scope, Written
+from app.worksheets.imports.scope import Choice, InlineTerm, Scope
 from app.worksheets.imports.terms import ATOM, LOOSE, SUM, Term
 from app.worksheets.imports.trees import Node
 from app.worksheets.imports.writer import Writer
@@ -21,17 +21,17 @@ _JOINED = {
 
 
 class Conditions(Writer):
-    """Writes conditions and cases."""
+    """Writes conditions and case distinctions."""
 
     def value(self, node: Node) -> Term:
-        """Return a quantity; a condition is 1 if it holds and 0 otherwise."""
+        """Return a tree as a quantity; a condition is 1 if it holds and 0 otherwise."""
         term = self.term(node)
         if not term.is_truth:
             return term
         return Term(f"if {term.text} then 1 else 0", LOOSE).shaped(term)
 
     def condition(self, node: Node) -> Term:
-        """Return a tree as a condition; of a number, whether it is not 0."""
+        """Return a tree as a condition; for a number, the condition that it is not 0."""
         if node.tag == "parens" and node.parts:
             return self.condition(node.parts[0])
         sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
@@ -51,7 +51,7 @@ class Conditions(Writer):
         if word := self._tested(left, right) or self._tested(right, left):
             return Term(f"not ({word})" if sign == "!=" else word, LOOSE, is_truth=True)
         one, other = self.term(left), self.value(right)
-        start = one.text if one.is_truth else one.bound(SUM)  # a chain goes on: 1 < x <= 2
+        start = one.text if one.is_truth else one.bound(SUM)  # continues a chain such as 1 < x <= 2
         return Term(f"{start} {sign} {other.bound(SUM)}", LOOSE, is_truth=True).shaped(one, other)
 
     def _tested(self, choice: Node, text: Node) -> str:
@@ -61,18 +61,18 @@ class Conditions(Writer):
         return f"{meant.name} is {meant.words[text.text]}"
 
     def either(self, test: Term, one: Node, other: Node) -> Term:
-        """Return one of two values, by a condition."""
+        """Return an expression that selects one of two values by a condition."""
         then, otherwise = self.value(one), self.value(other)
         text = f"if {test.text} then {then.bound(SUM)} else {otherwise.text}"
         return Term(text, LOOSE).shaped(test, then, otherwise)
 
     def program(self, parts: list[Node]) -> Term:
-        """Return definitions of local names, and then a value: each name is replaced by its expression."""
+        """Return the value of a program; local names are replaced by their expressions."""
         parts = [part for part in parts if part.tag != "placeholder"]
         inner: Scope = dict(self.scope)
         for place, part in enumerate(parts):
             if part.tag == "localDefine" and len(part.parts) == 2 and part.parts[0].tag == "id":
-                inner[key_of(part.parts[0])] = Written(self.within(inner).value(part.parts[1]))
+                inner[key_of(part.parts[0])] = InlineTerm(self.within(inner).value(part.parts[1]))
                 continue
             at = self.within(inner)
             if part.tag in ("if", "elseif", "alsoif", "else"):
@@ -81,12 +81,12 @@ class Conditions(Writer):
                 return at.value(part.parts[0])
             if place == len(parts) - 1:
                 return at.value(part)
-            at.term(part)  # names a construct that is refused
+            at.term(part)  # raises an error that names the refused construct
             raise Untranslatable("the program returns several values", "write one formula")
         raise Untranslatable("the program returns no value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
-        """Return successive conditions as one; the last is `else`, or there is no value."""
+        """Return successive conditions as one expression; the last one is `else`, or there is no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
         while waiting:

@@ -24,7 +24,7 @@ Call = Callable[[list[Part]], Part]
 _USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K",
           "J", "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "Hz", "1/s", "N/m**3", "A", "V",
           "ohm")  # fmt: skip
-"""Units in which results are declared, where the sheet asks for none."""
+"""Units in which results are declared if the sheet requests none."""
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K", "ampere": "A", "mole": "mol",
           "radian": "rad", "candela": "cd"}  # fmt: skip
 
@@ -36,7 +36,7 @@ def _parser() -> lark.Lark:
 
 @dataclass
 class Declarations:
-    """The names that have lines already, as the scope of expressions."""
+    """The names that lines have declared so far, as the scope of expressions."""
 
     sorts: dict[str, Sort] = field(default_factory=dict)
     functions: dict[str, tuple[int, Sort]] = field(default_factory=dict)
@@ -48,12 +48,12 @@ class Declarations:
         Parameters
         ----------
         bound
-            What the parameters of a function measure, within it.
+            The sorts of the parameters, if the expression is the body of a function.
 
         Raises
         ------
         Untranslatable
-            The language refuses the expression, as where units do not fit.
+            If the language refuses the expression, for example because units do not fit.
         """
         before, self.bound = self.bound, bound or {}
         try:
@@ -69,14 +69,14 @@ class Declarations:
         return result
 
     def name(self, text: str) -> Part:
-        """Return the meaning of a name."""
+        """Return a name as a part of an expression, with its sort."""
         sort = self.bound.get(text) or self.sorts.get(text)
         if sort is None:
             raise FaultyText("unknown_name", f"{text[:40]} is not declared")
         return Name(text), sort
 
     def function(self, name: str) -> Call | None:
-        """Return a function that has a line."""
+        """Return a function that a line has declared; None if there is none."""
         if name not in self.functions:
             return None
         count, result = self.functions[name]
@@ -90,12 +90,12 @@ class Declarations:
         return call
 
     def spend(self) -> None:
-        """Count nothing: the sheet counts when it is read."""
+        """Do nothing, because operations are counted when the sheet is read."""
 
 
 def _remedy(code: str) -> str:
     remedies: Mapping[str, str] = {
-        "unit_mismatch": "write the line by hand, with the units that are meant",
+        "unit_mismatch": "write the line by hand, with the intended units",
         "axis_mismatch": "write lists of equal length over one axis",
     }
     return remedies.get(code, "write the line by hand")
@@ -115,14 +115,14 @@ def fits(text: str, sort: Sort) -> bool:
 
 
 def _is_speed(text: str) -> bool:
-    """Return whether a unit is one of angular speed."""
+    """Return whether a unit measures angular speed."""
     return dimension_of(unit(text)) == dimension_of(unit("rad/s"))
 
 
 def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """Return the unit in which a value is declared.
 
-    It is the first suitable requested unit, else a common one, else SI.
+    It is the first suitable requested unit, else a common one, else an SI unit.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     if sort.kind.base == registry.Unit("radian") and not sort.kind.turned:
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")
     if dimension_of(sort.kind) == dimension_of(unit("1/s")) and any(map(_is_speed, wanted)):
-        return "rad/s"  # to Mathcad 1/s and rad/s are one, and rpm is 2*pi/60 of it
+        return "rad/s"  # Mathcad does not distinguish 1/s from rad/s, and its rpm is 2*pi/60 of that unit
     usual = (text for text in _USUAL if dimension_of(unit(text)) == dimension_of(sort.kind))
     declared = next((text for text in (*wanted, *usual) if fits(text, sort)), None)
     if declared:

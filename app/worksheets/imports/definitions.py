@@ -1,4 +1,4 @@
-"""Definitions and results of a sheet as statements."""
+"""Translate definitions and results of a sheet into statements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.worksheets.imports.names import key_of, legal, look
 from app.worksheets.imports.outcome import Outcome, one_line
 from app.worksheets.imports.quantities import scaled
 from app.worksheets.imports.regions import Original
-from app.worksheets.imports.scope import FailedName, Function, Scope, Value, Written
+from app.worksheets.imports.scope import FailedName, Function, InlineTerm, Scope, Value
 from app.worksheets.imports.statements import without_result
 from app.worksheets.imports.terms import Term
 from app.worksheets.imports.trees import Node
@@ -19,7 +19,7 @@ from app.worksheets.imports.unit_names import label_units
 
 
 class Definitions(ListDefinitions):
-    """The definitions and results of regions, as lines of a worksheet."""
+    """Translates the regions that define or show values."""
 
     def take(self, outcome: Outcome, math: Node) -> None:
         """Write the lines of a region that calculates.
@@ -27,7 +27,7 @@ class Definitions(ListDefinitions):
         Raises
         ------
         Untranslatable, Unnamed
-            It has no lines; the reason.
+            If it cannot be written as lines; the error gives the reason.
         """
         self.now = outcome
         self.owners[outcome.original.number] = outcome
@@ -50,24 +50,24 @@ class Definitions(ListDefinitions):
             raise Untranslatable("Mathcad reports an error in this region", "correct or remove it")
 
     def fail(self, math: Node, number: str) -> None:
-        """Note that the names which a region defines have no meaning."""
+        """Record that the names which a region defines have no meaning."""
         if math.tag in ("define", "globalDefine") and math.parts:
             for key in _defined(math.parts[0]):
                 self.scope[key] = FailedName(number)
 
     def in_block(self, region: Original) -> list[Outcome]:
-        """Return the regions of the same solve block."""
+        """Return the outcomes of the regions in the same solve block."""
         return [o for o in self.outcomes.values() if o.original.block == region.block]
 
     def equation(self, region: Original) -> str:
-        """Return a constraint as far as it can be written, for a remedy."""
+        """Return a constraint as text for a remedy; a placeholder if it cannot be written."""
         try:
             return Expressions(self, self.scope).condition(region.math).text if region.math else ""
         except (Untranslatable, Unnamed):
             return "left == right"
 
     def finish(self) -> None:
-        """Write the functions that are never called, with plain numbers if that fits their units."""
+        """Write the functions that are never called, with plain numbers as parameters if they fit."""
         for function in self.functions:
             outcome = self.owners[function.region]
             if function.names or outcome.state != "unverified":
@@ -75,12 +75,14 @@ class Definitions(ListDefinitions):
             try:
                 plain = [Term("1", number=1.0) for _ in function.parameters]
                 if self.function(function, plain) is not None:
-                    outcome.notes.append("nothing calls it: its parameters are taken as pure numbers")
+                    outcome.notes.append(
+                        "it is never called, so its parameters are assumed to be pure numbers"
+                    )
                     continue
             except (Untranslatable, Unnamed):
                 pass
             if not outcome.lines:
-                what = f"function {look(function.key)} whose units no call states"
+                what = f"function {look(function.key)} that is never called, so that its units are unknown"
                 outcome.refuse(
                     one_line(what), f"write it with its units: {legal(function.key)}(x [mm]) [1] = …"
                 )
@@ -131,10 +133,10 @@ class Definitions(ListDefinitions):
         self.functions.append(function)
 
     def _refuse_if_hopeless(self, function: Function) -> None:
-        """Refuse a body with a construct that no call can replace: a matrix, a loop, an undefined name."""
+        """Refuse a function body with a construct that no call can make valid, such as a matrix or a loop."""
         inner: Scope = dict(function.scope)
         for key in function.parameters:
-            inner[key] = Written(Term("1", axis=None))
+            inner[key] = InlineTerm(Term("1", axis=None))
         before = self.now
         trial = _Trial(self)
         try:
@@ -146,7 +148,7 @@ class Definitions(ListDefinitions):
             self.now = before
 
     def _result(self, outcome: Outcome, math: Node) -> None:
-        """Translate a region that shows the result of a name, or of a formula, which gets a line."""
+        """Translate a region that shows the result of a name, or of a formula, which gets its own line."""
         inner = math.parts[0]
         at = Expressions(self, self.scope)
         while inner.tag == "parens" and inner.parts:
@@ -161,18 +163,18 @@ class Definitions(ListDefinitions):
 
 
 class _Trial:
-    """Answers what an expression asks of a sheet, and writes nothing."""
+    """Stands in for a sheet while an expression is tried, without writing any line."""
 
     def __init__(self, sheet: Definitions) -> None:
         self.origin = sheet.origin
         self.axis = sheet.axis
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """Return a name that nothing has."""
+        """Return a placeholder name."""
         return "call"
 
     def curve(self, across: Term, up: Term) -> str:
-        """Return a name that nothing has."""
+        """Return a placeholder name."""
         return "curve"
 
 
@@ -197,7 +199,7 @@ def _own_names(math: Node) -> set[str]:
 
 
 def _defined(target: Node) -> Iterator[str]:
-    """Yield the names that a definition gives a meaning."""
+    """Yield the names that the left side of a definition defines."""
     match target.tag, target.parts:
         case "id", _:
             yield key_of(target)

@@ -1,14 +1,14 @@
-"""Refusals of an import: of a whole file, or of one construct within it."""
+"""Errors of an import: for a whole file, or for one construct in it."""
 
 from templates.core.errors import FaultyText
 
 
 class SheetNotRead(FaultyText):
-    """A file that is not a Mathcad sheet, or one that is not taken; `code` says in which way."""
+    """Raised for a file that is not a Mathcad sheet, or is refused; `code` gives the reason."""
 
 
 class Untranslatable(Exception):
-    """A construct of Mathcad that worksheets do not have; `construct` names it."""
+    """Raised for a construct of Mathcad that worksheets do not have; `construct` names it."""
 
     def __init__(self, construct: str, remedy: str) -> None:
         self.construct, self.remedy = construct, remedy
@@ -16,7 +16,7 @@ class Untranslatable(Exception):
 
 
 class Unnamed(Exception):
-    """A name that no region above defines, or one whose region was not translated."""
+    """Raised for a name that no region above defines, or whose region was not translated."""
 
     def __init__(self, name: str, region: str | None = None) -> None:
         self.name, self.region = name, region

@@ -1,7 +1,7 @@
-"""Mathcad's trees as expressions of worksheets.
+"""Translate Mathcad's trees into expressions of worksheets.
 
-A vector of Mathcad is a list. A range variable becomes the list of its values, and so does a list that it
-indexes. A construct that worksheets lack is refused by name.
+A vector of Mathcad becomes a list. A range variable becomes the list of its values, and an item with a range
+variable as index becomes the list of these items. The message of a refused construct names it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from app.worksheets.imports.errors import Unnamed, Untranslatable
 from app.worksheets.imports.lists import Lists
 from app.worksheets.imports.names import key_of, look
 from app.worksheets.imports.quantities import CONSTANTS, unit_named
-from app.worksheets.imports.scope import Choice, FailedName, Meant, Range, Value, Written
+from app.worksheets.imports.scope import Choice, FailedName, InlineTerm, Meant, Range, Value
 from app.worksheets.imports.terms import POWER, Term, number
 from app.worksheets.imports.trees import Node
 
@@ -28,13 +28,13 @@ REFUSED = {
     "crossProduct": ("matrix product", "write its components"),
     "determinant": ("determinant", "write it out"),
     "transpose": ("matrix", "write its items as lists"),
-    "matcol": ("the formula uses a column of a matrix", "give the column as a list of its own"),
-    "matrow": ("the formula uses a row of a matrix", "give the row as a list of its own"),
+    "matcol": ("the formula uses a column of a matrix", "give the column as a separate list"),
+    "matrow": ("the formula uses a row of a matrix", "give the row as a separate list"),
     "product": ("product over an index", "write it out, or as exp(sum(log(x)))"),
     "symEval": ("symbolic calculation", "write its result as a formula"),
     "for": ("loop", "write the formula for a list"),
     "while": ("loop", "write the formula for a list, or solve"),
-    "tryCatch": ("try and catch", "say with if when there is a value"),
+    "tryCatch": ("try and catch", "state with if when there is a value"),
     "str": ("text", "use a choice, or a check"),
     "imag": ("complex number", "calculate with real and imaginary part"),
     "complex": ("complex number", "calculate with real and imaginary part"),
@@ -44,7 +44,7 @@ REFUSED = {
 
 
 class Expressions(Arithmetic, Lists, Calls, Conditions):
-    """Writes expressions at one place of a sheet."""
+    """Writes expressions at one position of a sheet."""
 
     def term(self, node: Node) -> Term:
         """Return the expression of a tree.
@@ -52,9 +52,9 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         Raises
         ------
         Untranslatable
-            With the name of the construct that worksheets do not have.
+            If worksheets do not have the construct; the error names it.
         Unnamed
-            A name has no meaning here.
+            If a name has no meaning here.
         """
         if node.tag in REFUSED:
             raise Untranslatable(*REFUSED[node.tag])
@@ -79,7 +79,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
-        """Return the term that a name refers to."""
+        """Return the term to which a name refers."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
             return self._unit(key)
@@ -130,7 +130,7 @@ def _meant(key: str, meant: Meant) -> Term:
     match meant:
         case Value() | Range():
             return meant.term()
-        case Written(expression):
+        case InlineTerm(expression):
             return expression
         case FailedName(region):
             raise Unnamed(key, region)

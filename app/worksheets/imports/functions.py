@@ -1,4 +1,4 @@
-"""Mathcad's functions in terms of those that worksheets have."""
+"""Mathcad's functions, expressed by functions of worksheets."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ OVER_LISTS: Mapping[str, str] = {
     " / mean(({0} - mean({0}))**2)",
     "norm": "sqrt(sum(({0})**2))",
 }  # fmt: skip
-"""Functions that make one value of one or two lists."""
+"""Functions that reduce one or two lists to one value."""
 
 COUNTS = frozenset({"length", "rows", "last"})
 
@@ -66,4 +66,4 @@ REFUSED: Mapping[str, str] = {
                     "solve block"),
     **dict.fromkeys(("root",), "root"),
 }  # fmt: skip
-"""Functions that worksheets do not have, and what they are called where they are refused."""
+"""Functions that worksheets do not have, and their names in error messages."""

@@ -1,4 +1,4 @@
-"""An import from the bytes of a file to a worksheet; runs in a process of its own, within limits."""
+"""Import a file as a worksheet; runs in a separate process, within limits."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ class ImportResult:
 
 
 def read_sheet(content: bytes) -> OriginalSheet:
-    """Return the regions of a file of either kind.
+    """Return the sheet in a file of either kind.
 
     Raises
     ------
     SheetNotRead
-        If it is not a sheet of Mathcad, or is refused; the error gives reason and remedy.
+        If it is not a Mathcad sheet, or is refused; the error gives reason and remedy.
     """
     return read_prime(content) if is_package(content) else read_legacy(content)
 
 
 def imported(content: bytes, title: str) -> ImportResult:
-    """Return a file as a worksheet, with an outcome for each of its regions.
+    """Return the worksheet for a file, with an outcome for each of its regions.
 
     Raises
     ------
     SheetNotRead
-        If it is not a sheet of Mathcad, or is refused.
+        If it is not a Mathcad sheet, or is refused.
     """
     sheet = read_sheet(content)
     outcomes = translated(sheet)
@@ -53,19 +53,19 @@ def imported(content: bytes, title: str) -> ImportResult:
 
 
 def _left_out(sheet: OriginalSheet, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-    """Yield a refusal for each counted region of the file without an outcome."""
+    """Yield a refusal for each region that the count finds in the file but that has no outcome."""
     reported = Counter(outcome.original.number for outcome in outcomes)
     for number in (sheet.counted - reported).elements():
         outcome = Outcome(Original(number, "other", 0.0, 0.0))
         outcome.refuse(
-            "region that the import left out, which is a fault of the import",
-            "report the fault, and write here by hand what the region says",
+            "region that the import left out, which is an error in the program",
+            "report the error, and write the content of the region by hand",
         )
         yield outcome
 
 
 def _title(outcomes: list[Outcome], other: str) -> str:
-    """Return the first text of the sheet if it is short enough for a title; else another."""
+    """Return the first text of the sheet if it is short enough for a title, else a default title."""
     first = next((o for o in outcomes if o.original.kind == "text" and o.original.text), None)
     if first is not None and len(first.original.text) <= LONGEST_TITLE and "\n" not in first.original.text:
         if first is outcomes[0]:

@@ -29,9 +29,9 @@ _SKIPPED = {"originRef", "parentRef", "comment", "originComment", "contentHash",
 
 
 def read_legacy(content: bytes) -> OriginalSheet:
-    """Read a .xmcd file, or a .xmcdz file, which is compressed by gzip.
+    """Return the sheet in a .xmcd file, or in a .xmcdz file, which is compressed by gzip.
 
-    Regions are in the sheet, in its areas, collapsed or not, and in its texts.
+    Regions may be in the sheet, in its areas, collapsed or not, and in its texts.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def _original(region: Node) -> Original:
 
 def _math(body: Node) -> Node | None:
     math = next((part for part in body.parts if part.tag not in _SKIPPED), None)
-    while math is not None and math.tag == "provenance":  # where a formula was copied from
+    while math is not None and math.tag == "provenance":  # records the origin of a copied formula
         math = next((part for part in math.parts if part.tag not in _SKIPPED), None)
     if math is not None:
         _renew(math)
@@ -91,7 +91,7 @@ def _math(body: Node) -> Node | None:
 
 
 def _renew(node: Node) -> None:
-    """Give trees the form of Mathcad Prime, in place: names of elements, conditions, and subscripts."""
+    """Convert trees in place to the form of Mathcad Prime: element names, conditions, and subscripts."""
     waiting = [node]
     while waiting:
         node = waiting.pop()

@@ -1,4 +1,4 @@
-"""Definitions of ranges, lists and their items, of several names at once, and combo boxes."""
+"""Definitions of ranges, of lists and their items, of several names at once, and combo boxes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from templates.core.units.expressions import Sort
 
 
 class ListDefinitions(Statements):
-    """Defines lists and choices."""
+    """Translates definitions of lists and choices."""
 
     def range_of(self, outcome: Outcome, target: Node, node: Node) -> None:
         """Translate a range variable into a list."""
@@ -47,7 +47,7 @@ class ListDefinitions(Statements):
         return tuple(start + n * step for n in range(count))
 
     def items_of(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Translate items of a list along a range, all of them at once."""
+        """Translate the definition of all items of a list along a range."""
         if len(target.parts) == 3 and target.parts[1].tag == "id" and target.parts[2].tag == "real":
             self._one_item(outcome, target, value)
             return
@@ -89,7 +89,7 @@ class ListDefinitions(Statements):
         outcome.name = ""
 
     def several(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Translate several names at once: of the items of a list, or of the columns of a combo box."""
+        """Translate a definition of several names by the items of a list, or the columns of a combo box."""
         targets = target.parts
         if not all(part.tag == "id" for part in targets):
             raise Untranslatable("the list is defined item by item", "write the list with all its items")
@@ -115,7 +115,7 @@ class ListDefinitions(Statements):
         outcome.name = ""
 
     def choose(self, outcome: Outcome, targets: Sequence[Node], control: Node) -> None:
-        """Translate a combo box: a choice among its rows, and the values of the chosen row."""
+        """Translate a combo box into a choice among its rows, and the values of the chosen row."""
         rows, columns, chosen = (_count(control, key) for key in ("rows", "cols", "SelectedRow"))
         holder = control.first("ComboBoxValues")
         cells = list(holder.parts) if holder else []

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 from app.worksheets.imports.errors import Untranslatable
 from app.worksheets.imports.names import key_of
-from app.worksheets.imports.scope import Scope, Written
+from app.worksheets.imports.scope import InlineTerm, Scope
 from app.worksheets.imports.terms import PRODUCT, Term, binary, listed, number, reduced
 from app.worksheets.imports.trees import Node
 from app.worksheets.imports.writer import MOST_ITEMS, Writer
 
 
 class Lists(Writer):
-    """Writes lists."""
+    """Writes lists and sums."""
 
     def matrix(self, node: Node) -> Term:
-        """Return a vector as a list; other matrices are refused."""
+        """Return a vector as a list; refuse other matrices."""
         parts = [part for part in node.parts if part.tag != "display"]
         rows, columns = node.attributes.get("rows"), node.attributes.get("cols")
         if "1" not in (rows, columns) or not parts:
@@ -59,7 +59,7 @@ class Lists(Writer):
         return Term(f"{term.text}[{place}]")
 
     def _along(self, term: Term, at: Term) -> Term:
-        """Return the items of a list along a range that names each of them."""
+        """Return the items of a list whose indices are the values of a range."""
         assert term.axis is not None
         assert at.axis is not None
         numbers = at.axis.numbers
@@ -70,7 +70,7 @@ class Lists(Writer):
         return replace(term, is_vector=False, is_row=False, axis=replace(at.axis, start=term.axis.start))
 
     def summed(self, parts: list[Node]) -> Term:
-        """Return a sum over an index, or of a list."""
+        """Return a sum over an index, or the sum of a list."""
         function = next((part for part in parts if part.tag == "lambda"), None)
         bounds = {part.tag: part.parts[0] for part in parts if part.parts and part.tag.endswith("Bound")}
         if function is None or len(function.parts) != 2:
@@ -86,10 +86,10 @@ class Lists(Writer):
         numbers = self._counted(self.term(bounds["lowerBound"]), self.term(bounds["upperBound"]))
         axis = replace(self.sheet.axis(len(numbers)), numbers=numbers)
         literal = f"[{', '.join(number(n).text for n in numbers)}]"
-        inner: Scope = {**self.scope, key_of(variable): Written(Term("index", axis=axis))}
+        inner: Scope = {**self.scope, key_of(variable): InlineTerm(Term("index", axis=axis))}
         term = self.within(inner).value(body)
         if "index" in term.text.replace("(", " ").replace(")", " ").split():
-            inner[key_of(variable)] = Written(Term(literal, axis=axis))
+            inner[key_of(variable)] = InlineTerm(Term(literal, axis=axis))
             term = replace(self, scope=inner, is_counting=True).value(body)
         if term.axis is None:
             return binary(number(len(numbers)), "*", term, PRODUCT)

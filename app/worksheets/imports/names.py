@@ -1,4 +1,4 @@
-"""Convert Mathcad's names to worksheet names: plain letters, one meaning each; `symbol` prints them."""
+"""Convert Mathcad's names to worksheet names: plain letters, one meaning each; `symbol` keeps their look."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ def key_of(node: Node) -> str:
 
 
 def look(key: str) -> str:
-    """Return a name as a reader sees it: `f_ck` of `f_{ck}`."""
+    """Return a name as a reader sees it: `f_ck` for `f_{ck}`."""
     return key.replace("{", "").replace("}", "")
 
 
 class Names:
-    """Makes legal names, each once."""
+    """Creates legal and unique names."""
 
     def __init__(self, reserved: frozenset[str]) -> None:
         self._used = set(reserved)
 
     def take(self, key: str) -> str:
-        """Return a unique name for the Mathcad object `key`; the second of the same name is `x_2`."""
+        """Return a unique name for the Mathcad object `key`; a second one with this name becomes `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
         while name in self._used:
@@ -81,10 +81,7 @@ _SUBSCRIPT = re.compile(r"[A-Za-z0-9,*+ ]{1,20}")
 
 
 def symbol(key: str) -> str:
-    r"""Return LaTeX of a name with its subscript, such as `\sigma_{c2}`.
-
-    It is empty if this is impossible.
-    """
+    r"""Return LaTeX for a name with its subscript, such as `\sigma_{c2}`; empty if this is impossible."""
     head, _, below = key.partition("_{")
     head, below = head.strip(), below.replace("{", "").replace("}", "")
     letter = f"\\{GREEK[head]}" if head in _TEX else head if re.fullmatch("[A-Za-z]", head) else ""

@@ -11,15 +11,15 @@ from app.worksheets.imports.regions import Original
 State = Literal["verified", "differs", "unverified", "shown", "refused", "blocked"]
 
 UNRESOLVED: frozenset[State] = frozenset({"differs", "refused", "blocked"})
-"""States that forbid a release while their lines stand in the text as they were imported."""
+"""States that prevent a release while their imported lines are unchanged in the text."""
 
 
 @dataclass
 class Outcome:
-    """The outcome of a region: its state, the lines that replace it, and both values where there are two.
+    """The outcome of a region: its state, the lines that replace it, and both values if they exist.
 
-    `name` is that of the value which is held against `cached`; `first` is the line in which it is declared if
-    that is another region's.
+    `name` is the name of the value that is compared with `cached`. `first` is the line that declares this
+    name if another region declares it.
     """
 
     original: Original
@@ -34,23 +34,23 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
 
     def refuse(self, construct: str, remedy: str) -> None:
-        """Note that the region has a construct which worksheets do not have."""
+        """Record that the region has a construct which worksheets do not have."""
         self.state, self.construct, self.remedy = "refused", construct, remedy
         self.name, self.blocked_by = "", ""
         self.lines = [f"// refused: {one_line(construct)} (region {self.original.number})"]
 
     def block(self, name: str, by: str) -> None:
-        """Note that the region needs a name whose region was not translated."""
+        """Record that the region needs a name whose region was not translated."""
         self.state, self.construct, self.blocked_by = "blocked", f"needs {one_line(name)}", by
-        self.remedy, self.name = f"write what region {by} says first", ""
+        self.remedy, self.name = f"first write the content of region {by} says first", ""
         self.lines = [f"// blocked: needs {one_line(name)} of region {by} (region {self.original.number})"]
 
     def show(self, what: str) -> None:
-        """Note that the region calculates nothing."""
+        """Record that the region calculates nothing."""
         self.state, self.construct = "shown", what
 
 
 def one_line(text: str) -> str:
-    """Return the text fit for a remark: one line, no signs that control anything."""
+    """Return the text in a form fit for a remark: one line without control characters."""
     plain = "".join(sign if sign.isprintable() else " " for sign in text)
     return " ".join(plain.split())[:200]

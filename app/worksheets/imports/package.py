@@ -1,8 +1,8 @@
 """Unpack the parts of a .mcdx package, within limits that are checked while reading.
 
-A client may forge the sizes that a ZIP states, so the reader ignores them. A part that is a ZIP itself (a
-text region) is opened once, for its one document, and counts against the same limits; archives inside it are
-not opened.
+The reader ignores the sizes that a ZIP states, because a client may forge them. A part that is a ZIP itself
+(a text region) is opened once, for its one document, and counts against the same limits; archives inside it
+are not opened.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MOST_PARTS = 200
 MOST_BYTES = 32 * 2**20
 LONGEST_NAME = 200
 LONGEST_DIRECTORY = 2**18
-"""Bytes of the directory of a package: far more than its parts need."""
+"""Largest size of a package's directory [bytes], far more than its parts need."""
 
 _END, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", 22, 2**16
 _PIECE = 2**16
@@ -29,19 +29,25 @@ _ENCRYPTED = 0x1
 _DAMAGES = (
     zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
 )  # fmt: skip
-"""What `zipfile` raises for bytes that are not ZIP, or no longer one."""
+"""Errors that `zipfile` raises for invalid or damaged archives."""
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 AGAIN = "save the sheet in Mathcad again, and send that file"
 
 
 @dataclass
 class Budget:
-    """Number of bytes that may still be unpacked."""
+    """The number of bytes that may still be unpacked."""
 
     left: int = MOST_BYTES
 
     def spend(self, size: int) -> None:
-        """Subtract unpacked bytes from the limit; raises SheetNotRead if there are too many."""
+        """Subtract unpacked bytes from the limit.
+
+        Raises
+        ------
+        SheetNotRead
+            If the limit is exceeded.
+        """
         self.left -= size
         if self.left < 0:
             what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
@@ -49,12 +55,12 @@ class Budget:
 
 
 class Package:
-    """The parts of a package by name, read when they are asked for.
+    """The parts of a package by name, read on request.
 
     Raises
     ------
     SheetNotRead
-        It is not a ZIP, has too many parts, or parts that no sheet has.
+        If it is not a ZIP, has too many parts, or has parts that no sheet has.
     """
 
     def __init__(self, content: bytes, budget: Budget) -> None:
@@ -77,7 +83,7 @@ class Package:
         return tuple(part.filename for part in self._parts)
 
     def read(self, name: str) -> bytes | None:
-        """Return the content of a part, or None if there is none.
+        """Return the content of a part, or None if there is no such part.
 
         Raises
         ------
@@ -118,12 +124,18 @@ def unpacked(content: bytes, budget: Budget) -> bytes:
 
 
 def is_package(content: bytes) -> bool:
-    """Return whether a file begins as a ZIP does."""
+    """Return whether a file begins like a ZIP."""
     return content.startswith(b"PK\x03\x04")
 
 
 def _check_directory(content: bytes) -> None:
-    """Check the directory before `zipfile` reads it, which creates an object for every entry."""
+    """Check the directory before `zipfile` reads it, because that creates an object for every entry.
+
+    Raises
+    ------
+    SheetNotRead
+        If the directory is missing or too large.
+    """
     place = len(content) - _END_SIZE
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))
@@ -157,5 +169,5 @@ def _check_part(part: zipfile.ZipInfo) -> None:
         what = f"its part {part.filename[:60]!a} is encrypted"
         raise SheetNotRead("encrypted", f"{what}: remove the password in Mathcad, and send that file")
     if part.compress_type not in _METHODS:
-        what = f"its part {part.filename[:60]!a} is packed by method {part.compress_type}"
-        raise SheetNotRead("package", f"{what}; a sheet has deflated parts: {AGAIN}")
+        what = f"its part {part.filename[:60]!a} is compressed by method {part.compress_type}"
+        raise SheetNotRead("package", f"{what}, but a sheet has deflated parts: {AGAIN}")

@@ -22,7 +22,7 @@ from app.worksheets.imports.trees import Node, read
 WORKSHEET, RESULTS = "mathcad/worksheet.xml", "mathcad/result.xml"
 RELATIONS, TAGS = "mathcad/_rels/worksheet.xml.rels", "mathcad/integration.xml"
 CALCULATION = "mathcad/settings/calculation.xml"
-TEXT = "Xaml/Document.xaml"  # within the package of a text region
+TEXT = "Xaml/Document.xaml"  # the part with the words in the package of a text region
 
 _KINDS: Mapping[str, Kind] = {
     "math": "math", "text": "text", "plot": "plot", "picture": "picture", "spec-table": "table",
@@ -33,7 +33,7 @@ _FAILED = {"engineErrors", "engineError"}
 
 
 def read_prime(content: bytes) -> OriginalSheet:
-    """Read a .mcdx file.
+    """Return the sheet in a .mcdx file.
 
     Raises
     ------
@@ -99,7 +99,7 @@ class _Reader:
     count: int = field(default=0)
 
     def regions(self, node: Node, block: str = "") -> Iterator[Original]:
-        """Yield the regions within an element, recursively, such as those of areas."""
+        """Yield the regions within an element, including those nested in areas."""
         for region in node.outermost("region"):
             yield from self._region(region, block)
 
@@ -137,7 +137,7 @@ class _Reader:
         )
 
     def _text(self, body: Node) -> str:
-        """Return the words of a text region, which are in a separate package."""
+        """Return the words of a text region, which are stored in a separate package."""
         content = self.package.read(self.targets.get(body.attributes.get("item-idref", ""), ""))
         if content is None or not is_package(content):
             return body.whole_text.strip()

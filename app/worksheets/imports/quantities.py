@@ -1,4 +1,4 @@
-"""Mathcad's units, constants and stored results, as quantities of this project."""
+"""Convert Mathcad's units, constants and stored results to quantities of this project."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _OURS: Mapping[str, str] = {
     "Å": "angstrom", "Δ°C": "delta_degC", "Δ°F": "delta_degF",
     "meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K",
 }  # fmt: skip
-"""Where the names differ."""
+"""Units whose names differ between Mathcad and this project."""
 
 _SIZES: Mapping[str, tuple[float, str]] = {
     "yr": (31556925.9747, "s"), "year": (31556925.9747, "s"), "tonf": (2000.0, "lbf"),
 }  # fmt: skip
-"""Where a name means a unit of another size here: Mathcad's year is the tropical one of 1900."""
+"""Names that mean a unit of another size here: Mathcad's year is the tropical year of 1900."""
 
 PI, EULER = math.pi, math.e
 CONSTANTS: Mapping[str, tuple[float, str]] = {
@@ -37,10 +37,10 @@ CONSTANTS: Mapping[str, tuple[float, str]] = {
     "μ_{0}": (1.25663706127e-6, "N/A**2"), "σ": (5.670374419e-8, "W/(m**2*K**4)"),
     "Φ_{0}": (2.067833848e-15, "Wb"),
 }  # fmt: skip
-"""Constants of Mathcad Prime, CODATA 2022; names are these only where they are labelled as constants."""
+"""Constants of Mathcad Prime, CODATA 2022; they apply only to names labelled as constants."""
 
 BEYOND = 1e307
-"""What Mathcad stores for infinity."""
+"""The value that Mathcad stores for infinity."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class ScaledNumber:
     powers: tuple[tuple[str, Fraction], ...] = ()
 
     def times(self, other: ScaledNumber, power: int = 1) -> ScaledNumber:
-        """Return the product with a power of another."""
+        """Return the product with a power of another scaled number."""
         powers = dict(self.powers)
         for name, exponent in other.powers:
             powers[name] = powers.get(name, Fraction(0)) + exponent * power
@@ -65,12 +65,12 @@ class ScaledNumber:
 
     @property
     def unit(self) -> str:
-        """Return the units as text, `kN*m` or `kg/(m*s**2)`; `1` where there are none.
+        """Return the units as text, such as `kN*m` or `kg/(m*s**2)`; `1` if there are none.
 
         Raises
         ------
         Untranslatable
-            If a power is not a whole number, or the text is not one of our units.
+            If a power is not a whole number, or the text is not a unit of this project.
         """
         if any(exponent.denominator != 1 for _, exponent in self.powers):
             raise Untranslatable(
@@ -92,7 +92,7 @@ class ScaledNumber:
 
     @property
     def si(self) -> float:
-        """Return the factor to SI."""
+        """Return the factor for conversion to SI."""
         factors = (float(unit(name).factor ** float(power)) for name, power in self.powers)
         return float(self.number) * math.prod(factors)
 
@@ -102,7 +102,7 @@ def _factor(name: str, power: int) -> str:
 
 
 def unit_named(name: str) -> ScaledNumber | None:
-    """Return Mathcad's unit of this name as one of ours; None if there is none."""
+    """Return the unit of this project for a Mathcad unit; None if there is none."""
     if name == "g":
         return ScaledNumber(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
     size, ours = _SIZES.get(name, (1.0, _OURS.get(name, name)))
@@ -116,7 +116,7 @@ def unit_named(name: str) -> ScaledNumber | None:
 def scaled(node: Node, is_unit: bool = False) -> ScaledNumber | None:
     """Return a tree of numbers and units as one quantity; None if it contains anything else.
 
-    `is_unit` means that plain names are units, as in the unit of a result.
+    With `is_unit`, plain names are units, as in the unit of a result.
     """
     parts = node.parts
     match node.tag:
@@ -167,7 +167,7 @@ class Result:
     values: tuple[float, ...]
     is_list: bool = False
     unit: str = "1"
-    """Mathcad's unit, in which both values are shown."""
+    """Mathcad's unit, in which both values are displayed."""
     factor: float = 1.0
 
 
@@ -177,9 +177,9 @@ def result_of(cached: Node, asked: Node | None, carries_units: bool) -> Result |
     Parameters
     ----------
     asked
-        The unit in which the region asks for its result.
+        The unit in which the region requests its result.
     carries_units
-        Whether the result names its whole unit; else it is a multiple of what is asked for.
+        Whether the result includes its whole unit; if not, it is a multiple of the requested unit.
     """
     wanted = scaled(asked, is_unit=True) if asked is not None and not carries_units else ScaledNumber()
     if wanted is None or not cached.parts:
@@ -238,9 +238,9 @@ def is_infinite(text: str) -> bool:
 
 
 def close(ours: Iterable[float], theirs: Iterable[float], within: float = 1e-9) -> bool:
-    """Return whether values agree, relative to the greatest of them.
+    """Return whether values agree, relative to the largest of them.
 
-    A zero of a list is judged by its items.
+    An item of a list that is zero is compared relative to the other items.
     """
     one, other = list(ours), list(theirs)
     if len(one) != len(other) or not all(map(math.isfinite, one)):

@@ -1,8 +1,8 @@
-"""The record of an import, kept with its worksheet: its regions, and which of them are unresolved now.
+"""The record of an import, stored with its worksheet: its regions, and which of them are unresolved.
 
-A region that differs, is refused or is blocked prevents a release as long as all its imported lines are
-unchanged in the text. An author resolves the region by changing or removing one of these lines. Changes of
-white space do not count.
+A region that differs, is refused or is blocked prevents a release while all its imported lines are unchanged
+in the text. An author resolves the region by changing or removing one of these lines. Changes of white space
+do not count.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ STATES: tuple[State, ...] = ("verified", "differs", "unverified", "shown", "refu
 
 
 class RegionRecord(TypedDict):
-    """One region; `app.worksheets.schemas.imports.ImportedRegion` says what each member is."""
+    """The record of one region; `app.worksheets.schemas.imports.ImportedRegion` describes the members."""
 
     region: str
     kind: str
@@ -41,7 +41,7 @@ class RegionRecord(TypedDict):
 
 
 class SheetRecord(TypedDict):
-    """The record that an import keeps of a sheet."""
+    """The record of an imported sheet."""
 
     program: str
     origin: int
@@ -50,18 +50,18 @@ class SheetRecord(TypedDict):
 
 
 class ImportRecord(SheetRecord):
-    """The record as a worksheet keeps it: with the name of the file."""
+    """The record as stored with a worksheet: a sheet record with the name of the file."""
 
     file: str
 
 
 def record_of(row: Row) -> ImportRecord | None:
-    """Return the import record of a version; None for a typed worksheet."""
+    """Return the import record of a version; None for a worksheet that was typed."""
     return cast("ImportRecord | None", row.imported)
 
 
 def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> SheetRecord:
-    """Return the record of an import, fit for JSON."""
+    """Return the record of an import in JSON form."""
     lines = {_plain(line): number for number, line in reversed(list(enumerate(text.split("\n"), 1)))}
     owners = {o.name: o for o in outcomes if o.name and o.lines}
     return {
@@ -103,7 +103,7 @@ def _finite(value: float) -> float | None:
 
 
 def unresolved(record: SheetRecord, text: str) -> list[RegionRecord]:
-    """Return the regions of a record that forbid a release of this text."""
+    """Return the regions of a record that prevent a release of this text."""
     present = {_plain(line) for line in text.split("\n")}
     return [region for region in record["regions"] if _stands(region, present)]
 
@@ -116,11 +116,11 @@ def _stands(region: RegionRecord, present: set[str]) -> bool:
 
 
 def require_resolved(row: Row) -> None:
-    """Check that no region of the import of a version forbids its release.
+    """Check that no region of the import of a version prevents its release.
 
     Raises
     ------
-    Unresolved
+    UnresolvedRegions
         With each region that does.
     """
     record = record_of(row)
@@ -134,7 +134,7 @@ def _reason(region: RegionRecord) -> str:
 
 
 def counted(record: SheetRecord) -> dict[State, int]:
-    """Count the mathematical regions in each state."""
+    """Return the number of mathematical regions in each state."""
     states = [region["state"] for region in record["regions"] if region["is_mathematical"]]
     return {state: states.count(state) for state in STATES}
 

@@ -23,11 +23,11 @@ def number_of(text: str | None) -> str:
 
 @dataclass(frozen=True)
 class Original:
-    """One region: its number in the sheet, what it is, where it stands on the page, and what it says.
+    """One region: its number in the sheet, its kind, its position on the page, and its content.
 
-    `top` and `left` are in the units of the sheet's page (96 to the inch in Mathcad Prime, 72 before it),
-    within the area or solve block where it stands. `cached` is Mathcad's own result. `role` is that of a
-    region of a solve block: a guess value, a constraint, or the solver.
+    `top` and `left` are in the units of the sheet's page (96 per inch in Mathcad Prime, 72 in earlier
+    versions), relative to the area or solve block that contains the region. `cached` is Mathcad's own result.
+    `role` is the role of a region in a solve block: guess value, constraint, or solver.
     """
 
     number: str
@@ -46,9 +46,9 @@ class Original:
 
 @dataclass(frozen=True)
 class OriginalSheet:
-    """A sheet's regions, where its indices begin, and which program wrote it.
+    """The regions of a sheet, the first index of its lists, and the program that wrote it.
 
-    `counted` says how often the file has a region of each number, by another reading of the file.
+    `counted` gives how often each region number occurs in the file, found by an independent reading.
     """
 
     program: Literal["Mathcad Prime", "Mathcad"]
@@ -56,14 +56,14 @@ class OriginalSheet:
     counted: Counter[str] = field(default_factory=Counter)
     origin: int = 0
     results_carry_units: bool = False
-    """Whether a cached result names its whole unit; else it is a multiple of the unit that is asked for."""
+    """Whether a cached result includes its whole unit; if not, it is a multiple of the requested unit."""
     notes: tuple[str, ...] = field(default=())
 
 
 def count_regions(content: bytes) -> Counter[str]:
-    """Count the regions in a document by their numbers, as the parser meets their tags.
+    """Count the regions in a document by their numbers, from the tags that the parser meets.
 
-    It shares no code with the normal reader, so that each checks the other.
+    The function shares no code with the normal reader, so that each checks the other.
     """
     counted = Counter[str]()
 
@@ -78,7 +78,7 @@ def count_regions(content: bytes) -> Counter[str]:
 
 
 def coordinate(text: str | None) -> float:
-    """Return a place on the page; 0 where it is missing or no number."""
+    """Return a coordinate on the page; 0 if it is missing or not a number."""
     try:
         value = float(text or 0)
     except ValueError:

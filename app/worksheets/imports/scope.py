@@ -10,7 +10,7 @@ from app.worksheets.imports.trees import Node
 
 @dataclass(frozen=True)
 class Value:
-    """A quantity with a line of its own."""
+    """A quantity that is declared in its own line."""
 
     name: str
     axis: Axis | None = None
@@ -20,7 +20,7 @@ class Value:
     region: str = ""
 
     def term(self) -> Term:
-        """Return the name as an expression."""
+        """Return the name as a term."""
         return Term(
             self.name, axis=self.axis, is_vector=self.is_vector, is_row=self.is_row, number=self.number
         )
@@ -28,36 +28,36 @@ class Value:
 
 @dataclass(frozen=True)
 class Range:
-    """A range variable; in a formula it stands for its values one by one."""
+    """A range variable; in a formula it represents each of its values in turn."""
 
     name: str
     axis: Axis
 
     def term(self) -> Term:
-        """Return the name as an expression."""
+        """Return the name as a term."""
         return Term(self.name, axis=self.axis)
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice among words; `words` is by Mathcad's text."""
+    """A choice among words; `words` maps Mathcad's texts to them."""
 
     name: str
     words: dict[str, str] = field(hash=False)
 
 
 @dataclass(frozen=True)
-class Written:
-    """An expression without a line of its own: a parameter, or a local name of a program."""
+class InlineTerm:
+    """A term without its own line: a parameter, or a local name of a program."""
 
     expression: Term
 
 
 @dataclass(eq=False)
 class Function:
-    """A function of Mathcad with what its names mean where it stands; each use by other units is another one.
+    """A function of Mathcad with its scope; each combination of argument units gets its own statement.
 
-    `names` are those that its statements got, by the units with which they are called.
+    `names` are the names of these statements, by the units of the arguments.
     """
 
     key: str
@@ -75,5 +75,5 @@ class FailedName:
     region: str
 
 
-Meant = Value | Range | Choice | Written | Function | FailedName
+Meant = Value | Range | Choice | InlineTerm | Function | FailedName
 Scope = dict[str, Meant]

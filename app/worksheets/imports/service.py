@@ -1,4 +1,4 @@
-"""Import sheets as jobs: store the file by its hash, read it in a separate process, and make it a draft."""
+"""Import sheets as jobs: store the file by its hash, read it in a separate process, and save a draft."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from templates.core.errors import TemplateError
 IMPORT = "worksheet_import"
 LIMITS = Limits(deadline=20.0, memory_mb=512)
 MOST_BYTES = 16 * 2**20
-"""Of a file; the public sheets have at most 0.6 MB."""
+"""Largest size of a file; the public sheets have at most 0.6 MB."""
 
 
 class Imports:
-    """Queues imports, and is the handler of such jobs.
+    """Queues imports, and handles their jobs.
 
-    A failed import leaves nothing behind, and retention takes its file.
+    A failed import leaves no worksheet, and retention later deletes its file.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Imports:
         IdTaken, InvalidInputs
             If no worksheet may have the id.
         QueueFull
-            Too many jobs are waiting.
+            If too many jobs are waiting.
         """
         if not 0 < len(content) <= MOST_BYTES:
             what = "the body is empty" if not content else f"it has more than {MOST_BYTES // 2**20} MiB"
@@ -70,12 +70,12 @@ class Imports:
         return queue_upload(self.jobs, self.store, IMPORT, content, about, once, check)
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Import the file of a job; its result is the worksheet.
+        """Import the file of a job; the result of the job is the worksheet.
 
         Raises
         ------
         JobFailed
-            If the file is refused, or the id is in use by now.
+            If the file is refused, or the id has been taken in the meantime.
         """
         payload = job.payload
         id, sha, name = payload["id"], payload["file"], payload["name"]

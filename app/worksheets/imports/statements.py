@@ -1,4 +1,4 @@
-"""Format lines of a worksheet: names, units, words, functions, curves."""
+"""Write the lines of a worksheet: names, units, descriptions, functions, curves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.worksheets.imports.names import Names, key_of, look, symbol
 from app.worksheets.imports.outcome import Outcome
 from app.worksheets.imports.quantities import ScaledNumber, is_infinite, result_of, scaled
 from app.worksheets.imports.regions import OriginalSheet
-from app.worksheets.imports.scope import Function, Scope, Value, Written
+from app.worksheets.imports.scope import Function, InlineTerm, Scope, Value
 from app.worksheets.imports.terms import Axis, Term, number
 from app.worksheets.imports.trees import Node
 from app.worksheets.imports.unit_names import letters_of
@@ -29,7 +29,7 @@ RESERVED = frozenset(
 
 
 class Statements:
-    """The worksheet while it is written."""
+    """A worksheet while it is being written."""
 
     def __init__(self, sheet: OriginalSheet) -> None:
         self.sheet = sheet
@@ -40,20 +40,20 @@ class Statements:
         self.names = Names(RESERVED)
         self.outcomes: dict[int, Outcome] = {}
         self._words = set[str]()
-        self.owners: dict[str, Outcome] = {}  # outcomes of functions and curves, by region
+        self.owners: dict[str, Outcome] = {}  # outcomes by the number of their region
         self.functions: list[Function] = []
         self.has_tags = any(region.tag for region in sheet.regions)
         self.fixed = frozenset(_structural(sheet))
         self.now: Outcome | None = None
 
     def axis(self, length: int) -> Axis:
-        """Return the axis of the vectors of a length."""
+        """Return the axis for vectors of a length."""
         return Axis(f"items_{length}", length, self.origin)
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """Return the name of the statement of a function for arguments of these units.
+        """Return the name of a function's statement for arguments with these units.
 
-        Written at its first call.
+        The statement is written at the first call. The name is None if the function must be inlined.
         """
         sorts = [self.declared.sort(part.text, self.declared.bound) for part in arguments]
         units = tuple(
@@ -66,8 +66,8 @@ class Statements:
         inner: Scope = dict(function.scope)
         own = Names(RESERVED | self.declared.sorts.keys() | self.declared.functions.keys())
         parameters = [own.take(key) for key in keys]
-        inner.update((key, Written(Term(name))) for key, name in zip(keys, parameters, strict=True))
-        function.names[units] = ""  # a function that calls itself is written out, and refused as too deep
+        inner.update((key, InlineTerm(Term(name))) for key, name in zip(keys, parameters, strict=True))
+        function.names[units] = ""  # a recursive call is inlined, and then refused as too deep
         bound = {name: sort_of(unit) for name, unit in zip(parameters, units, strict=True)}
         before, self.declared.bound = self.declared.bound, bound
         caller, self.now = self.now, self.owners[function.region]
@@ -87,7 +87,7 @@ class Statements:
         return name
 
     def curve(self, across: Term, up: Term) -> str:
-        """Return the name of a curve through the points of two lists that are written out."""
+        """Write a curve through the points of two literal lists, and return its name."""
         assert self.now is not None
         points = list(zip(items_in(across), items_in(up), strict=False))
         if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
@@ -100,11 +100,13 @@ class Statements:
         rows = [f"  {_in(x, x_unit)} -> {_in(y, y_unit)}" for x, y in points]
         heights = [row.rpartition(" ")[2] for row in rows]
         is_flat = heights[0] == heights[1] and heights[-1] == heights[-2]
-        held = " (held)" if is_flat else ""  # where the ends are level, Mathcad's straight lines are so too
+        held = " (held)" if is_flat else ""  # if the end segments are level, so is Mathcad's extrapolation
         head = f'curve {name}(x [{x_unit}]) [{y_unit}] "{self.words_for(name)}"{held}:'
         self.now.lines.append("\n".join([head, *rows]))
         if not is_flat:
-            self.now.notes.append("outside its points the curve has no value; Mathcad goes on along its ends")
+            self.now.notes.append(
+                "outside its points the curve has no value; Mathcad extrapolates its end segments"
+            )
         self.declared.functions[name] = 1, sort_of(y_unit)
         return name
 
@@ -117,7 +119,7 @@ class Statements:
         return at.quantity(node) or at.value(node)
 
     def _keep(self, term: Term) -> Term:
-        """Declare a list within a formula in a separate line, and return its name."""
+        """Declare a list within a formula in a separate line, and return its name as a term."""
         assert self.now is not None
         sort = self.declared.sort(term.text, None)
         unit, name = unit_for(sort, []), self.names.take("items")
@@ -136,7 +138,7 @@ class Statements:
         is_given: bool = False,
         words: str = "",
     ) -> Value:
-        """Write the line of a value, and define the name from here on."""
+        """Write the line of a value, and define its name from here on."""
         sort = self.declared.sort(term.text, None)
         unit = unit_for(sort, [*wanted, *self._shown_in(key)] if is_rate(sort.kind.base) else wanted)
         name = self.names.take(key)
@@ -158,7 +160,7 @@ class Statements:
         return value
 
     def _shown_in(self, key: str) -> list[str]:
-        """Return the units in which single results are shown, which reveal the kind of a rate."""
+        """Return the units in which single results are displayed, which reveal the kind of a rate."""
         maths = (region.math for region in self.sheet.regions)
         results = [math for math in maths if math is not None and math.tag == "eval" and math.parts]
         return [
@@ -169,12 +171,12 @@ class Statements:
         ]
 
     def _symbol(self, key: str, name: str) -> str:
-        """Return a clause where the name has lost the look that it had."""
+        """Return a clause with the symbol of a name if its spelling had to change, else an empty text."""
         text = symbol(key)
         return f' (symbol "{text}")' if text and (name != look(key)) else ""
 
     def words_for(self, name: str) -> str:
-        """Return unique words for a quantity, which give its name in the interface."""
+        """Return a unique description of a quantity, which gives its name in the interface."""
         words, count = name, 1
         while words.casefold() in self._words:
             count += 1
@@ -183,7 +185,7 @@ class Statements:
         return words
 
     def asked(self, value: Node, literal: ScaledNumber | None = None) -> list[str]:
-        """Return units for the declaration of a value: the region's unit, then that of the typed value."""
+        """Return preferred units for a declaration: the region's unit, then the unit of the typed value."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
         scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
         units = []
@@ -216,12 +218,12 @@ class Statements:
 
 
 def without_result(node: Node) -> Node:
-    """Return the calculation of a region, without the place of its result."""
+    """Return the calculation of a region without its displayed result."""
     return node.parts[0] if node.tag == "eval" and node.parts else node
 
 
 def _structural(sheet: OriginalSheet) -> Iterator[str]:
-    """Yield names that determine the lengths of lists: the import fixes their values."""
+    """Yield names that determine the lengths of lists; the import fixes their values."""
     for region in sheet.regions:
         if region.math is None:
             continue
@@ -239,7 +241,7 @@ def _parameter_unit(sort: Sort) -> str:
 
 
 def items_in(term: Term) -> list[str]:
-    """Return the items of a literal list; none for other lists."""
+    """Return the items of a literal list; empty for other lists."""
     if not term.text.startswith("["):
         return []
     items, depth, start = [], 0, 1

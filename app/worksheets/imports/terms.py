@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 from app.worksheets.imports.errors import Untranslatable
 
 LOOSE, SUM, PRODUCT, SIGNED, POWER, ATOM = range(6)
-"""Precedence of each expression; a condition or an `if` binds least."""
+"""Precedence of each expression; a condition or an `if` has the lowest."""
 
 LONGEST = 1_800
-"""Characters of one expression: a statement of a worksheet has at most 2,000."""
+"""Largest number of characters in an expression; a statement of a worksheet has at most 2,000."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """The axis of a list: the range or the list that gave it its name.
+    """The axis of a list, named after the range or the list that it belongs to.
 
-    `start` is the index of the first item in Mathcad's count. `numbers` are the values of a range.
+    `start` is the index of the first item in Mathcad. `numbers` are the values of a range.
     """
 
     name: str
@@ -30,9 +30,9 @@ class Axis:
 class Term:
     """An expression of a worksheet.
 
-    A list is either a vector of Mathcad, for which a product is a scalar product, or values taken one by one
-    along a range, which Mathcad calculates with as with single numbers. `number` is the value where it is
-    known without calculating the sheet.
+    A list is either a vector of Mathcad, for which a product is a scalar product, or a list of values along a
+    range, with which Mathcad calculates as with single numbers. `number` is the value if it is known without
+    calculating the sheet.
     """
 
     text: str
@@ -45,15 +45,15 @@ class Term:
 
     def __post_init__(self) -> None:
         if len(self.text) > LONGEST:
-            remedy = "split it into formulas with names of their own, in Mathcad or in the worksheet"
+            remedy = "split it into several named formulas, in Mathcad or in the worksheet"
             raise Untranslatable("the formula has more than 1,800 characters", remedy)
 
     def bound(self, least: int) -> str:
-        """Return the text, in parentheses where it binds more loosely than its place needs."""
+        """Return the text, in parentheses if its precedence is lower than required."""
         return self.text if self.tight >= least else f"({self.text})"
 
     def shaped(self, *others: Term) -> Term:
-        """Return the same text with the shape that follows from its parts."""
+        """Return the same text with the shape that its parts determine."""
         lists = [(part, part.axis) for part in others if part.axis is not None]
         if not lists:
             return self
@@ -66,41 +66,41 @@ class Term:
 
 
 def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
-    """Return an operator between two expressions; sums and products are extended on the left."""
+    """Return two terms joined by an operator; sums and products are extended on the left."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
     return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
 
 def power(base: Term, exponent: Term) -> Term:
-    """Return a power; its exponent may be a signed number without parentheses."""
+    """Return a power; a signed number as exponent needs no parentheses."""
     text = f"{base.bound(ATOM)}**{exponent.bound(ATOM)}"
     return Term(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
 
 
 def negative(part: Term) -> Term:
-    """Return the negative of an expression."""
+    """Return the negative of a term."""
     number = None if part.number is None else -part.number
     return Term(f"-{part.bound(POWER)}", SIGNED, number=number).shaped(part)
 
 
 def called(name: str, *parts: Term) -> Term:
-    """Return a function of expressions, applied item by item to lists."""
+    """Return a function call; for lists, it is applied item by item."""
     return Term(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
 
 
 def reduced(name: str, part: Term) -> Term:
-    """Return a function that reduces a list to one value."""
+    """Return a call of a function that reduces a list to one value."""
     return Term(f"{name}({part.text})")
 
 
 def number(value: float) -> Term:
-    """Return a plain number."""
+    """Return a plain number as a term."""
     text = repr(float(value)).removesuffix(".0")
     return Term(text, SIGNED if value < 0 else ATOM, number=float(value))
 
 
 def listed(items: tuple[Term, ...], axis: Axis) -> Term:
-    """Return a list of single values, as a vector."""
+    """Return a list of single values as a vector."""
     return Term(f"[{', '.join(item.text for item in items)}]", ATOM, axis, is_vector=True)
 
 

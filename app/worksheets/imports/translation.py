@@ -17,7 +17,7 @@ LONGEST_PROSE = 1_000
 
 
 def translated(sheet: OriginalSheet) -> list[Outcome]:
-    """Return the outcome of every region, not yet compared with Mathcad's results."""
+    """Return the outcome of every region, before the comparison with Mathcad's results."""
     work = Definitions(sheet)
     outcomes = [Outcome(region) for region in sheet.regions]
     work.outcomes = {id(outcome.original): outcome for outcome in outcomes}
@@ -53,7 +53,7 @@ def _calculating(outcome: Outcome, work: Definitions) -> None:
             outcome.block(look(error.name), str(error.region))
         else:
             what = f"name {one_line(look(error.name))} that nothing above defines"
-            outcome.refuse(what, "define it, or write what is meant")
+            outcome.refuse(what, "define it, or replace it")
     except RecursionError:
         outcome.refuse("formula that nests too deep", "split it into several")
     if outcome.state in ("refused", "blocked"):
@@ -61,7 +61,7 @@ def _calculating(outcome: Outcome, work: Definitions) -> None:
 
 
 def _solving(outcome: Outcome, work: Definitions) -> None:
-    """Translate a region of a solve block: only its solver defines anything."""
+    """Translate a region of a solve block, of which only the solver defines anything."""
     region = outcome.original
     assert region.math is not None
     if region.role != "solver":

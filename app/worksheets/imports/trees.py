@@ -1,7 +1,7 @@
 """Parse XML into trees of plain nodes; document types and entities are refused.
 
-The parser is the standard library's expat with our own handlers. It drops namespaces: their prefixes are the
-writer's choice, and in sheets the local name alone identifies an element.
+The parser is the standard library's expat with handlers of this module. It drops namespaces, because their
+prefixes are arbitrary, and in sheets the local name alone identifies an element.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from app.worksheets.imports.errors import SheetNotRead
 
 DEEPEST = 200
 MOST_NODES = 150_000
-_SEPARATOR = "\n"  # no name has one
+_SEPARATOR = "\n"  # cannot occur in a name
 
 
 @dataclass(eq=False, slots=True)
 class Node:
-    """An element: its local name, attributes, the parts in it, and its text with where it stands."""
+    """An element: its local name, its attributes, the elements in it, and its text with positions."""
 
     tag: str
     attributes: dict[str, str]
@@ -34,15 +34,15 @@ class Node:
 
     @property
     def whole_text(self) -> str:
-        """Return the text of this element and of all within it."""
+        """Return the text of this element and of all elements within it."""
         return "".join(piece if isinstance(piece, str) else piece.whole_text for piece in self.pieces)
 
     def first(self, tag: str) -> Node | None:
-        """Return the first part of a name."""
+        """Return the first child with a name."""
         return next((part for part in self.parts if part.tag == tag), None)
 
     def all(self, tag: str) -> Iterator[Node]:
-        """Yield all elements of a name, in the order of the document, this one included."""
+        """Yield all elements with a name in document order, including this one."""
         waiting = [self]
         while waiting:
             node = waiting.pop()
@@ -51,7 +51,7 @@ class Node:
             waiting.extend(reversed(node.parts))
 
     def outermost(self, tag: str, *closed: str) -> Iterator[Node]:
-        """Yield the outermost elements of a name within this one, except those within `closed`."""
+        """Yield the outermost elements with a name within this one, except those within `closed`."""
         waiting = list(reversed(self.parts))
         while waiting:
             node = waiting.pop()
@@ -67,7 +67,7 @@ def read(content: bytes, name: str) -> Node:
     Raises
     ------
     SheetNotRead
-        It is not XML, declares a document type or entities, nests too deep, or has too many elements.
+        If it is not XML, declares a document type or entities, nests too deep, or has too many elements.
     """
     return _Reader(name).read(content)
 
@@ -93,7 +93,7 @@ class _Reader:
             place = f"line {error.lineno}, column {error.offset + 1}"
             what = f"{self._name} is not XML ({expat.ErrorString(error.code)} at {place})"
             raise SheetNotRead("xml", f"{what}: save the sheet again") from None
-        except (LookupError, ValueError) as error:  # an encoding that there is not
+        except (LookupError, ValueError) as error:  # an unknown encoding
             raise SheetNotRead("xml", f"{self._name} is not XML ({error}): save the sheet again") from None
         assert self._root is not None, "a document without a root is not XML"
         return self._root

@@ -1,8 +1,8 @@
 """Recognise units among unlabelled names, as in sheets of Mathcad 11 to 15.
 
 An undefined name is a unit only if Mathcad has a unit of this name and if the name is a factor of a product
-or quotient. A single letter may also name a quantity, so it counts as a unit only if a number stands before
-it, as in `3*m`, there or elsewhere in the sheet. Every other undefined name is refused. No name is read as a
+or quotient. A single letter may also name a quantity, so it counts as a unit only if a number precedes it, as
+in `3*m`, there or elsewhere in the sheet. Every other undefined name is refused. No name is read as a
 constant, so `c` is never the speed of light.
 """
 
@@ -16,7 +16,7 @@ from app.worksheets.imports.regions import Original
 from app.worksheets.imports.trees import Node
 
 UNLABELLED = ("", "*", "None")
-"""Labels of a name that say nothing."""
+"""Labels that give no information about a name."""
 
 _LETTERS = frozenset("m s K N J W V A L".split())
 _WORDS = frozenset(
@@ -32,7 +32,7 @@ _Place = Literal["", "factor", "quantity"]
 
 
 def letters_of(regions: Iterable[Original]) -> frozenset[str]:
-    """Return the single letters that follow a number somewhere in a sheet, and so are units."""
+    """Return the single letters that follow a number somewhere in a sheet, and are therefore units."""
     units = set[str]()
     for region in regions:
         if region.math is not None:
@@ -48,7 +48,7 @@ def label_units(math: Node, defined: Collection[str], letters: Collection[str]) 
     Parameters
     ----------
     defined
-        The names that have a meaning here, which are never units.
+        The names that are defined here, and are therefore not units.
     letters
         The single letters that are units in this sheet.
     """
@@ -88,7 +88,7 @@ def _is_quantity(node: Node, defined: Collection[str]) -> bool:
 
 
 def _leaves(node: Node) -> Iterator[Node]:
-    """Yield the factors of a product or quotient from left to right; of a power its base."""
+    """Yield the factors of a product or quotient from left to right; for a power, its base."""
     waiting = [node]
     while waiting:
         node = waiting.pop()

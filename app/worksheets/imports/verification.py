@@ -25,12 +25,12 @@ _SAID = re.compile(r'"[^"\n]*"|\[[^\[\]\n]*\](?= (?:=|over|")|[,)])')
 
 
 def text_of(title: str, outcomes: Iterable[Outcome]) -> str:
-    """Return the text of the worksheet: its title, then the lines of the regions in the order of the page."""
+    """Return the text of the worksheet: its title, then the lines of the regions in page order."""
     return "\n".join(line for line, _ in _lines(title, outcomes)) + "\n"
 
 
 def verified(title: str, outcomes: Sequence[Outcome]) -> str:
-    """Return the faultless text of a worksheet; each outcome is compared with Mathcad's result.
+    """Return the faultless text of a worksheet, and compare each outcome with Mathcad's result.
 
     Regions whose lines the language refuses become remarks, as do regions that depend on them.
     """
@@ -42,8 +42,8 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
-    """Return the worksheet after refused lines have become remarks; None if it takes too long."""
-    gone: dict[str, str] = {}  # names without a line, by the region that had it
+    """Return the worksheet after turning refused lines into remarks; None if it takes too many rounds."""
+    gone: dict[str, str] = {}  # removed names, with the region that declared each
     for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))
         try:
@@ -64,7 +64,7 @@ def _lines(title: str, outcomes: Iterable[Outcome]) -> Iterator[tuple[str, Outco
 
 
 def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
-    """Return outcomes by the numbers of their lines."""
+    """Return the outcomes by the line numbers of their lines."""
     owners, number = dict[int, Outcome](), 1
     for line, outcome in lines:
         height = line.count("\n") + 1
@@ -75,7 +75,7 @@ def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
 
 
 def _take_out(faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
-    """Turn faulty lines into remarks; block lines that only lack a removed name."""
+    """Turn faulty lines into remarks, and block lines whose only fault is a removed name."""
     for fault in sorted(faults, key=lambda fault: fault.code == FOLLOWS):
         outcome = owners.get(fault.line)
         if outcome is None or outcome.state in ("refused", "blocked"):
@@ -108,7 +108,7 @@ def _declared(outcome: Outcome) -> list[str]:
 
 
 def _used(outcome: Outcome) -> Iterator[str]:
-    """Yield the names in the lines of a region, but for those in words and in declared units."""
+    """Yield the names in the lines of a region, without those in descriptions and in declared units."""
     for line in outcome.lines:
         if not line.startswith((">", "/")):
             yield from _NAME.findall(_SAID.sub(" ", line))

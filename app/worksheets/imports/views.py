@@ -1,4 +1,4 @@
-"""Imports as the REST interface shows them."""
+"""Responses of the REST interface about imports."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from app.worksheets.schemas.imports import SheetImport, SheetOrigin
 
 
 def origin(row: Row) -> SheetOrigin | None:
-    """Return the source of an imported version in short; None if it was typed."""
+    """Return a summary of the source of an imported version; None if the text was typed."""
     record = record_of(row)
     return SheetOrigin.model_validate(_short(row, record)) if record is not None else None
 
 
 def imported(row: Row) -> SheetImport:
-    """Return every region of the sheet that a version was imported from.
+    """Return every region of the sheet from which a version was imported.
 
     Raises
     ------
     NotFound
-        If it was not imported.
+        If the version was not imported.
     """
     record = record_of(row)
     if record is None:

@@ -12,34 +12,31 @@ from app.worksheets.imports.terms import POWER, Axis, Term, number
 from app.worksheets.imports.trees import Node
 
 MOST_INLINED = 12
-"""Functions within functions that are written out."""
+"""Largest depth of inlined functions."""
 MOST_ITEMS = 300
 
 
 class Sheets(Protocol):
-    """The sheet that is being written, as an expression sees it."""
+    """The part of the sheet under construction that an expression uses."""
 
     origin: int
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """Return the name of a function's statement for these arguments.
-
-        None where it must be written out.
-        """
+        """Return the name of a function's statement for these arguments; None if it must be inlined."""
 
     def curve(self, across: Term, up: Term) -> str:
         """Return the name of a curve through points."""
 
     def axis(self, length: int) -> Axis:
-        """Return the axis of the vectors of a length."""
+        """Return the axis for vectors of a length."""
 
 
 @dataclass
 class Writer:
-    """Writes expressions at one place of a sheet.
+    """Writes expressions at one position of a sheet.
 
-    `keep` gives a list within a formula a line of its own. `is_counting` says that the index of a sum is a
-    number in its term.
+    `keep` declares a list within a formula in a separate line. `is_counting` states that the index of a sum
+    is a number in its term.
     """
 
     sheet: Sheets
@@ -50,7 +47,7 @@ class Writer:
     keep: Callable[[Term], Term] | None = None
 
     def within(self, scope: Scope) -> Self:
-        """Return the same writer with other meanings of names."""
+        """Return the same writer with another scope."""
         return replace(self, scope=scope)
 
     def term(self, node: Node) -> Term:
@@ -59,26 +56,26 @@ class Writer:
         Raises
         ------
         Untranslatable
-            With the name of the construct that worksheets do not have.
+            If worksheets do not have the construct; the error names it.
         Unnamed
-            A name has no meaning here.
+            If a name has no meaning here.
         """
         raise NotImplementedError
 
     def value(self, node: Node) -> Term:
-        """Return a quantity; a condition is 1 if it holds and 0 otherwise."""
+        """Return a tree as a quantity; a condition is 1 if it holds and 0 otherwise."""
         raise NotImplementedError
 
     def condition(self, node: Node) -> Term:
-        """Return a tree as a condition; of a number, whether it is not 0."""
+        """Return a tree as a condition; for a number, the condition that it is not 0."""
         raise NotImplementedError
 
     def either(self, test: Term, one: Node, other: Node) -> Term:
-        """Return one of two values, by a condition."""
+        """Return an expression that selects one of two values by a condition."""
         raise NotImplementedError
 
     def quantity(self, node: Node) -> Term | None:
-        """Return a tree of numbers and units alone as one quantity."""
+        """Return a tree that consists only of numbers and units as one quantity, else None."""
         scale = scaled(node)
         if scale is None or not scale.powers:
             return None
@@ -87,5 +84,5 @@ class Writer:
         return Term(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
 
     def argument(self, node: Node) -> Term:
-        """Return a quantity as it is typed, or any value."""
+        """Return an argument as a typed quantity if possible, else as a value."""
         return self.quantity(node) or self.value(node)

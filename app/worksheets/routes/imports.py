@@ -22,9 +22,9 @@ router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(SHEET_TYPES), BINARY)}}
 NewId = Annotated[
-    str, Query(max_length=64, pattern=ID, description="of the worksheet", examples=["bush_duty"])
+    str, Query(max_length=64, pattern=ID, description="id of the worksheet", examples=["bush_duty"])
 ]
-FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="how the file is called")]
+FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="name of the file")]
 
 
 @router.post(
@@ -42,11 +42,10 @@ async def import_worksheet(
     id: NewId,
     file: FileName = "sheet.mcdx",
 ) -> Response:
-    """A sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz) as a draft.
+    """Import a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz) as a draft.
 
-    The body is the file itself.
-    The job answers with the worksheet once it has ended. Every region of the sheet is accounted for: see
-    `GET /worksheets/{id}/import`.
+    The body of the request is the file itself. The result of the job is the worksheet. Every region of the
+    sheet is accounted for: see `GET /worksheets/{id}/import`.
     """
     body = await request.body()
     return accepted(await threads.run(imports.begin, body, id, file, once))
@@ -54,13 +53,13 @@ async def import_worksheet(
 
 @router.get("/{id}/import", responses=refusals(404))
 def read_import(id: Id, worksheets: TheWorksheets) -> SheetImport:
-    """The result of the import for every region of the original sheet."""
+    """Return the result of the import for every region of the original sheet."""
     return imported(worksheets.newest(id))
 
 
 @router.get("/{id}/import/original", response_class=Response, responses={**UNCHANGED, **refusals(404, 503)})
 def read_original(id: Id, worksheets: TheWorksheets, store: TheStore) -> Response:
-    """The file that a worksheet was imported from, as it was sent."""
+    """Return the file from which a worksheet was imported, unchanged."""
     row = worksheets.newest(id)
     if row.import_sha256 is None or row.imported is None:
         raise NotFound(f"worksheet {id} was typed, not imported")

@@ -32,9 +32,9 @@ router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class
 Id = Annotated[str, Path(max_length=64, examples=["bush_duty"])]
 Number = Annotated[int, Path(ge=1, le=10**6)]
 IfMatch = Annotated[str | None, Header(description="the ETag of the worksheet that was read")]
-OfVersion = Annotated[int | None, Query(ge=1, le=10**6, description="the newest, if not given")]
+OfVersion = Annotated[int | None, Query(ge=1, le=10**6, description="the version; by default the newest")]
 STEP = refusals(404, 409, 412, 429)
-"""Problems for which a step in the life of a worksheet may be refused."""
+"""Problems with which a change of a worksheet's state may be refused."""
 PATCH: JsonDict = {
     "requestBody": {
         "content": {"application/merge-patch+json": {"schema": {"$ref": "#/components/schemas/SheetPatch"}}}
@@ -46,7 +46,7 @@ PATCH: JsonDict = {
 async def check_worksheet(
     body: SheetCheckIn, worksheets: TheWorksheets, threads: TheThreads, client: TheClient
 ) -> Response:
-    """Read a text: every fault under its line, or every line on paper with the numbers of the example.
+    """Check a text: return every fault with its line, or every line with the numbers of the example.
 
     Nothing is saved, and a faulty text is not an error of the request.
     """
@@ -58,14 +58,14 @@ async def check_worksheet(
 async def create_worksheet(
     body: SheetIn, worksheets: TheWorksheets, threads: TheThreads, once: TheOnce
 ) -> Response:
-    """A new worksheet, a draft with its faults; 409 where a file or another worksheet has the id."""
+    """Create a worksheet as a draft with its faults; 409 if a file or another worksheet has the id."""
     row = await threads.run(worksheets.create, body, once)
     return await threads.run(_shown, worksheets, row, 201)
 
 
 @router.get("")
 def list_worksheets(worksheets: TheWorksheets, limit: Limit = 50, cursor: Cursor = None) -> SheetList:
-    """Every worksheet at its newest version, in the order of the ids."""
+    """Return every worksheet at its newest version, in the order of the ids."""
     broken = worksheets.published.broken
     with worksheets.database.read() as session:
         rows = repository.page(session, limit, cursor)
@@ -74,7 +74,7 @@ def list_worksheets(worksheets: TheWorksheets, limit: Limit = 50, cursor: Cursor
 
 @router.get("/{id:sheet}", response_model=Sheet, responses=refusals(404))
 def read_worksheet(id: Id, worksheets: TheWorksheets) -> Response:
-    """A worksheet at its newest version; the ETag is that of this text and state."""
+    """Return a worksheet at its newest version; the ETag identifies this text and state."""
     return _shown(worksheets, worksheets.newest(id))
 
 
@@ -87,27 +87,27 @@ async def change_worksheet(
     once: TheOnce,
     if_match: IfMatch = None,
 ) -> Response:
-    """An edit: the worksheet is a draft again. Of a released version it begins the next one."""
+    """Change a worksheet, which becomes a draft again; a released version is followed by a new one."""
     row = await threads.run(worksheets.change, id, body, if_match, once)
     return await threads.run(_shown, worksheets, row)
 
 
 @router.delete("/{id:sheet}", status_code=204, responses=refusals(404, 409))
 def delete_worksheet(id: Id, worksheets: TheWorksheets, if_match: IfMatch = None) -> Response:
-    """Delete the newest version, which was never released; earlier ones stay."""
+    """Delete the newest version if it was never released; earlier versions stay."""
     worksheets.delete(id, if_match)
     return Response(status_code=204)
 
 
 @router.get("/{id}/versions/{number}", response_model=Sheet, responses=refusals(404))
 def read_worksheet_version(id: Id, number: Number, worksheets: TheWorksheets) -> Response:
-    """One version of a worksheet."""
+    """Return one version of a worksheet."""
     return _shown(worksheets, worksheets.version(id, number))
 
 
 @router.get("/{id}/text", response_class=PlainTextResponse, responses=refusals(404))
 def read_worksheet_text(id: Id, worksheets: TheWorksheets, version: OfVersion = None) -> Response:
-    """The text alone, as it was written: a file that reads well in git."""
+    """Return the text of a worksheet as it was written, for example to store it in git."""
     row = worksheets.newest(id) if version is None else worksheets.version(id, version)
     name = f"{row.id}_v{row.number}.sheet"
     headers = {"ETag": f'"{row.edit}"', "Content-Disposition": f'inline; filename="{name}"'}
@@ -127,7 +127,7 @@ async def try_worksheet(
     "/{id}/review", response_model=Sheet, responses={**STEP, **refusals(403)}, dependencies=[needs("checker")]
 )
 def review_worksheet(id: Id, body: ReviewIn, worksheets: TheWorksheets, if_match: IfMatch = None) -> Response:
-    """Note who reviewed the text of this digest: tested → reviewed. The typed name is not verified."""
+    """Record who reviewed the text with this digest: tested → reviewed. A typed name is not verified."""
     return _shown(worksheets, worksheets.review(id, body, if_match))
 
 
@@ -144,7 +144,7 @@ async def release_worksheet(
 def withdraw_worksheet(
     id: Id, body: WithdrawIn, worksheets: TheWorksheets, if_match: IfMatch = None
 ) -> Response:
-    """Say why a released version shall not be used any longer; designs that use it still calculate."""
+    """Withdraw a released version and give the reason; designs that use it still calculate."""
     return _shown(worksheets, worksheets.withdraw(id, body, if_match))
 
 

@@ -1,1 +1,1 @@
-"""Answers of the interface about worksheets and imports."""
+"""Response models of worksheets and imports."""

@@ -1,1 +1,1 @@
-"""The catalogue of versions, and the digests and golden records of released ones."""
+"""The catalogue of versions, with the digests and golden records of released versions."""

@@ -1,10 +1,10 @@
-"""The digest of a version, which shows whether its code is still the released code.
+"""The digest of a version, which shows whether its code has changed since its release.
 
 A released version is a file that nobody edits. Its digest is the SHA-256 of the syntax tree without the
-module paths of imports; the imported names stay. So a module that a released file imports may move to another
-folder, and the import line may follow it. The digest ignores docstrings, comments, layout and the attributes
-in `MARKS`, because they do not affect results. It covers the files of groups, which give a template inputs,
-formulas or rules.
+module paths of imports; the imported names are included. A module that a released file imports may therefore
+move to another folder, and the import statement may be updated. The digest ignores docstrings, comments,
+layout and the attributes in `MARKS`, because they do not affect results. It includes the files of groups,
+which give a template inputs, formulas or rules.
 
 A worksheet computes its own digest.
 """
@@ -29,8 +29,10 @@ from templates.core.language.template import Template
 MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
-_MOST_KEPT = 256  # versions whose digests are kept, by the text of their files: every page quotes them
-_SILENT = frozenset({"ctx", "kind", "type_comment"})  # fields that repeat what stands elsewhere in the tree
+_MOST_KEPT = 256  # digests to cache, keyed by the source text; every page shows them
+_SILENT = frozenset(
+    {"ctx", "kind", "type_comment"}
+)  # fields that repeat information from elsewhere in the tree
 
 
 def digest(cls: type[Template]) -> str:
@@ -39,7 +41,7 @@ def digest(cls: type[Template]) -> str:
 
 
 def digest_of(sources: Iterable[str]) -> str:
-    """Return the digest of the text of a template's file and of its groups."""
+    """Return the digest of the source of a template and of its groups."""
     return _digest_of(tuple(sources))
 
 
@@ -50,13 +52,13 @@ def _digest_of(sources: tuple[str, ...]) -> str:
 
 
 def release_file(cls: type[Template]) -> Path | None:
-    """Return the digest file of a released version, beside its own file; None for a worksheet."""
+    """Return the path of the digest file of a released version, next to its source; None for a worksheet."""
     path = file_of(cls)
     return path and path.with_name(f"{path.stem}.release.json")
 
 
 def _sources(cls: type[Template]) -> Iterator[str]:
-    """Yield the text of the template's file, then of the files of its groups."""
+    """Yield the source of the template, then the sources of its groups."""
     for base in cls.__mro__:
         if base is cls or _declares(base):
             module = inspect.getmodule(base)
@@ -65,14 +67,15 @@ def _sources(cls: type[Template]) -> Iterator[str]:
 
 
 def _declares(base: type) -> bool:
-    """Return whether a base declares anything itself; the bases of the language do not."""
+    """Return whether a base class declares anything itself; the base classes of the language do not."""
     return any(isinstance(value, (Declaration, Requirement, Shared)) for value in vars(base).values())
 
 
 def _content(tree: ast.Module) -> str:
-    """Return a file as far as it calculates: imported names, then the syntax tree.
+    """Return the calculating content of a file as text: the imported names, then the syntax tree.
 
-    Written field by field, because `ast.unparse` and `ast.dump` differ between versions of Python.
+    The tree is serialised field by field, because `ast.unparse` and `ast.dump` differ between Python
+    versions.
     """
     names = sorted({name for node in ast.walk(tree) if _is_import(node) for name in _imported(node)})
     return json.dumps([names, _plain(tree)], separators=(",", ":"))
@@ -83,14 +86,14 @@ def _is_import(node: ast.AST) -> bool:
 
 
 def _imported(node: Any) -> Iterator[tuple[str, str]]:
-    """Yield each name that an import imports, without its module's path, and its name in the file."""
+    """Yield each imported name without its module path, together with its name in the file."""
     for alias in node.names:
         name = alias.name.rpartition(".")[2]
         yield name, alias.asname or name
 
 
 def _plain(value: Any, within_class: bool = False) -> Any:
-    """Return a part of a syntax tree as JSON; empty fields are left out."""
+    """Return a part of a syntax tree as JSON, without empty fields."""
     if isinstance(value, ast.AST):
         is_class = isinstance(value, ast.ClassDef)
         fields = {k: _plain(v, is_class) for k, v in ast.iter_fields(value) if k not in _SILENT}
@@ -105,13 +108,13 @@ def _is_silent(node: Any, within_class: bool) -> bool:
 
 
 def _is_text(node: Any) -> bool:
-    """Return whether a statement is a docstring, or another text without effect."""
+    """Return whether a statement is a docstring or another string that has no effect."""
     constant = node.value if isinstance(node, ast.Expr) else None
     return isinstance(constant, ast.Constant) and isinstance(constant.value, str)
 
 
 def _is_mark(node: Any) -> bool:
-    """Return whether a statement of a class sets one of its marks."""
+    """Return whether a statement of a class sets one of the attributes in `MARKS`."""
     targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
     names = {target.id if isinstance(target, ast.Name) else "" for target in targets}
     return isinstance(node, (ast.Assign, ast.AnnAssign)) and names <= MARKS

@@ -1,4 +1,4 @@
-"""Find every `<id>_v<version>.py` in a list of folders: one file adds a template, without registration."""
+"""Find every `<id>_v<version>.py` below a list of folders, so that a new file adds a template."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ T = TypeVar("T", bound=Template)
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
-    """All versions of all templates (or models) in the folders; `kind` names them in messages.
+    """All versions of all templates (or models) in the folders; messages use `kind` to name them.
 
-    `quarantined` says why a version cannot be used whose file has faults, `unreleased` why one cannot that is
-    the draft of a worksheet.
+    `quarantined` gives the reason why a faulty version cannot be used, `unreleased` the reason why a draft
+    worksheet cannot.
     """
 
     versions: dict[tuple[str, int], type[T]]
@@ -42,12 +42,12 @@ class Catalogue(Generic[T]):
         return tuple(sorted({id for id, _ in self.versions}))
 
     def of(self, id: str) -> dict[int, type[T]]:
-        """Return the versions of one id, ascending.
+        """Return the versions of one id, in ascending order.
 
         Raises
         ------
         UnknownTemplate
-            If there is none.
+            If the id has no version.
         """
         classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
         if not classes:
@@ -64,7 +64,7 @@ class Catalogue(Generic[T]):
         Raises
         ------
         UnknownTemplate
-            If there is none.
+            If the version does not exist.
         """
         if (version_class := self.versions.get((id, version))) is None:
             self._refuse_unusable(id, version)
@@ -73,14 +73,14 @@ class Catalogue(Generic[T]):
         return version_class
 
     def _refuse_unusable(self, id: str, version: int) -> None:
-        """Say why a version cannot be used that is there, if it is.
+        """Raise an error with the reason if the version exists but cannot be used.
 
         Raises
         ------
         QuarantinedTemplate
             If its file has faults.
         UnreleasedTemplate
-            If it is the draft of a worksheet.
+            If it is a draft worksheet.
         """
         if reason := self.unreleased.get((id, version)):
             raise UnreleasedTemplate(id, f"{self.kind} {id} version {version} is not a release: {reason}")
@@ -88,7 +88,7 @@ class Catalogue(Generic[T]):
             raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
 
     def latest(self, id: str) -> type[T]:
-        """Return the newest version that is not withdrawn, else the newest."""
+        """Return the newest version that is not withdrawn; if all are withdrawn, the newest."""
         versions = list(self.of(id).values())
         return next((cls for cls in reversed(versions) if not cls.withdrawn), versions[-1])
 
@@ -104,14 +104,14 @@ def find(
     id: str | None = None,
     version: int | None = None,
 ) -> Catalogue[T]:
-    """Import every versioned file below the folders and collect its declaration, if it is a `base`.
+    """Import every versioned file below the folders and return the declared subclasses of `base`.
 
-    With an `id` or a `version` it imports only files with this name.
+    If an `id` or a `version` is given, import only files with that name.
 
     Raises
     ------
     UnusableFile
-        If a file cannot be imported, declares none or several, or claims another file's version.
+        If a file cannot be imported, declares no template or several, or claims another file's version.
     """
     versions: dict[tuple[str, int], type[T]] = {}
     for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
@@ -120,7 +120,7 @@ def find(
             continue
         cls = declared_in(_usable(path), path)
         if not issubclass(cls, base):
-            continue  # a calculation beside models
+            continue  # a calculation stored with the models
         if (cls.id, cls.version) in versions:
             raise UnusableFile(
                 str(path), f"{cls.id} version {cls.version} is already declared in another file"
@@ -130,18 +130,18 @@ def find(
 
 
 def declared_in_file(path: Path) -> type[Template]:
-    """Return the template, or model, that one versioned file declares.
+    """Return the template or model that a versioned file declares.
 
     Raises
     ------
     UnusableFile
-        If it cannot be imported, or declares none or several.
+        If the file cannot be imported, or declares none or several.
     """
     return declared_in(_usable(path), path)
 
 
 def _imported(path: Path) -> ModuleType:
-    """Return the module of a file: by its package's name if it has one, else from its content."""
+    """Import a file and return its module: by package name if it has one, otherwise from its content."""
     if package := package_of(path.parent):
         return importlib.import_module(f"{package}.{path.stem}")
     return load(path, path.read_bytes())
@@ -156,7 +156,7 @@ def package_of(folder: Path) -> str:
 
 
 def _usable(path: Path) -> ModuleType:
-    """Return the module of a file, or the line of it that fails."""
+    """Import a file and return its module; an `UnusableFile` names the line that fails."""
     try:
         return _imported(path)
     except Exception as error:
@@ -167,12 +167,12 @@ def _usable(path: Path) -> ModuleType:
 
 
 def declared_in(module: ModuleType, path: Path) -> type[Template]:
-    """Return the template, or model, that the module of a versioned file declares.
+    """Return the template or model that the module of a versioned file declares.
 
     Raises
     ------
     UnusableFile
-        If it declares none or several.
+        If the module declares none or several.
     """
     classes = [
         value

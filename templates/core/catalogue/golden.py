@@ -1,7 +1,7 @@
-"""Golden records of frozen versions: the digest of the code, some inputs, and every result.
+"""Golden records of released versions: the digest of the code, some inputs, and every result.
 
-`crankwright freeze` writes the record of a released version once; from then on a test compares the results
-with it. An existing record is never overwritten: a change to a released version makes a new version.
+`crankwright freeze` writes the record of a released version once. From then on a test compares the results
+with the record. An existing record is never overwritten: a changed calculation needs a new version.
 """
 
 from __future__ import annotations
@@ -21,21 +21,19 @@ from templates.core.language.evaluate import is_reported
 from templates.core.language.spec import Choice, Input
 from templates.core.language.template import Template
 
-STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
-DIGITS = 3  # significant digits of a recorded number beyond the precision to which it is compared
+STEPS = (0.9, 1.1)  # factors applied to each numeric input of the example in turn
+DIGITS = 3  # significant digits recorded beyond the precision of the comparison
 
 
 def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
-    """Return the golden record of one version.
-
-    SI inputs and SI results of the example and of steps around it.
+    """Return the golden record of one version: SI inputs and SI results of the example and its variations.
 
     Parameters
     ----------
     cls
         The version.
     more
-        Further cases: the quantities by which each differs from the example, under `inputs`, and its `level`.
+        Further cases. Each gives under `inputs` the quantities that differ from the example, and its `level`.
     """
     return {
         "id": cls.id,
@@ -48,27 +46,27 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
 
 
 def codes(refusal: InvalidInputs) -> list[str]:
-    """Return why inputs are refused, each code once.
+    """Return the codes of the faults for which inputs are refused, each code once.
 
-    The number of faults per cause is not a result.
+    How many faults have the same cause is not recorded.
     """
     return sorted({fault.code for fault in refusal.faults})
 
 
 def golden_file(cls: type[Template], folder: Path) -> Path:
-    """Return the file of a version's record."""
+    """Return the path of the record of a version."""
     return folder / f"{cls.id}_v{cls.version}.json"
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the record of a version before its release, and its digest beside its file; return the path.
+    """Write the golden record of a version and the digest file next to its source; return the record's path.
 
-    Further cases are in the folder's `more`, in a file with the record's name.
+    Further cases are read from the folder `more`, from the file with the record's name.
 
     Raises
     ------
     FileExistsError
-        If the version is frozen already.
+        If a record of the version exists already.
     """
     path = golden_file(cls, folder)
     further = folder / "more" / path.name
@@ -84,7 +82,7 @@ def freeze(cls: type[Template], folder: Path) -> Path:
 def _as_text(content: Mapping[str, Any]) -> str:
     """Return a record as JSON with one line per case.
 
-    Numbers have `DIGITS` more digits than the precision requires.
+    Numbers have `DIGITS` more digits than the comparison needs.
     """
     lists = {name: value for name, value in content.items() if isinstance(value, list)}
     parts = [f"{_json(name)}: {_json(value)}" for name, value in content.items() if name not in lists]
@@ -99,7 +97,7 @@ def _json(value: Any) -> str:
 
 
 def _shortened(case: Mapping[str, Any], precision: float) -> dict[str, Any]:
-    """Return a case whose outputs have no more digits than a comparison needs."""
+    """Return a case with its outputs rounded to the digits that the comparison needs."""
     digits = DIGITS - math.floor(math.log10(case.get("precision", precision)))
     return {**case, "outputs": _to(digits, case["outputs"])} if "outputs" in case else dict(case)
 
@@ -113,9 +111,9 @@ def _to(digits: int, value: Any) -> Any:
 
 
 def mark_released(cls: type[Template]) -> Path | None:
-    """Record the digest of a version beside its file, where the service reads it; never overwrite a record.
+    """Write the digest of a version next to its file, where the service reads it; never overwrite a digest.
 
-    A worksheet has no file: its release is recorded with its text.
+    A worksheet has no file: its release is stored with its text.
     """
     path = release_file(cls)
     if path and not path.exists():
@@ -136,7 +134,7 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 
 def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
-    """Yield the example at every level but the default one, at which the other cases are."""
+    """Yield the example at every level except the default level, which the other cases use."""
     yield from (_case(cls, {}, level) for level in cls.levels if level != cls.default_level)
 
 
@@ -153,14 +151,14 @@ def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[st
 
 
 def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the example's inputs in SI with defaults, without missing ones and those shown as outputs."""
+    """Return the example's inputs in SI with defaults, without missing inputs and those that are outputs."""
     template = cls.from_quantities({**cls.example, **(others or {})})
     reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 def _steps(declared: Input, value: Any) -> list[Any]:
-    """Return other values of one input: other options, one more or fewer, 10 % below and above."""
+    """Return alternative values of one input: other options, one more or one less, 10 % below and above."""
     if value is None or isinstance(value, tuple):
         return []
     if isinstance(declared, Choice):
@@ -192,7 +190,7 @@ def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _without_nan(value: NDArray[Any]) -> Any:
-    """Return an array as JSON, null for NaN."""
+    """Return an array as JSON, with null for NaN."""
     plain = value.astype(object)
     plain[np.isnan(value)] = None
     return plain.tolist()

@@ -1,8 +1,8 @@
-"""Modules of files outside the packages of this program, each created from its bytes.
+"""Modules of files outside this program's packages, each created from its bytes.
 
-The name of such a module holds a digest of the file's content. So an edited file makes a new module beside
-the old one: a running calculation keeps the code with which it began, and objects from another process are
-unpickled with that process's version of the code.
+The name of the module contains a digest of the file's content, so an edited file makes a new module and the
+old module stays loaded. A running calculation keeps the code with which it began, and objects from another
+process are unpickled with the code version of that process.
 """
 
 from __future__ import annotations
@@ -16,32 +16,32 @@ from pathlib import Path
 from types import ModuleType
 
 OUTSIDE = "_outside"
-"""The package to which files belong that are in none."""
+"""The package name for files that belong to no package."""
 
 WORKSHEETS = "worksheets"
-"""The package that classes made from worksheets name; there is no such package."""
+"""The package name for classes created from worksheets; no such package exists."""
 
 IMPORTED = "imported"
-"""The package that classes of models name which a team has brought; there is no such package either."""
+"""The package name for classes of models that a team has imported; no such package exists."""
 
 _CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
 
 
 class _Text:
-    """The loader of such a module, from which `inspect` and tracebacks read the text that was compiled."""
+    """The loader of such a module; `inspect` and tracebacks read the compiled source from it."""
 
     def __init__(self, text: str) -> None:
         self.text = text
 
     def get_source(self, name: str) -> str:
-        """Return the text of the module."""
+        """Return the source of the module."""
         return self.text
 
 
 def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
     """Return the module created from the content of a file.
 
-    It is created once for each digest, by default that of the content.
+    The module is created once for each digest, by default the digest of the content.
 
     Raises
     ------
@@ -52,9 +52,9 @@ def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
     name = _name(path, digest)
     if name in sys.modules:
         return sys.modules[name]
-    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # else nothing of such a file could be pickled
+    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # needed to pickle objects of such a file
     text = decode_source(content)
-    place = f"{path}@{digest[:12]}"  # two contents of one file have two texts
+    place = f"{path}@{digest[:12]}"  # each content of a file has its own source text
     module = ModuleType(name)
     vars(module).update(
         __file__=str(path),
@@ -80,20 +80,20 @@ def origin(module: ModuleType) -> tuple[bytes, str] | None:
 
 
 def text_of(module: ModuleType) -> str | None:
-    """Return the text from which `load` created a module."""
+    """Return the source from which `load` created a module."""
     return decode_source(source[0]) if (source := origin(module)) else None
 
 
 def is_outside(cls: type) -> bool:
-    """Return whether a class comes from outside the packages of this program.
+    """Return whether a class comes from outside this program's packages.
 
-    These are a team's files, worksheets and models.
+    This is true for a team's files, worksheets and models.
     """
     return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, IMPORTED)
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:
-    """Return the last line of a file that had a part in an error."""
+    """Return the last line of a file in an error's traceback."""
     if isinstance(error, SyntaxError) and _is_in(error.filename or "", path):
         return error.lineno
     frames = traceback.extract_tb(error.__traceback__)

@@ -1,1 +1,1 @@
-"""Checks of a team's template: its faults, their places, and remedies."""
+"""Checks of a team's template: faults, their lines, and remedies."""

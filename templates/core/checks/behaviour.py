@@ -1,4 +1,4 @@
-"""Faults that appear when a template calculates its example: refusals, dimensions, description, report."""
+"""Faults found by calculating the example of a template: refusals, dimensions, description, report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CORRECT = "correct the example, or what refuses it"
 
 
 def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the faults of the example: it must cover the required inputs, and be calculated."""
+    """Yield the faults of the example: a required input is missing, or the example cannot be calculated."""
     line = _line_of_example(cls)
     if not isinstance(cls.example, dict):
         yield FileFault(
@@ -44,7 +44,7 @@ def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def faults_of_behaviour(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the faults of a template whose example is calculated: dimensions, description, report."""
+    """Yield faults of dimensions, description and report in a template whose example can be calculated."""
     yield from _dimensions(cls)
     yield from _written(cls, lambda: json.dumps(describe(cls), allow_nan=False), "it cannot be described")
     yield from _written(cls, lambda: _paper(cls), "its formulas cannot be written on paper")
@@ -76,7 +76,7 @@ def _refused(fault: Fault, line: int | None) -> FileFault:
 
 
 def _raised(cls: type[Template], error: Exception, what: str, line: int | None) -> FileFault:
-    """Return a fault for an error that no template should raise, at the line of the file that raised it."""
+    """Return a fault for an error that no template should raise, with the line that raised it."""
     file = file_of(cls)
     place = (failing_line(error, file) if file else None) or line
     kind = "raises" if place else "internal"
@@ -84,7 +84,7 @@ def _raised(cls: type[Template], error: Exception, what: str, line: int | None) 
 
 
 def _line_of_example(cls: type[Template]) -> int | None:
-    """Return the line of the class that sets the example, or begins the class; None of a worksheet."""
+    """Return the line on which the class sets the example, else its first line; None for a worksheet."""
     if cls.sheet:
         return None
     lines, first = lines_of(cls)

@@ -1,4 +1,4 @@
-"""All checks of a template class, in an order in which one cause gives one fault."""
+"""All checks of a template class, ordered so that one cause gives one fault."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from templates.core.language.template import Template
 
 
 def faults_of(cls: type[Template], path: Path | None) -> list[FileFault]:
-    """Return every fault of a template or model that the file at `path`, or a worksheet, declares."""
+    """Return every fault of the template or model declared by the file at `path` or by a worksheet."""
     if faults := list(faults_of_structure(cls)):
         return faults
     if faults := list(faults_of_example(cls)):

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class FileFault:
-    """One fault of a file: a code for programs; for people the line, what is wrong, and what would be right.
+    """One fault of a file: a code for programs; the line, the fault and the remedy for people.
 
-    A fault that does not quarantine is reported, and the version is used.
+    A fault that does not quarantine the version is only reported.
     """
 
     code: str
@@ -20,6 +20,6 @@ class FileFault:
 
     @property
     def sentence(self) -> str:
-        """Return the fault in one line, such as `line 12: …; correct this line`."""
+        """Return the fault as one line of text, such as `line 12: …; correct this line`."""
         where = f"line {self.line}: " if self.line else ""
         return f"{where}{self.what}; {self.remedy}"

@@ -1,4 +1,4 @@
-"""Compare a version with its records: the results of its golden record, and the digest of its release."""
+"""Compare a version with its golden record (results) and with its release file (digest)."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ NEW_VERSION = "undo the edit, and put the change into a new version"
 
 
 def records(path: Path) -> tuple[Path, ...]:
-    """Return the possible files of a golden record.
+    """Return the paths at which the golden record may be.
 
-    They are beside a team's file, or in a folder `golden` there.
+    They lie next to a team's file, or in a folder `golden` next to it.
     """
     return path.with_suffix(".json"), path.parent / "golden" / f"{path.stem}.json"
 
 
 def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
-    """Yield results that differ from the golden record, which quarantine.
+    """Yield the differences from the release.
 
-    A digest that does, which is reported.
+    Different results quarantine the version; a different digest is only reported.
     """
     for file in records(path):
         if file.is_file():
@@ -64,7 +64,7 @@ def _read(file: Path) -> dict[str, Any] | None:
 
 
 def differences(cls: type[Template], record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the differences between a version's results and its golden record, a sentence each."""
+    """Yield a sentence for each difference between a version's results and its golden record."""
     precision = float(record.get("precision", cls.precision))
     for case in [*record["cases"], *record.get("levels", ())]:
         try:
@@ -88,7 +88,7 @@ def _of_case(case: Mapping[str, Any], outcome: Mapping[str, Any], precision: flo
 
 
 def _equal(old: Any, new: Any, precision: float) -> bool:
-    """Return whether two results in SI agree: texts exactly, numbers to the relative precision."""
+    """Return whether two results in SI agree: texts exactly, numbers within the relative precision."""
     if isinstance(old, str) or isinstance(new, str) or old is None or new is None:
         return bool(old == new)
     one, other = np.asarray(old, dtype=float), np.asarray(new, dtype=float)

@@ -1,4 +1,4 @@
-"""Faults that appear in the text of a template before any calculation: docstring, attributes, loops."""
+"""Faults found in the source of a template before any calculation: docstring, attributes, loops."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MOST_CYCLES = 10
 
 
 def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield every fault of the text; with such faults, calculating the template would only repeat them."""
+    """Yield every fault of the source. If there are any, calculating the template would only repeat them."""
     if cls.sheet:
-        return  # it was read and checked whole
+        return  # a worksheet was checked completely when it was read
     yield from _docstring(cls)
     yield from _formulas(cls)
     yield from _units(cls)
@@ -35,7 +35,7 @@ def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def functions_of(cls: type[Template]) -> dict[str, Callable[..., Any]]:
-    """Return every function of the class's own file by attribute: formulas, defaults, rules, methods."""
+    """Return the functions of formulas, defaults, rules and methods in the class's own file, by attribute."""
     functions: dict[str, Callable[..., Any]] = {}
     for base in cls.__mro__:
         if base.__module__ == cls.__module__:
@@ -71,7 +71,7 @@ def _docstring(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _units(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield declared units that are unknown."""
+    """Yield a fault for each declared unit that is unknown."""
     for declared in cls.declarations.values():
         try:
             _ = declared.meaning.scale
@@ -82,7 +82,7 @@ def _units(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
-    """Return the line of the file in which the class sets each of its attributes."""
+    """Return the line on which the class sets each of its attributes."""
     text, first = lines_of(cls)
     tree = parse(textwrap.dedent("".join(text))).body[0]
     lines: dict[str, int] = {}
@@ -94,7 +94,7 @@ def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
 
 
 def _formulas(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the formulas that are not a method of one `return`: they cannot be written on paper."""
+    """Yield the formulas that are not a single `return` and therefore cannot be printed."""
     for declared in cls.declarations.values():
         if not isinstance(declared, Formula):
             continue
@@ -110,7 +110,7 @@ def _formulas(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _unknown_attributes(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the names behind `self.` that nothing declares."""
+    """Yield the names used after `self.` that nothing declares."""
     available = {*dir(cls), *(name for base in cls.__mro__ for name in vars(base).get("__annotations__", ()))}
     for attribute, function in functions_of(cls).items():
         for name, line in _lines(function).items():
@@ -130,7 +130,7 @@ def _lines(function: Callable[..., Any]) -> dict[str, int]:
 
 
 def _cycles(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield the formulas that depend on themselves, with the path of each remaining loop."""
+    """Yield the formulas that depend on themselves, with the path of each loop that remains."""
     nodes = {**cls.declarations, **cls.intermediates}
     uses = {name: set(getattr(node, "uses", ())) & nodes.keys() for name, node in nodes.items()}
     for _ in range(MOST_CYCLES):
@@ -138,7 +138,7 @@ def _cycles(cls: type[Template]) -> Iterator[FileFault]:
             TopologicalSorter(uses).prepare()
             return
         except CycleError as error:
-            loop = list(reversed(error.args[1]))  # each follows from the next
+            loop = list(reversed(error.args[1]))  # each depends on the next
         uses[loop[0]] = uses[loop[0]] - {loop[1]}
         node = nodes[loop[0]]
         line = line_of(node.function) if isinstance(node, (Formula, Shared)) else None

@@ -1,9 +1,9 @@
-"""The band of the true value around a value whose relative error is stated, and around an expression.
+"""Compute the band that contains the true value, for a value or an expression with stated relative errors.
 
-A stated error e means |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). `CONVENTION` is that
-sentence: every table of measured errors repeats it, and the scripts that measure use `relative_error`.
-Several errors may contribute to one band. If a contribution is unknown, the band includes only the known ones
-and is marked as unknown.
+A stated error e means |v - t| ≤ e |t|: the true value t lies between v/(1 + e) and v/(1 - e). `CONVENTION`
+states this in one sentence. Every table of measured errors repeats it, and the scripts that measure errors
+use `relative_error`. Several errors may contribute to one band. If one of them is unknown, the band includes
+only the known errors and is marked as unknown.
 """
 
 from __future__ import annotations
@@ -21,33 +21,35 @@ from templates.core.units.relation import Relation
 from templates.core.units.units import Value
 
 CONVENTION = "|answer - truth| <= error * |truth|"
-"""What every stated error says: of a curve with the largest |truth| along it, of others with what the table
-names under `relative_to`, such as 90° of an angle."""
+"""The reference of every stated error: for a curve its largest |truth|, for others what the table names under
+`relative_to`, such as 90° for an angle.
+"""
 
 Bounds = tuple[Value, Value]
-"""The least and the largest truth."""
+"""The smallest and the largest possible true value."""
 
 Shift = tuple[Mapping[str, Value], Mapping[str, Value]]
-"""The values of all names [SI], with something from which they follow shifted to either end of its band."""
+"""The values of all names [SI], with an upstream value moved to either end of its band."""
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(slots=True)  # a frozen instance would take four times as long to create
 class Estimate:
-    """A named value [SI] and how far off it may be.
+    """A named value [SI] with its error.
 
     Attributes
     ----------
     value
-        A number or an array: points first, places along a curve last; NaN where there is none.
+        A number, or an array with points on the first axes and places along a curve on the last; NaN where
+        there is no value.
     error
-        Relative; 0 if exact, NaN where it is not known. Of the shape of the points.
+        Relative error; 0 if exact, NaN where unknown. Its shape is that of the points.
     axes
         How many of the last axes of the value are places along a curve.
     scale
-        To what the error is relative [SI], where that is not the value itself, such as 90° of an angle. The
+        The reference value of the error [SI], if this is not the value itself, such as 90° for an angle. The
         error of a curve is relative to its largest value.
     reasons
-        Of an array of points, why there is no value; None where there is one.
+        For an array of points, why there is no value; None where there is one.
     """
 
     value: Value
@@ -58,7 +60,7 @@ class Estimate:
 
     @property
     def is_exact(self) -> bool:
-        """Return whether the band has no width."""
+        """Return whether the value has no error."""
         if isinstance(self.error, float):
             return self.error == 0
         return not self.error.any()
@@ -79,7 +81,7 @@ class Estimate:
         return not np.isnan(self.error).any()
 
     def bounds(self) -> Bounds:
-        """Return the band of the value; the value itself if its error is unknown."""
+        """Return the band of the value; if its error is unknown, the value itself for both bounds."""
         if self.is_exact or self.is_known is False:
             return self.value, self.value
         error = spread(self.error, self.axes)
@@ -100,19 +102,19 @@ class Estimate:
 
 
 def spread(value: Value, axes: int) -> Value:
-    """Return the values of points as an array that goes with places along a curve."""
+    """Return values of points as an array that broadcasts along a curve."""
     return value[(..., *(None,) * axes)] if axes and isinstance(value, np.ndarray) else value
 
 
 def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Array:
-    """Return the error of a value by `CONVENTION`; 0 where both agree, infinite where the truth alone is 0.
+    """Return the error of a value by `CONVENTION`; 0 where both agree, infinite where only the truth is 0.
 
     Parameters
     ----------
     value, truth
         Numbers, or arrays that broadcast together.
     scale
-        What the error is relative to, where that is not the truth itself, such as 90° of an angle.
+        The reference value of the error, if this is not the truth itself, such as 90° for an angle.
     """
     size = np.abs(truth) if scale is None else scale
     with np.errstate(all="ignore"):
@@ -120,7 +122,7 @@ def relative_error(value: Value, truth: Value, scale: Value | None = None) -> Ar
 
 
 def band(value: Value, error: Value) -> Bounds:
-    """Return the range of the truth, for values with a stated relative error.
+    """Return the range of the true value, for values with a stated relative error.
 
     Parameters
     ----------
@@ -131,7 +133,7 @@ def band(value: Value, error: Value) -> Bounds:
     -------
     tuple
         The lower and the upper bound: v/(1 + e) and v/(1 - e), swapped where v is negative. For e ≥ 1 the
-        bound away from zero is infinite, and for v = 0 both are. NaN where v or e is.
+        bound away from zero is infinite, and for v = 0 both are infinite. NaN where v or e is NaN.
     """
     if isinstance(value, float) and isinstance(error, float):
         return _band_of_one(float(value), float(error))
@@ -146,7 +148,7 @@ def band(value: Value, error: Value) -> Bounds:
 
 
 def _band_of_one(value: float, error: float) -> tuple[float, float]:
-    """Return the `band` of a single value, at a tenth of the cost."""
+    """Return the `band` of a single value, in a tenth of the time."""
     if math.isnan(value) or math.isnan(error):
         return math.nan, math.nan
     if error >= 1:
@@ -159,9 +161,9 @@ def _band_of_one(value: float, error: float) -> tuple[float, float]:
 
 
 def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
-    """Return the range of the truth, for an error relative to a scale such as 90°.
+    """Return the range of the true value, for an error relative to a scale such as 90°.
 
-    The scale is that of the values calculated; that of the truth may be larger by 1/(1 - e).
+    The scale is computed from calculated values; the true scale may be larger by 1/(1 - e).
     """
     with np.errstate(all="ignore"):
         half = np.where(np.asarray(error) < 1, error * scale / (1 - error), np.inf)
@@ -170,7 +172,7 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
 
 
 def largest_true(size: Value, error: Value) -> Value:
-    """Return the largest size that the truth may have for a size calculated with a relative error."""
+    """Return the largest true magnitude of a calculated value with a relative error."""
     with np.errstate(all="ignore"):
         most = np.where(np.asarray(error) < 1, size / (1 - error), np.inf)
         return np.where(np.isnan(error), np.nan, most)[()]
@@ -179,10 +181,10 @@ def largest_true(size: Value, error: Value) -> Value:
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
 ) -> tuple[Value, Bounds, Truth]:
-    """Return the value of a side of a comparison, its known band, and where the band is known.
+    """Return the value of one side of a comparison, its known band, and a mask of where the band is known.
 
-    Each uncertain name is shifted to both ends of its band with the others unchanged, and the changes are
-    added. The changes of `shifts`, which come from upstream values, are added too.
+    Each uncertain name is set to both ends of its band while the others stay unchanged, and the resulting
+    changes are added. The changes of `shifts`, which come from upstream values, are added too.
 
     Raises
     ------
@@ -207,7 +209,7 @@ def value_and_bounds(
 def _own_shifts(
     side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
 ) -> Iterator[Shift]:
-    """Yield a side with each uncertain name at both ends of its band and the others unchanged."""
+    """Yield the value of a side with each uncertain name at both ends of its band, the others unchanged."""
     for name in sorted(side.names):
         if not estimates[name].is_exact:
             low, high = estimates[name].bounds()
@@ -217,7 +219,7 @@ def _own_shifts(
 def _changes(
     side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]
 ) -> tuple[Value, Value, Truth]:
-    """Return the change of a side, down and up, and a mask of places with values at both ends."""
+    """Return the downward and upward change of a side, and a mask of the places with values at both ends."""
     with np.errstate(all="ignore"):
         one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
         less, more = np.fmin(np.fmin(one, other), 0.0), np.fmax(np.fmax(one, other), 0.0)
@@ -225,7 +227,7 @@ def _changes(
 
 
 def relative_width(value: float, low: float, high: float) -> float | None:
-    """Return the relative error of a band; None if the band is open or unknown."""
+    """Return the relative error that corresponds to a band; None if the band is open or unknown."""
     ends = [end for end in (low, high) if end != value]
     if not ends:
         return 0.0
@@ -235,7 +237,7 @@ def relative_width(value: float, low: float, high: float) -> float | None:
 
 
 def aligned(estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Estimate]:
-    """Return estimates whose arrays broadcast together.
+    """Return the estimates with arrays that broadcast together.
 
     Values per point also broadcast along a curve.
     """

@@ -1,7 +1,7 @@
-"""Compare two sides, each in its band: a verdict for every point, and every place of a curve.
+"""Compare two sides with their bands, and give a verdict at every point and every place of a curve.
 
 The values themselves decide the verdict, unless a known band contains the limit. The verdict also states
-whether every error is known: `met` with an unknown error confirms nothing.
+whether every error is known: `met` with an unknown error is not confirmed.
 """
 
 from __future__ import annotations
@@ -27,23 +27,24 @@ NOT_MET, UNDECIDED, NOT_CHECKED, MET_ERROR_UNKNOWN, MET = range(5)
 VERDICTS: tuple[Verdict, ...] = (*WORST_FIRST, "met")
 """The verdict of each code."""
 Codes = int | NDArray[np.int8]
-"""Verdicts as places in `VERDICTS`: the least is the worst. Met counts apart where an error is not known."""
+"""Verdicts as indices in `VERDICTS`: the smallest is the worst. Met with an unknown error has its own code.
+"""
 
 
 def is_met(codes: NDArray[Any]) -> Mask:
-    """Return which verdicts are met, whether or not all their errors are known."""
+    """Return which verdicts are met, with known or unknown errors."""
     mask: Mask = np.isin(codes, (MET_ERROR_UNKNOWN, MET))
     return mask
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(slots=True)  # a frozen instance would take four times as long to create
 class Comparison:
     """Both sides of a criterion [SI] with their bands, and the verdict at every point and place.
 
     Attributes
     ----------
     is_known
-        Where every error that contributes to the bands is known; the bands are those of the known ones.
+        Where every error that contributes to the bands is known; the bands contain only the known errors.
     """
 
     value: Value
@@ -55,7 +56,7 @@ class Comparison:
     axes: int
 
     def filled(self, rows: Codes) -> Comparison:
-        """Return other verdicts at the points where a side has no value.
+        """Return a copy with the given verdicts at the points where a side has no value.
 
         Verdicts of a curve do not change.
         """
@@ -65,7 +66,7 @@ class Comparison:
         return replace(self, codes=codes if codes.ndim else int(codes))
 
     def rows(self) -> Codes:
-        """Return the verdict at every point: of a curve the worst of its places."""
+        """Return the verdict at every point; for a curve, the worst verdict of its places."""
         if not self.axes or isinstance(self.codes, int):
             return self.codes
         worst = self.codes.min(axis=tuple(range(-self.axes, 0)))
@@ -79,10 +80,10 @@ def compare(
     *,
     is_known: Truth = True,
 ) -> Comparison:
-    """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
+    """Compare the sides of a criterion whose names all have estimates; places with NaN are not checked.
 
-    `shifts` are the values of all names with an upstream value shifted to either end of its band; `is_known`
-    states where all upstream errors are known.
+    `shifts` are the values of all names after an upstream value was moved to either end of its band;
+    `is_known` states where all upstream errors are known.
 
     Raises
     ------
@@ -104,7 +105,7 @@ def compare(
 
 
 def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
-    """Return shifted values; values per point become arrays that broadcast along a curve."""
+    """Return the shifted values; values per point become arrays that broadcast along a curve."""
     return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
@@ -123,12 +124,13 @@ def verdicts(
     limit_bounds: Bounds,
     is_known: Truth = True,
 ) -> Codes:
-    """Return the verdict for each side in its band; equality meets the criterion.
+    """Return the verdict for two sides with their bands; equality meets the criterion.
 
     The bands include the known errors; `is_known` states where all errors are known.
     """
     safe, bad = _opposed(sign, value_bounds, limit_bounds)
-    if not np.ndim(is_known) and all(isinstance(end, float) for end in (value, limit, *safe, *bad)):
+    ends = value, limit, *safe, *bad
+    if isinstance(is_known, (bool, np.bool_)) and not [end for end in ends if not isinstance(end, float)]:
         if value != value or limit != limit:
             return NOT_CHECKED
         met = MET if is_known else MET_ERROR_UNKNOWN
@@ -142,7 +144,7 @@ def verdicts(
 
 
 def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
-    """Return pairs (a, b): a criterion is met if a ≥ b in the first, and not met if a < b in the second."""
+    """Return two pairs (a, b): the criterion is met if a ≥ b in the first, not met if a < b in the second."""
     if sign == ">=":
         return (value[0], limit[1]), (value[1], limit[0])
     return (limit[0], value[1]), (limit[1], value[0])

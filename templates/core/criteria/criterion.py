@@ -1,8 +1,8 @@
-"""Criteria as they are declared: `minimum_film_thickness >= smallest_permissible_film`, words and sources.
+"""Declared criteria, such as `minimum_film_thickness >= smallest_permissible_film`, with words and sources.
 
-A criterion compares two sides by one `>=` or `<=`; each side is a relation (`templates.core.units.relation`),
-and both measure the same kind of quantity. A criterion may name *limits*: values that the user gives and the
-calculation itself does not use.
+A criterion compares two sides by one `>=` or `<=`. Each side is a relation (`templates.core.units.relation`),
+and both sides measure the same kind of quantity. A criterion may declare *limits*: values that the user gives
+and that the calculation itself does not use.
 """
 
 from __future__ import annotations
@@ -43,24 +43,24 @@ _RADIAN = registry.Unit("radian")
 
 @dataclass(frozen=True, slots=True)
 class NameDescription:
-    """The declared unit and the words of a name in a criterion."""
+    """The declared unit and the label of a name in a criterion."""
 
     unit: str
     words: str
-    kind: Kind | None = None  # where its unit alone does not say it
+    kind: Kind | None = None  # given where the unit alone does not determine it
 
     @property
     def measured(self) -> Kind:
-        """Return the kind of the value."""
+        """Return the kind of quantity of the value."""
         return self.kind or kind_of(self.unit)
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit that the calculation does not take.
+    """A limit that only the criterion uses, not the calculation.
 
-    `library` is the choice whose rows have a value for it. Where nobody gives the limit, it is the `default`,
-    if there is one: the `min` or `max` of an input that is a list.
+    `library` names the library whose rows have a value for the limit. If nobody gives the limit, the
+    `default` applies, if there is one: the `min` or `max` of an input that is a list.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Limit:
 
     @cached_property
     def remedy(self) -> str:
-        """Return a sentence on the input to give."""
+        """Return a sentence that names the input to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"
         row = f", or a row of {self.library}" if self.library else ""
         other = f", or {self.default[1]}" if self.default else ""
@@ -80,9 +80,9 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class MissingValue:
-    """Why a name has no value although another one, `beside`, has.
+    """Why a name has no value although another name, `beside`, has one.
 
-    `instead` is a comparison that says the same as the criterion, and has values where the name has none.
+    `instead` is an equivalent comparison of quantities that do have values in this case.
     """
 
     beside: str
@@ -92,9 +92,9 @@ class MissingValue:
 
 @dataclass(frozen=True)
 class Criterion:
-    """A criterion whose names exist and whose sides measure the same.
+    """A criterion whose names exist and whose sides measure the same kind of quantity.
 
-    `unit` is that in which value and limit are shown; `names` stand in the order of the text.
+    Value and limit are shown in `unit`; `names` are in the order of the text.
     """
 
     name: str
@@ -113,22 +113,22 @@ class Criterion:
 
     @cached_property
     def limits_by_name(self) -> dict[str, Limit]:
-        """Return the limits that it declares."""
+        """Return the limits that the criterion declares, by name."""
         return {limit.name: limit for limit in self.limits}
 
     @cached_property
     def limits_last(self) -> tuple[str, ...]:
-        """Return the names in the order of the text, with those of limits last."""
+        """Return the names in the order of the text, but with limits last."""
         return tuple(sorted(self.names, key=self.limits_by_name.__contains__))
 
     @cached_property
     def all_names(self) -> frozenset[str]:
-        """Return its names."""
+        """Return the names that the criterion uses."""
         return frozenset(self.names)
 
     @cached_property
     def stated(self) -> Mapping[str, Any]:
-        """Return the members that every judgement of it has, by name."""
+        """Return, by name, the fields that every judgement of this criterion has."""
         return {
             "name": self.name,
             "words": self.words,
@@ -146,12 +146,12 @@ class Criterion:
 
     @cached_property
     def is_temperature(self) -> bool:
-        """Return whether temperatures are compared, whose ratios mean nothing."""
+        """Return whether the criterion compares temperatures, whose ratios have no meaning."""
         return bool(self.scale.base == registry.kelvin) and not self.scale.difference
 
     @cached_property
     def subject(self) -> str | None:
-        """Return the judged name, if the value is a single name."""
+        """Return the judged name if the value is a single name, else None."""
         return self.value.only_name
 
 
@@ -162,7 +162,7 @@ def is_angle(name: str) -> bool:
 
 
 def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription]) -> Criterion:
-    """Read a criterion as declared: only its `require`, or an object that contains it.
+    """Return a criterion from its declaration: only the text of `require`, or an object that contains it.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription])
     raw
         The text of the comparison, or a mapping with `require` and further keys.
     meanings
-        What the names that it may use measure; limits that it declares are added to these.
+        Unit and label of each name that it may use; limits that it declares are added to these.
 
     Raises
     ------
@@ -213,7 +213,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription])
 
 
 def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
-    """Return the two sides of a comparison and its sign.
+    """Return the left side, the sign and the right side of a comparison.
 
     Raises
     ------
@@ -289,7 +289,7 @@ def _missing(
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
-    """Return the names in the order of the text."""
+    """Return the names in the order in which they occur in the text."""
     return tuple(sorted(names, key=text.find))
 
 
@@ -309,7 +309,7 @@ def _as_compared(
 
 
 def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]) -> Kind:
-    """Return the kind of both sides."""
+    """Return the common kind of both sides."""
     one, other = value.kind(kinds), limit.kind(kinds)
     if not compatible(one, other) and not (is_rate(one.base) and is_rate(other.base)):
         raise FaultyText(
@@ -322,12 +322,12 @@ def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[st
 
 
 def _in_kind(name: str, kind: Kind) -> str:
-    """Return the unit of a limit in K that is compared with a difference of temperatures."""
+    """Return the unit of a limit; K becomes a unit of difference beside a temperature difference."""
     return difference_in(name) if kind.is_difference and not unit(name).difference else name
 
 
 def _shown_unit(kind: Kind, declared: list[NameDescription]) -> str:
-    """Return the unit of the first name with the kind of the sides, else the SI base unit."""
+    """Return the unit of the first name that has the kind of the sides, else the SI base unit."""
     fitting = (one.unit for one in declared if _is_alike(one.measured, kind))
     return next(fitting, None) or kind.unit
 

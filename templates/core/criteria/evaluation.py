@@ -34,7 +34,7 @@ Parts = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Absent:
-    """Why a name has no value: what to give, or the reason."""
+    """Why a name has no value: the inputs to give, or the reason."""
 
     give: tuple[str, ...] = ()
     reason: str | None = None
@@ -42,19 +42,19 @@ class Absent:
 
 @dataclass(frozen=True, slots=True)
 class Instead:
-    """A comparison that was judged where a side of the criterion has no value, and why it has none."""
+    """The judged comparison that replaces a criterion without a value, and why the value is missing."""
 
     judgement: Judgement
     reason: str
 
     @property
     def rows(self) -> Codes:
-        """Return the replacing verdicts: a missing value cannot violate a criterion with certainty."""
+        """Return the replacement verdicts: a missing value cannot violate a criterion with certainty."""
         codes = self.judgement.rows
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
     def parts(self) -> Parts:
-        """Return the members of a judgement of single values in place of these."""
+        """Return the fields of a judgement of single values that replace those of the original criterion."""
         if self.judgement.verdict not in ("met", "undecided"):
             return {}
         within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
@@ -64,7 +64,7 @@ class Instead:
 
 @dataclass(frozen=True, slots=True)
 class Along:
-    """The places of a curve: the name of the axis, its values [unit], one row for all points or one each."""
+    """The places of a curve: the name of the axis and its values [unit], shared or one row per point."""
 
     name: str
     values: Value
@@ -83,28 +83,28 @@ def judge(
     *,
     is_known: Truth = True,
 ) -> Judgement:
-    """Judge a criterion.
+    """Return the judgement of a criterion.
 
     Parameters
     ----------
     criterion
-        What is compared.
+        The comparison to judge.
     estimates
-        Values of its names, as far as there are any.
+        The values of its names, as far as they are available.
     absent
-        Why the others have none.
+        Why the other names have no value.
     along
         The places, if a curve is judged.
     unit_name
-        The unit in which to report, if not the criterion's.
+        The unit in which to report, if not that of the criterion.
     shifts
-        The values of all names, with something upstream shifted to either end of its band.
+        The values of all names after an upstream value was moved to either end of its band.
     noted
         Further fields of the judgement, such as `level` and `truth`.
     instead
-        What was judged where a side has no value.
+        The judged comparison that replaces this one where a side has no value.
     is_known
-        Where the errors of all that is upstream are known.
+        Where the errors of all upstream values are known.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
     if not estimates.keys() >= criterion.all_names:
@@ -123,9 +123,9 @@ def judge(
 
 
 def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Mapping[str, Absent]) -> Parts:
-    """Return a criterion with missing values.
+    """Return the fields of a judgement with missing values.
 
-    A single value on the other side is reported.
+    If the other side is a single value, the fields contain it.
     """
     parts: Parts = {"verdict": "not_checked"}
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
@@ -140,13 +140,13 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
 
 
 def _unknown(criterion: Criterion, estimates: Mapping[str, Estimate]) -> list[str]:
-    """Return the names whose own error is unknown at some point."""
+    """Return the names whose own error is unknown at one or more points."""
     return [n for n in criterion.names if n in estimates and not estimates[n].is_known_throughout]
 
 
 @lru_cache(maxsize=1024)
 def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
-    """Return the inputs to give, with reasons, for names without a value."""
+    """Return which inputs to give, and the reasons, for names without a value."""
     give = dict.fromkeys(name for one in absent for name in one.give)
     reasons = dict.fromkeys(one.reason for one in absent if one.reason)
     return {"give": tuple(give), "reason": "; ".join(reasons) or None}
@@ -159,7 +159,7 @@ def _compared(
     along: Along | None,
     is_shifted: bool,
 ) -> Parts:
-    """Return the members of a judgement about both sides, at the worst place."""
+    """Return the fields of a judgement that describe both sides, at the worst place."""
     worst = worst_of(criterion, compared)
     rows = compared.rows()
     used = [estimates[name] for name in criterion.names]
@@ -172,10 +172,10 @@ def _compared(
     }
     if worst.code == NOT_CHECKED:
         return {**parts, "reason": _no_value(used, worst.index[: len(worst.index) - compared.axes])}
-    if math.isnan(worst.limit) or math.isnan(worst.value):  # something was judged instead
+    if math.isnan(worst.limit) or math.isnan(worst.value):  # another comparison was judged instead
         return parts
     numbers = _numbers(criterion, parts, worst, estimates)
-    if is_shifted and worst.is_known:  # more than the error of the name that is judged
+    if is_shifted and worst.is_known:  # includes more than the error of the judged name
         numbers["relative_error"] = relative_width(worst.value, worst.low, worst.high)
     return {**parts, **numbers}
 
@@ -199,7 +199,7 @@ def _counted_from_one(index: tuple[int, ...]) -> int | list[int]:
 
 
 def _counted(rows: Codes) -> Parts:
-    """Return the number of points of each verdict; nothing for a single point."""
+    """Return the number of points with each verdict; empty for a single point."""
     if isinstance(rows, int):
         return {}
     numbers = np.bincount(rows.ravel(), minlength=len(VERDICTS))
@@ -219,7 +219,7 @@ def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
 
 
 def _own_place(point: tuple[int, ...], shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the place of a point in an array that was broadcast to all points."""
+    """Return the index of a point within an array that was broadcast to all points."""
     return tuple(i % n for i, n in zip(point[len(point) - len(shape) :], shape, strict=True))
 
 
@@ -246,7 +246,7 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
 
 
 def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
-    """Return the stated error of a directly judged name; for an expression, the error of its band."""
+    """Return the stated error of the judged name; for an expression, the error given by its band."""
     if subject is None:
         return relative_width(worst.value, worst.low, worst.high)
     at = subject.error
@@ -264,7 +264,7 @@ def _utilisation(criterion: Criterion, worst: Worst) -> float | None:
 
 
 def _needs(worst: Worst, subject: Estimate | None) -> float:
-    """Return the relative error below which the limit would be outside the band.
+    """Return the largest relative error with which the limit would lie outside the band.
 
     If the limit is uncertain too, both are given the same relative error.
     """
@@ -280,7 +280,7 @@ def _needs(worst: Worst, subject: Estimate | None) -> float:
 def _reason(
     criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
 ) -> str | None:
-    """Return a remark on a verdict."""
+    """Return a remark on a verdict, if one is needed."""
     if not worst.is_known:
         return unknown_error(map(in_words, _unknown(criterion, estimates)), parts["verdict"])
     if parts["verdict"] != "undecided":
@@ -291,11 +291,11 @@ def _reason(
     return f"{within}; a relative error below {needs:.2g} would decide" if needs <= 1 else within
 
 
-MOST_NAMED = 2  # values whose error is unknown, in one sentence
+MOST_NAMED = 2  # most values with unknown error that one sentence names
 
 
 def unknown_error(names: Iterable[str], verdict: Verdict) -> str:
-    """Return a sentence on the values whose errors are unknown, by their words."""
+    """Return a sentence that names the values whose errors are unknown."""
     of = sorted(dict.fromkeys(names))
     more = len(of) - MOST_NAMED
     shown = listed(of) if more <= 0 else f"{', '.join(of[:MOST_NAMED])} and {more} more"
@@ -306,5 +306,5 @@ def unknown_error(names: Iterable[str], verdict: Verdict) -> str:
 
 
 def in_words(name: str) -> str:
-    """Return the name of a value in words, after the name of its step."""
+    """Return the label of a value, after the name of its step."""
     return name.replace(".", ": ").replace("_", " ")

@@ -1,7 +1,7 @@
-"""A criterion as judged: its verdict, the numbers behind it, and sentences about two values compared.
+"""A judged criterion: its verdict, the numbers behind it, and sentences about the two compared values.
 
-Warnings of criteria and of rules are made here: they say what is the case, never what ought to be, so no
-sentence contradicts its own numbers.
+Warnings of criteria and of rules are written here. They state the actual relation, never the required one,
+so no sentence contradicts its own numbers.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
 from templates.core.units.units import unit_symbol
 
 IS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not below"}
-DIGITS = 4  # of a number in a sentence, unless more are needed to tell two apart
+DIGITS = 4  # significant digits in a sentence, unless two numbers need more to differ
 _MOST_DIGITS = 17
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Place of the worst value: a point of an array, counted from 1, or a place along a curve.
+    """Location of the worst value: a point of an array, counted from 1, or a place along a curve.
 
     A place without a unit is a name: that of a variant of a design.
     """
@@ -34,25 +34,25 @@ class Place:
     unit: str
 
 
-@dataclass(slots=True)  # frozen, each would cost 25 times as much
+@dataclass(slots=True)  # a frozen instance would take 25 times as long to create
 class Judgement:
-    """A criterion as judged; over several points or places it stands for the worst of them.
+    """A judged criterion; over several points or places it describes the worst of them.
 
     Attributes
     ----------
     value, limit, margin
         In `unit`, the margin in `margin_unit`; None where there is none. A positive margin is safe.
     band
-        In `unit`; an open end is infinite. None where the error is not known.
+        In `unit`; an open end is infinite. None where the error is unknown.
     error_known
-        Whether every error that contributes to the band is known. Without it the verdict is that of the value
-        itself, unless the known part of the band holds the limit.
+        Whether every error that contributes to the band is known. If not, the verdict is that of the value
+        itself, unless the known part of the band contains the limit.
     needs
         The relative error below which the verdict would be decided; None above 1.
     give
-        The names of what is missing.
+        The names of the missing inputs.
     rows
-        The verdict at every point, as places in `VERDICTS`.
+        The verdict at every point, as indices in `VERDICTS`.
     """
 
     name: str
@@ -84,30 +84,29 @@ class Judgement:
 
     @property
     def is_certain(self) -> bool:
-        """Return whether nothing about the verdict is unverified, or follows from an unknown error."""
+        """Return whether the verdict depends on nothing unverified and on no unknown error."""
         return self.error_known and self.unverified is None
 
     @property
     def is_open(self) -> bool:
-        """Return whether a finer calculation may change the verdict: undecided, or with an unknown error."""
+        """Return whether a finer calculation may change the verdict: undecided, or an error is unknown."""
         is_compared = self.verdict in ("met", "not_met") and self.margin is not None
         return self.verdict == "undecided" or (is_compared and not self.error_known)
 
     @property
     def sides(self) -> tuple[str, str]:
-        """Return the texts of value and limit."""
-        parts = _parts_of(self.require)
-        return parts.value, parts.limit
+        """Return value and limit as text."""
+        return _parts_of(self.require).sides
 
     @property
     def sign(self) -> str:
-        """Return the sign between value and limit that is required."""
+        """Return the required sign between value and limit."""
         return _parts_of(self.require).sign
 
     @property
     def has_fixed_limit(self) -> bool:
         """Return whether the limit is a literal number in the criterion."""
-        return _is_number(_parts_of(self.require).limit)
+        return _is_number(self.sides[1])
 
     @property
     def misses(self) -> bool:
@@ -137,12 +136,14 @@ def verdict_sentence(
     error_known: bool,
     truth: str | None,
 ) -> str:
-    """Return the sentence on a requirement, with value, limit and their unit if present."""
+    """Return a sentence that states a requirement and its verdict, with value, limit and unit if present."""
     parts = _parts_of(require)
     words = verdict.replace("_", " ") + (f", {truth}" if is_model(truth) else "")
-    if numbers is None or not all(map(math.isfinite, numbers[:2])):
+    if numbers is None:
         return f"{parts.written}: {words}"
     value, limit, unit = numbers
+    if not (math.isfinite(value) and math.isfinite(limit)):
+        return f"{parts.written}: {words}"
     actual = {">=": "<", "<=": ">"}[parts.sign] if misses else parts.sign
     unknown = "" if error_known or verdict == "not_checked" else "; error unknown"
     sides = Side(parts.value_words, value), Side(parts.limit_words, limit)
@@ -150,26 +151,26 @@ def verdict_sentence(
 
 
 class _Parts(NamedTuple):
-    """A comparison that is required, taken apart.
+    """A required comparison, split into its parts.
 
-    `written` is the whole with its names in words; the words of each side stand before its number.
+    `sides` are value and limit as text; `written` is the whole comparison with labels for names; the words of
+    each side precede its number.
     """
 
     sign: str
-    value: str
-    limit: str
+    sides: tuple[str, str]
     value_words: str
     limit_words: str
     written: str
 
 
-@lru_cache(maxsize=1024)  # criteria of worksheets and of designs come and go
+@lru_cache(maxsize=1024)  # bounded, because worksheets and designs keep adding criteria
 def _parts_of(require: str) -> _Parts:
     sign = ">=" if ">=" in require else "<="
     left, _, right = require.partition(sign)
     value, limit = left.strip(), right.strip()
     written = f"{_name(value)} {sign} {_name(limit)}"
-    return _Parts(sign, value, limit, _in_words(value), _in_words(limit), written)
+    return _Parts(sign, (value, limit), _in_words(value), _in_words(limit), written)
 
 
 def _is_number(side: str) -> bool:
@@ -177,49 +178,48 @@ def _is_number(side: str) -> bool:
 
 
 def is_model(truth: str | None) -> bool:
-    """Return whether a truth is a model described in words, such as `rigid film`, not a level."""
+    """Return whether a truth is a described model, such as `rigid film`, and not a level."""
     return truth is not None and " " in truth
 
 
 def not_judged(judgement: Judgement) -> str:
-    """Return why there is no verdict, as a sentence."""
+    """Return a sentence on why there is no verdict."""
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
 def _in_words(text: str) -> str:
-    """Return a side in words; a number is shown as it is."""
+    """Return the words of a side; a number is returned unchanged."""
     if _is_number(text):
         return ""
     return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="
 
 
 def _name(text: str) -> str:
-    """Return names in words, without the steps before them; a number stays as written."""
+    """Return the labels of names without their steps; a number is returned as written."""
     return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
 
 
-@dataclass(frozen=True)
-class Side:
-    """One side of a comparison: its words, which may be empty, and its magnitude in the unit of both."""
+class Side(NamedTuple):
+    """One side of a comparison: its words, which may be empty, and its magnitude in the common unit."""
 
     words: str
     magnitude: float
 
 
 def related(left: str, sign: str, right: str) -> str:
-    """Return a relation without numbers: `minimum film thickness is below permissible film`."""
+    """Return a true relation without numbers: `minimum film thickness is below permissible film`."""
     return f"{left} {IS[sign]} {right}"
 
 
 def compared(left: Side, sign: str, right: Side, unit: str) -> str:
-    """Return a true comparison: `minimum film thickness 2.133 µm is below permissible film 3 µm`."""
+    """Return a true comparison, such as `minimum film thickness 2.133 µm is below permissible film 3 µm`."""
     printed, (one, other) = unit_symbol(unit), told_apart(left.magnitude, right.magnitude)
-    sides = f"{left.words} {one} {printed}", f"{right.words} {other} {printed}"
-    return f" {IS[sign]} ".join(side.strip() for side in sides)
+    first, second = f"{left.words} {one} {printed}".strip(), f"{right.words} {other} {printed}".strip()
+    return f"{first} {IS[sign]} {second}"
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Return two numbers with enough digits to differ, unless they are equal."""
+    """Return two numbers as text with enough digits to differ, unless they are equal."""
     texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
     digits = DIGITS
     while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:

@@ -1,8 +1,8 @@
-"""Limits that a user types, or takes from a row of a library, such as materials.
+"""Limits that a user types, or takes from a library row, such as a material.
 
-A criterion may declare limits that the calculation itself does not use. A user types one as a quantity;
-`"bearing_material": "row id"` fills every limit that is declared `from` that library and for which the row
-has a value. A typed limit takes precedence.
+A criterion may declare limits that the calculation itself does not use. A user types a limit as a quantity,
+or gives `"bearing_material": "row id"`: this fills every limit that is declared `from` that library and for
+which the row has a value. A typed limit takes precedence.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from templates.core.units.units import Value, compatible, unit
 
 @dataclass(frozen=True, slots=True)
 class RowValue:
-    """A value of a row: a quantity as text, such as `35 MPa`, and where it comes from."""
+    """A value of a library row: a quantity as text, such as `35 MPa`, and its source."""
 
     quantity: str
     source: str
@@ -38,7 +38,7 @@ class Library:
     rows
         The ids of all rows.
     row
-        The values of one; raises `KeyError` if there is none of this id.
+        A function that returns the values of one row, or raises `KeyError` for an unknown id.
     """
 
     rows: Callable[[], Iterable[str]]
@@ -49,13 +49,13 @@ _libraries: dict[str, Library] = {}
 
 
 def register(name: str, library: Library) -> None:
-    """Let limits declared `"from": name` be taken from the rows of a library."""
+    """Register a library, so that limits declared `"from": name` can be taken from its rows."""
     _libraries[name] = library
 
 
 @dataclass(frozen=True, slots=True)
 class GivenLimit:
-    """A limit as it was given: its value [SI], and its source if that is known."""
+    """A given limit: its value [SI], and its source if that is known."""
 
     value: Value
     source: str | None = None
@@ -67,7 +67,7 @@ def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[s
     Raises
     ------
     InvalidInputs
-        Naming everything that is wrong at once: `limits.permissible_pressure`.
+        With all faults at once, each named such as `limits.permissible_pressure`.
     """
     if not raw:
         return {}
@@ -98,7 +98,7 @@ def _by_hand(declared: Limit, raw: Any) -> GivenLimit:
 
 
 def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, GivenLimit]:
-    """Return every limit that a row has a value for."""
+    """Return every limit for which the given row has a value."""
     library = _libraries.get(name)
     if library is None:
         raise FaultyText("no_library", f"there is no library {name}; give the limits by hand")
@@ -120,5 +120,5 @@ def _of_row(text: str, declared: str) -> Value:
 
 
 def fault_of(error: FaultyText, name: str) -> Fault:
-    """Return an error about a criterion as a fault that names it."""
+    """Return an error in a criterion as a fault that names the criterion."""
     return Fault(f"criteria.{name}", error.code, str(error))

@@ -1,4 +1,4 @@
-"""The verdict over several criteria: their order, worst first, and the one that governs."""
+"""The verdict over several criteria: their order, worst first, and the governing criterion."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from templates.core.criteria.judgement import Judgement
 SHOWN: tuple[Verdict, ...] = ("met", "not_met", "undecided", "not_checked")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Summary:
-    """The verdict over all criteria; green only if all are met and nothing about them is uncertain.
+    """The verdict over all criteria; green only if all are met and none of them is uncertain.
 
     Attributes
     ----------
     error_unknown
-        How many of those that are met follow from an error that is not known.
+        How many of the met criteria depend on an unknown error.
     governing
-        The worst criterion that was checked. One that is met by a limit fixed in its template governs only if
-        no criterion of the same value waits for its limit.
+        The worst criterion that was checked. A criterion that meets a limit fixed in its template governs
+        only if no criterion of the same value waits for its limit.
     """
 
     verdict: Verdict
@@ -34,15 +34,15 @@ class Summary:
 
 
 def worst_first(judgements: Iterable[Judgement]) -> list[Judgement]:
-    """Return criteria in order: not met, undecided, not checked, met with an unknown error, met.
+    """Return criteria in the order: not met, undecided, not checked, met with an unknown error, met.
 
-    Inside each by utilisation, largest first.
+    Within each group they are sorted by utilisation, largest first.
     """
     return sorted(judgements, key=rank)
 
 
 def rank(judgement: Judgement) -> tuple[int, bool, float, float, str]:
-    """Return the place of a judgement in that order."""
+    """Return the position of a judgement in the order of `worst_first`."""
     used = judgement.utilisation
     margin = judgement.margin if judgement.margin is not None else 0.0
     return (
@@ -55,7 +55,7 @@ def rank(judgement: Judgement) -> tuple[int, bool, float, float, str]:
 
 
 def summarised(ordered: Sequence[Judgement]) -> Summary:
-    """Return the verdict over criteria in order.
+    """Return the verdict over criteria that are in the order of `worst_first`.
 
     Waived criteria are counted and listed, but do not worsen the verdict.
     """
@@ -64,9 +64,10 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
     decisive = [judgement for judgement in ordered if judgement.waived is None]
     waiting = {_subject(j) for j in ordered if j.verdict == "not_checked"}
     governing = next((j.name for j in ordered if _may_govern(j, waiting)), None)
-    unknown = sum(j.verdict == "met" and not j.error_known for j in ordered)
+    met = [judgement for judgement in ordered if judgement.verdict == "met"]
+    unknown = sum([not judgement.error_known for judgement in met])
     verdict = decisive[0].verdict if decisive else ordered[0].verdict if ordered else "not_checked"
-    green = bool(ordered) and all(j.verdict == "met" and j.is_certain for j in ordered)
+    green = bool(ordered) and len(met) == len(ordered) and all(judgement.is_certain for judgement in met)
     headline = _headline(tuple(counts.values()), unknown, len(ordered) - len(decisive))
     return Summary(verdict, counts, unknown, governing, headline, green)
 
@@ -84,9 +85,9 @@ def _may_govern(judgement: Judgement, waiting: Collection[tuple[str, str]]) -> b
 
 @lru_cache(maxsize=1024)
 def _headline(counts: tuple[int, ...], unknown: int, waived: int) -> str:
-    """Return the number of criteria of each verdict in `SHOWN`, in words.
+    """Return a text with the number of criteria of each verdict in `SHOWN`.
 
-    Met with an unknown error separately.
+    Criteria met with an unknown error are counted separately.
     """
     met, *others = counts
     words = ["met", "met (error unknown)", *(verdict.replace("_", " ") for verdict in SHOWN[1:])]

@@ -1,4 +1,4 @@
-"""The worst of several points and places: the worst verdict, and its value nearest to the limit."""
+"""Find the worst of several points and places: the worst verdict, then the value nearest to its limit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from templates.core.criteria.comparison import NOT_CHECKED, Comparison
 from templates.core.criteria.criterion import Criterion
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(slots=True)  # a frozen instance would take four times as long to create
 class Worst:
     """Both sides [SI] and their bands at the worst place; `index` is empty for a single value."""
 
@@ -39,7 +39,7 @@ def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
         return Worst((), codes, bool(compared.is_known), *map(float, sides))
     whole = [np.broadcast_to(side, codes.shape) for side in sides]
     clearance = _clearance(criterion, whole)
-    if codes.min() != NOT_CHECKED:  # points judged by something else have no numbers to report
+    if codes.min() != NOT_CHECKED:  # points judged by another comparison have no numbers to report
         clearance = np.where(_has_numbers(whole), clearance, np.finfo(float).max)
     clearance = np.where(codes == codes.min(), clearance, np.inf)
     index = np.unravel_index(int(np.argmin(clearance)), codes.shape)
@@ -49,18 +49,18 @@ def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
 
 
 def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tuple[Array, list[Array]]:
-    """Return the verdict of each row, and both sides and their bands at its worst place.
+    """Return the verdict of each row, and both sides with their bands at its worst place.
 
     Parameters
     ----------
     compared
-        A comparison whose first axis is the row, or of single values for all `count` rows.
+        A comparison whose first axis is the row, or one of single values for all `count` rows.
 
     Returns
     -------
     tuple
-        Codes (count,), and value, limit, low, high, lowest and highest limit [SI], each (count,); then where
-        every error behind them is known.
+        Codes (count,); value, limit, low, high, lowest and highest limit [SI], each (count,); and a mask of
+        where every error behind them is known.
     """
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = np.asarray(compared.codes)
@@ -79,8 +79,8 @@ def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tup
 def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
     """Return the distance of the worst bound from the limit, positive on the safe side.
 
-    It is relative if the limit is not zero. If the band is open the value itself is used; a missing value
-    gets a finite number, to distinguish it from masked points.
+    The distance is relative if the limit is not zero. If the band is open, the value itself is used. A
+    missing value gets a finite number, which distinguishes it from masked points.
     """
     value, limit, low, high, limit_low, limit_high = sides
     with np.errstate(all="ignore"):

@@ -1,1 +1,1 @@
-"""Declare a template, read its inputs, and evaluate it at every level."""
+"""The language of templates: declare a template, read its inputs, and evaluate it at every level."""

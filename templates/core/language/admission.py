@@ -1,4 +1,4 @@
-"""Check results: refuse a point, mask points of an array, or note a warning."""
+"""Check results against their bounds: refuse a point, mask points of an array, or note a warning."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from templates.core.language.spec import Declaration, Formula, Profile
 
 
 def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
-    """Return why a result may be NaN without being a fault.
+    """Return the reason why a result may be NaN without being a fault, or None.
 
-    An optional input is missing, or it does not exist.
+    Either an optional input is missing, or the result does not exist in this case.
     """
     missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
     if missing:
@@ -26,7 +26,7 @@ def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
-    """Return why a result beneath this one exists at no point, if its formula noted that."""
+    """Return the reason noted by a formula beneath this one if its result exists at no point."""
     explaining = [mask for mask in self.ledger.masks if mask.explains and mask.where.all()]
     if not explaining:
         return None
@@ -35,7 +35,7 @@ def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault:
-    """Return the fault of a formula's result outside its domain, with the inputs that it follows from."""
+    """Return a fault for a formula's result outside its domain; it names the inputs behind the result."""
     meaning = declaration.meaning.at(self.level)
     beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
     used = (self.declarations[n].name for n in beneath)
@@ -52,7 +52,7 @@ def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault
 def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
     """Return the profile of a single point.
 
-    It is refused unless it is completely valid or completely missing.
+    The profile is refused unless all its values are valid or its absence has a reason.
     """
     inside = declaration.meaning.at(self.level).admits(value)
     if not inside.all():
@@ -64,7 +64,7 @@ def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
-    """Return the results with NaN where they are invalid, and note the reason.
+    """Return the results with NaN at invalid points, and note the reason.
 
     A profile is masked as a whole.
     """
@@ -85,10 +85,7 @@ def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def outside_published(declaration: Declaration, value: Any, level: str = "") -> Notice | None:
-    """Return a warning that names the limit where a value leaves its published range.
-
-    None where it does not.
-    """
+    """Return a warning with the limit if a value leaves its published range, else None."""
     meaning = declaration.meaning.at(level)
     if meaning.published_si is None:
         return None

@@ -1,4 +1,4 @@
-"""The answers of an evaluation, and the inputs that it used."""
+"""The answers of an evaluation, and the inputs that were used."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 @dataclass(slots=True)  # frozen, each would cost four times as much
 class Answer:
-    """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
+    """One result in its unit. A missing value is NaN in an array and None otherwise, with its reason."""
 
     value: Any
     unit: str | None
@@ -22,7 +22,7 @@ class Answer:
 
 @dataclass(slots=True)  # frozen, each would cost four times as much
 class UsedInput:
-    """One input as it was used: as typed, or its default."""
+    """One input as it was used: the typed value or the default."""
 
     value: Any
     unit: str | None

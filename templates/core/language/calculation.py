@@ -30,19 +30,21 @@ class Written(Protocol):
 
 
 class Calculation:
-    """The values of one calculation, and the declarations of its class; `Template` reads and checks."""
+    """The values of one calculation and the declarations of its class; `Template` reads and checks inputs."""
 
     id: ClassVar[str] = ""
     version: ClassVar[int] = 0
     withdrawn: ClassVar[str | None] = None
     sheet: ClassVar[Written | None] = None  # the worksheet that it was made from
     example: ClassVar[Mapping[str, Any]] = {}
-    assumptions: ClassVar[tuple[str, ...]] = ()  # of the model, that make a part look safer; each a sentence
+    assumptions: ClassVar[tuple[str, ...]] = ()  # of the model, on the unsafe side; one sentence each
     criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
     precision: ClassVar[float] = (
-        1e-12  # relative, to which results of a released version are held; solvers: 1e-8
+        1e-12  # relative precision to which results of a released version must agree; solvers: 1e-8
     )
-    level_precision: ClassVar[Mapping[str, float]] = {}  # of levels that repeat less well on other machines
+    level_precision: ClassVar[
+        Mapping[str, float]
+    ] = {}  # of levels that are less reproducible on other machines
 
     inputs: ClassVar[dict[str, Input]] = {}
     formulas: ClassVar[dict[str, Formula[Any]]] = {}
@@ -53,7 +55,7 @@ class Calculation:
 
     levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
     default_level: ClassVar[str] = ""
-    most_points: ClassVar[Mapping[str, int]] = {}  # that an expensive level takes at once
+    most_points: ClassVar[Mapping[str, int]] = {}  # that an expensive level accepts at once
     level: str
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
@@ -62,7 +64,7 @@ class Calculation:
     _result_names: ClassVar[frozenset[str]] = frozenset()
     _curves: ClassVar[frozenset[str]] = frozenset()  # names of formulas that are profiles
     _remarks: ClassVar[tuple[Requirement, ...]] = ()  # the rules that refuse nothing
-    _readings: ClassVar[tuple[tuple[Declaration, str], ...]] = ()  # formulas that may be read otherwise
+    _readings: ClassVar[tuple[tuple[Declaration, str], ...]] = ()  # formulas that can be read in two ways
     ledger: Ledger
 
     def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
@@ -83,23 +85,24 @@ class Calculation:
     def as_given(self, attribute: str) -> Any:
         """Return the given or default value of an input; NaN if its formula must compute it.
 
-        Name the attribute by a literal, because the language finds the dependencies of a formula in its
+        Pass the attribute as a literal, because the language finds the dependencies of a formula in its
         source.
         """
         return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
 
     @classmethod
     def ancestors(cls, attribute: str) -> frozenset[str]:
-        """Return the attributes that are evaluated for this one, directly or not, itself included."""
+        """Return the attributes on which this one depends, directly or indirectly, including itself."""
         if attribute not in cls._ancestry:
             cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
         return cls._ancestry[attribute]
 
     @classmethod
     def dependencies(cls, attribute: str) -> frozenset[str]:
-        """Return the ancestors, and the inputs that any of them reads as given.
+        """Return the ancestors of an attribute, and the inputs that any of them reads as given.
 
-        Formulas beneath an input's default may read the input as given: this is not an order of evaluation.
+        A formula for the default of an input may read this input as given, so this is not an order of
+        evaluation.
         """
         if attribute not in cls._dependencies:
             ancestors = cls.ancestors(attribute)
@@ -108,9 +111,9 @@ class Calculation:
         return cls._dependencies[attribute]
 
     def depends_on(self, attribute: str) -> frozenset[str]:
-        """Return the dependencies of an attribute here.
+        """Return the dependencies of an attribute in this calculation.
 
-        An input read as given counts only where it was given.
+        An input that is read as given counts only if the user gave it.
         """
         ancestors = self.ancestors(attribute)
         return ancestors | (self.dependencies(attribute) & self.ledger.handed)

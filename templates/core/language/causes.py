@@ -1,8 +1,8 @@
-"""One cause, one fault: find the input that broke a rule, and the rules that one input breaks.
+"""Join the faults of broken rules that have one cause, so that each wrong input gives one fault.
 
-A rule names all inputs that it concerns, but only some of them can have broken it. The rule runs again with
-its comparisons recorded, and the false comparisons show which inputs broke it. Several rules that the same
-input may have broken give one fault, at that input.
+A rule names all inputs that it concerns, but only some of them can have broken it. The rule is evaluated
+again with its comparisons recorded, and the false comparisons show which inputs can have broken it. If one
+input can have broken several rules, these give one fault, at that input.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from templates.core.language.comparisons import Operand, Outcome, outcome
 from templates.core.language.spec import Choice, Requirement
 
 BROKEN = "inconsistent"
-"""The code of a fault that a broken rule is."""
+"""The code of the fault of a broken rule."""
 
 
 def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
-    """Return the inputs that may have broken a rule at a single point, by API name.
+    """Return the API names of the inputs that may have broken a rule at a single point.
 
-    Given inputs come before derived ones, otherwise in the order of the rule.
+    Given inputs come before derived inputs; otherwise the order is that of the rule.
     """
     with np.errstate(all="ignore"):
         sides = list(_compared(outcome(template, rule)))
     used = set[str]().union(*(_inputs_of(template, side) for side in sides))
     seen = [name for name in rule.names if name in used or isinstance(template.inputs[name], Choice)]
-    names = seen if used.intersection(seen) else list(rule.names)  # a choice alone is not what was compared
+    names = seen if used.intersection(seen) else list(rule.names)  # a choice alone cannot have been compared
     return tuple(sorted(names, key=lambda name: name not in template.ledger.typed))
 
 
@@ -40,14 +40,14 @@ def _compared(result: Outcome) -> Iterator[Operand]:
         yield from (result.comparison.left, result.comparison.right)
     elif result.parts:
         for part in result.parts:
-            if not np.all(part.value):  # of alternatives none holds
+            if not np.all(part.value):  # none of the alternatives holds
                 yield from _compared(part)
     else:
         yield from result.equated or (Operand(result.value),)
 
 
 def _inputs_of(template: Calculation, side: Operand) -> set[str]:
-    """Return the inputs from which a side follows; every one where it cannot be written."""
+    """Return the inputs on which a side depends; all inputs if the side cannot be written as a formula."""
     if side.node is None:
         return set(template.inputs)
     read = (node.attr for node in ast.walk(side.node) if isinstance(node, ast.Attribute))
@@ -58,7 +58,7 @@ def _inputs_of(template: Calculation, side: Operand) -> set[str]:
 def by_cause(faults: Iterable[Fault]) -> list[Fault]:
     """Return the faults of broken rules, joined at the input that explains most of them.
 
-    Other faults are unchanged.
+    Other faults are returned unchanged.
     """
     faults = list(faults)
     broken = [fault for fault in faults if fault.code == BROKEN]
@@ -73,7 +73,7 @@ def _joined(broken: Sequence[Fault]) -> Iterator[Fault]:
 
 
 def _commonest(broken: Sequence[Fault]) -> str:
-    """Return the input that most rules can have been broken by; of several the one that they name first."""
+    """Return the input that can have broken most rules; if there are several, the one named first."""
     places: dict[str, list[int]] = {}
     for fault in broken:
         for place, name in enumerate(fault.names):

@@ -1,8 +1,8 @@
-"""The comparisons of a rule, recorded while the rule runs.
+"""Record the comparisons of a rule while the rule is evaluated.
 
-A rule reads the values of a template. Here it reads `Operand`s: values that also carry their calculation.
-Comparing two of them gives an `Outcome`: a truth value that also carries both sides. So a report can state
-how close each compared value is to its limit, without parsing the source of the rule.
+A rule reads the values of a template. Here it reads `Operand`s: values that also record how they were
+calculated. Comparing two operands gives an `Outcome`: a truth value that also holds both sides. A report can
+then state how close each compared value is to its limit, without parsing the source of the rule.
 
 Rules combine truth values by `&`, `|` and `~`. If a rule uses Python's `and`, `or` or `if`, only the returned
 comparison is recorded.
@@ -39,7 +39,7 @@ _WRITTEN = {  # functions that a formula on paper may have
 
 
 class _RecordingValue(NDArrayOperatorsMixin):
-    """A value of numpy that records; all its operators become ufuncs, and those come to `__array_ufunc__`."""
+    """A NumPy value that records operations: its operators become ufuncs, which call `__array_ufunc__`."""
 
     value: Any
 
@@ -52,7 +52,7 @@ class _RecordingValue(NDArrayOperatorsMixin):
     def __array_function__(
         self, function: Callable[..., Any], types: Any, arguments: Sequence[Any], keywords: Mapping[str, Any]
     ) -> Any:
-        """Other functions of numpy take the plain values; a number that they return is an operand again."""
+        """Call another NumPy function with the plain values; return a numeric result as an operand."""
         result = function(*map(plain, arguments), **{name: plain(v) for name, v in keywords.items()})
         is_number = isinstance(result, (np.floating, np.ndarray)) and np.issubdtype(result.dtype, np.floating)
         return Operand(result, _call(function.__name__, arguments)) if is_number else result
@@ -64,14 +64,14 @@ class _RecordingValue(NDArrayOperatorsMixin):
         return bool(self.value)
 
     def __getattr__(self, name: str) -> Any:
-        """Return any other attribute of numpy's values, such as `shape` and `max`, from the plain value."""
+        """Return any other attribute of the plain NumPy value, such as `shape` or `max`."""
         if name.startswith("__") or name == "value":
             raise AttributeError(name)
         return getattr(self.value, name)
 
 
 class Operand(_RecordingValue):
-    """A value and how it was calculated: a syntax tree, or None where it cannot be written as a formula."""
+    """A value and the syntax tree of its calculation, or None if it cannot be written as a formula."""
 
     def __init__(self, value: Any, node: ast.expr | None = None) -> None:
         self.value, self.node = value, node
@@ -90,7 +90,7 @@ class Operand(_RecordingValue):
 
     @property
     def attribute(self) -> str | None:
-        """Return the attribute of the template whose value this is, if it is one's."""
+        """Return the attribute of the template whose value this is; empty for a calculated value."""
         match self.node:
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 return name
@@ -98,13 +98,13 @@ class Operand(_RecordingValue):
 
     @property
     def constant(self) -> float | None:
-        """Return the number, if nothing of the template was used for it."""
+        """Return the number, if it does not depend on the template."""
         return self.node.value if isinstance(self.node, ast.Constant) else None  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two sides, the sign between them, whether it holds, and at which points the rule depends on it."""
+    """Two sides, the sign between them, whether the comparison holds, and where the rule depends on it."""
 
     left: Operand
     sign: Sign
@@ -114,19 +114,19 @@ class Comparison:
 
     @property
     def actual(self) -> Sign:
-        """Return the true sign between the values: the opposite one if the comparison does not hold."""
+        """Return the sign that holds between the values: the opposite sign if the comparison is false."""
         return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else OPPOSITE[self.sign]
 
     @property
     def ordered(self) -> tuple[Operand, Operand]:
-        """Return the side that must be smaller, then the one that must be larger."""
+        """Return the side that must be smaller, then the side that must be larger."""
         return (self.left, self.right) if self.sign in ("<", "<=") else (self.right, self.left)
 
     @property
     def share(self) -> float | None:
-        """Return the ratio of the side that must be smaller to the other, at the worst point.
+        """Return the ratio of the side that must be smaller to the other side, at the worst point.
 
-        It is None if a side is the constant 0 or is negative at one of the points.
+        The result is None if a side is the constant 0 or is negative at one of the points.
         """
         small, large = self.ordered
         if small.constant == 0 or large.constant == 0:
@@ -135,9 +135,9 @@ class Comparison:
 
 
 def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
-    """Return the largest ratio of the side that must be smaller to the other, over the points in `where`.
+    """Return the largest ratio of the smaller required side to the larger one, over the points in `where`.
 
-    It is None if no point has both values, or if a value is negative or the larger side is 0.
+    The result is None if no point has both values, if a value is negative, or if the larger side is 0.
     """
     low, high, counts = np.broadcast_arrays(
         np.asarray(small, dtype=float), np.asarray(large, dtype=float), np.asarray(where)
@@ -149,9 +149,9 @@ def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class Outcome(_RecordingValue):
-    """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes.
+    """A truth value and its origin: one comparison, all or any of several outcomes, or unknown causes.
 
-    An equality is not a comparison, because nothing is close to its limit; `equated` are its two sides.
+    An equality has no limit to be close to, so it is not a comparison; `equated` are its two sides.
     """
 
     value: Any
@@ -161,9 +161,9 @@ class Outcome(_RecordingValue):
     equated: tuple[Operand, ...] = ()
 
     def decisive(self, where: Truth = True) -> Iterator[Comparison]:
-        """Yield the comparisons that decide the truth, each with the points where it does.
+        """Yield the comparisons that decide the truth value, each with the points where it does.
 
-        Of several alternatives the last one counts, at points where none of the others holds.
+        Where none of several alternatives holds, the last one counts.
         """
         if self.comparison is not None:
             if np.any(where):
@@ -177,11 +177,11 @@ class Outcome(_RecordingValue):
 
     @property
     def has_comparisons(self) -> bool:
-        """Return whether it follows from any comparison."""
+        """Return whether the truth value depends on any comparison."""
         return self.comparison is not None or any(part.has_comparisons for part in self.parts)
 
     def negated(self) -> Outcome:
-        """Return the opposite truth: `<` becomes `>=`, "all" becomes "any"."""
+        """Return the negated outcome: `<` becomes `>=`, "all" becomes "any"."""
         value, one = np.logical_not(self.value), self.comparison
         opposite = one and replace(one, sign=OPPOSITE[one.sign], holds=value)
         parts = tuple(part.negated() for part in self.parts)
@@ -196,21 +196,21 @@ def _none_of(guards: Sequence[Outcome], where: Truth) -> Mask:
 
 
 def outcome(template: Calculation, rule: Requirement) -> Outcome:
-    """Run a rule and record its comparisons.
+    """Return the outcome of a rule with its comparisons.
 
-    For a rule that cannot run with operands only its truth is known.
+    If the rule cannot be evaluated with operands, only its truth value is known.
     """
     truth = rule.function(template)
     try:
         recorded = rule.function(_RecordedTemplate(template))
-    except (TypeError, ValueError, AttributeError, LookupError):  # it needs true arrays or numbers
+    except (TypeError, ValueError, AttributeError, LookupError):  # the rule needs real arrays or numbers
         return Outcome(truth)
     agrees = isinstance(recorded, Outcome) and np.array_equal(recorded.value, truth)
     return recorded if agrees else Outcome(truth)
 
 
 class _RecordedTemplate:
-    """A template whose values are operands, for the time of one rule."""
+    """A template whose values are operands, used to evaluate one rule."""
 
     def __init__(self, template: Calculation) -> None:
         self._template = template
@@ -219,12 +219,12 @@ class _RecordedTemplate:
         return _read(name, getattr(self._template, name))
 
     def as_given(self, attribute: str) -> Any:
-        """Return an input as it was given; an operand without its formula."""
+        """Return the given value of an input as an operand without its formula."""
         return _read(attribute, self._template.as_given(attribute))
 
 
 def _read(attribute: str, value: Any) -> Any:
-    """Return a value of the template as an operand, if it is a number or an array."""
+    """Return a value of the template, as an operand if it is a number or an array."""
     if not isinstance(value, (int, float, np.ndarray)) or isinstance(value, bool):
         return value
     return Operand(value, ast.Attribute(ast.Name("self"), attribute))
@@ -238,7 +238,7 @@ def plain(value: Any) -> Any:
 
 
 def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
-    """Return the result of a ufunc with its dependencies."""
+    """Return the result of a ufunc as an operand or outcome with its origin."""
     if ufunc in _SIGNS:
         left, right = map(_operand, inputs)
         return Outcome(result, Comparison(left, _SIGNS[ufunc], right, result))
@@ -253,7 +253,7 @@ def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
 
 
 def _calculated(ufunc: np.ufunc, inputs: Sequence[Any]) -> ast.expr | None:
-    """Return the expression of a ufunc's result."""
+    """Return the syntax tree of a ufunc's result."""
     nodes = _nodes(inputs)
     if nodes is None:
         return None
@@ -270,7 +270,7 @@ def _call(name: str, arguments: Sequence[Any]) -> ast.expr | None:
 
 
 def _nodes(values: Sequence[Any]) -> list[ast.expr] | None:
-    """Return the expressions of values, or None if one of them cannot be written."""
+    """Return the syntax trees of values, or None if one of them cannot be written."""
     nodes = [_operand(value).node for value in values]
     return None if any(node is None for node in nodes) else nodes  # type: ignore[return-value]
 
@@ -282,7 +282,7 @@ def _operand(value: Any) -> Operand:
 
 
 def _written(value: Any) -> ast.expr | None:
-    """Return a number that the rule names, if it is one."""
+    """Return the literal number in a rule as a syntax tree, if it is one."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         return None
     if value == math.pi:

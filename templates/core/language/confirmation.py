@@ -1,4 +1,7 @@
-"""Recalculate the solutions of a scan at the requested level, shifted by the slope of the scanned curve."""
+"""Recalculate the solutions of a scan at the requested level.
+
+The first correction uses the slope of the scanned curve; secant steps follow.
+"""
 
 from __future__ import annotations
 
@@ -11,20 +14,20 @@ from templates.core.errors import InvalidInputs
 from templates.core.language.crossings import Place
 from templates.core.language.scan import Outputs, SampledCurve
 
-CONFIRMED = 8  # solutions that are calculated again at a level that is not the scan's
-POLISHES, POLISHED = 8, 1e-9  # steps at that level, and the relative miss with which they end
-SETTLED = 1e-3  # relative miss after the last step beyond which it is not a solution
-ALIKE = 1e-9  # of the bounds' distance, within which two solutions are one
-STEP = 1e-6  # of the unknown, by which the slope is measured
+CONFIRMED = 8  # most solutions that are recalculated at another level than that of the scan
+POLISHES, POLISHED = 8, 1e-9  # most steps at that level, and the relative miss at which they stop
+SETTLED = 1e-3  # largest relative miss of a solution after the last step
+ALIKE = 1e-9  # fraction of the distance between the bounds within which two solutions are the same
+STEP = 1e-6  # relative step of the unknown for the slope
 
 
 @dataclass(frozen=True)
 class Root:
-    """A value of the unknown [its declared unit] that gives the target.
+    """A value of the unknown [in its declared unit] that gives the target.
 
     `slope` is 1 where the output rises, −1 where it falls, 0 where it is flat or only touches the target.
-    `output` [its declared unit], `level` and `error` are those of the output there; the error is None where
-    none is stated. One that is not `confirmed` is a solution at the level of the scan only.
+    `output` [in its declared unit], `level` and `error` are those of the output there; the error is None if
+    none is stated. A root that is not `confirmed` is a solution at the level of the scan only.
     """
 
     value: float
@@ -35,7 +38,7 @@ class Root:
     error: float | None
     confirmed: bool
     miss: float
-    """Output less target, over the target."""
+    """Output minus target, relative to the target."""
 
 
 def confirmed(
@@ -43,7 +46,8 @@ def confirmed(
 ) -> list[Root]:
     """Return the solutions at the requested level.
 
-    A scanned solution is returned if the level has none nearby, or after a maximum number.
+    A scanned solution is returned unconfirmed if the requested level has none nearby, or if there are too
+    many solutions to confirm.
     """
     is_other = requested.chooses or not requested.is_at_levels_of(scanned)
     most = CONFIRMED if is_other else len(places)
@@ -54,13 +58,13 @@ def confirmed(
 
 
 def _shown(curve: SampledCurve, bounds: tuple[float, float]) -> float:
-    """Return the distance of the bounds in the declared unit."""
+    """Return the distance between the bounds in the declared unit."""
     scale = curve.x.scale
     return float(scale.from_si(bounds[1])) - float(scale.from_si(bounds[0]))
 
 
 def _distinct(roots: list[Root], span: float) -> list[Root]:
-    """Return each solution once: two of the scan may have moved to the same one."""
+    """Return each solution once: two scanned solutions may have converged to the same one."""
     kept: list[Root] = []
     for root in roots:
         if not (kept and root.confirmed and root.value - kept[-1].value <= ALIKE * span):
@@ -71,7 +75,7 @@ def _distinct(roots: list[Root], span: float) -> list[Root]:
 def _at_requested(
     requested: SampledCurve, scanned: SampledCurve, place: Place, bounds: tuple[float, float]
 ) -> Root | None:
-    """Return the solution near one of the scan; None where the level requested has none there."""
+    """Return the solution near a scanned one at the requested level; None if there is none."""
     try:
         outputs = requested.outputs(np.array([place.x]))
     except InvalidInputs:
@@ -90,7 +94,10 @@ def _polished(
     bounds: tuple[float, float],
     outputs: Outputs,
 ) -> tuple[float, Outputs] | None:
-    """Return the crossing of a curve near that of the scan, by slope and secants, with the output."""
+    """Return the crossing of a curve near a scanned one, with the output there; None without convergence.
+
+    The first step uses the slope of the scanned curve, further steps use secants.
+    """
     x, slope = place.x, _slope(scanned, place.x, bounds)
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])
     miss = curve.miss_of(outputs)
@@ -109,7 +116,7 @@ def _polished(
 
 
 def _slope(curve: SampledCurve, x: float, bounds: tuple[float, float]) -> float:
-    """Return the slope of the curve, from values within the bounds; NaN if missing."""
+    """Return the slope of the curve by differences within the bounds; NaN if a value is missing."""
     step = STEP * (abs(x) or bounds[1] - bounds[0])
     low, high = max(bounds[0], x - step), min(bounds[1], x + step)
     return (curve.miss(high) - curve.miss(low)) / (high - low)

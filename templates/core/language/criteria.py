@@ -1,4 +1,4 @@
-"""The criteria of a template, judged when it is evaluated."""
+"""Judge the criteria of a template after its evaluation."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ from templates.core.language.template import Template
 from templates.core.units.units import Unit, Value
 
 NOT_JUDGED = "check_not_judged"
-RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
+RIGHT_ANGLE = math.pi / 2  # reference value for the relative errors of angles [rad]
 
 
 @dataclass
 class EvaluatedValues:
-    """The evaluated values, as criteria see them.
+    """The evaluated values that criteria use.
 
     Attributes
     ----------
     template
-        The evaluated instance; where levels differ from point to point, that of the first.
+        The evaluated instance; where levels differ from point to point, the instance of the first level.
     answers
         The outputs that were evaluated.
     errors
-        Relative, as `Evaluation.error`; `measured` is the table behind them.
+        Relative, as `Evaluation.error`; `measured` is the table from which they come.
     is_joined
         Whether the answers come from several instances.
     computed
-        The names of outputs that have to be computed here: not those that were given.
+        The names of outputs that have to be computed here because they were not given.
     """
 
     template: Template
@@ -55,7 +55,7 @@ class EvaluatedValues:
     level: Any = None
     is_joined: bool = False
     computed: frozenset[str] = field(init=False)
-    estimates: dict[str, Estimate | Absent] = field(default_factory=dict, init=False)  # those wanted so far
+    estimates: dict[str, Estimate | Absent] = field(default_factory=dict, init=False)  # cache
 
     def __post_init__(self) -> None:
         handed, template = self.template.ledger.handed, self.template
@@ -65,7 +65,7 @@ class EvaluatedValues:
             self.computed = frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
 
     def value(self, name: str) -> Value:
-        """Return the SI value of an output that exists; NaN in an array where there is none."""
+        """Return the SI value of an output that exists; NaN where an array has no value."""
         answer, formula = self.answers[name], self.template.formulas[name]
         if self.is_joined:
             return (self.shown_in.get(name) or formula.meaning.scale).to_si(answer.value)
@@ -76,20 +76,20 @@ class EvaluatedValues:
 
 
 def judged(evaluated: EvaluatedValues) -> list[Judgement]:
-    """Return the criteria of a template whose outputs were evaluated, worst first."""
+    """Return the judgements of the criteria whose outputs were evaluated, worst first."""
     template = evaluated.template
     return worst_first(judged_alone(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
 
 
 def is_due(evaluated: EvaluatedValues, criterion: Criterion) -> bool:
-    """Return whether judging computes no output beyond those evaluated."""
+    """Return whether the criterion can be judged without computing further outputs."""
     return evaluated.computed.intersection(criterion.names) <= evaluated.answers.keys()
 
 
 def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue | None:
     """Return the criterion's rule for a missing value, if another comparison can be judged instead.
 
-    It computes no output beyond those evaluated.
+    No output is computed beyond those already evaluated.
     """
     for name, missing in criterion.absent.items():
         answer, beside = evaluated.answers.get(name), evaluated.answers.get(missing.beside)
@@ -100,7 +100,7 @@ def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue
 
 
 def _is_missing(value: Any) -> bool:
-    """Return whether there is no value, or none at some point."""
+    """Return whether a value is missing everywhere or at one or more points."""
     return value is None or (np.ndim(value) > 0 and bool(np.isnan(value).any()))
 
 
@@ -113,7 +113,7 @@ def _instead(evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None
 
 
 def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
-    """Return one criterion whose outputs were evaluated."""
+    """Return the judgement of one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
     shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
@@ -125,13 +125,13 @@ def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
 
 
 def notes(evaluated: EvaluatedValues, criterion: Criterion) -> dict[str, str | None]:
-    """Return the notes of a judgement on its level, on the truth of its error, and on its sources."""
+    """Return the fields of a judgement that name its level, the truth of its error, and its sources."""
     source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
     return {**level_and_truth(evaluated, criterion.subject), "source": source}
 
 
 def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str, str | None]:
-    """Return the level of an evaluation, and the truth against which an output's error was measured."""
+    """Return the level of an evaluation, and the truth against which the error of an output was measured."""
     level, table = evaluated.level if isinstance(evaluated.level, str) else None, evaluated.measured
     return {"level": level, "truth": table.truth(level or "", output) if table and output else None}
 
@@ -139,7 +139,7 @@ def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str,
 def estimates_of(
     evaluated: EvaluatedValues, criterion: Criterion
 ) -> tuple[dict[str, Estimate], dict[str, Absent]]:
-    """Return the values of the names of a criterion with their errors, and why some have none."""
+    """Return the values of a criterion's names with their errors, and why the other names have no value."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
     limits = criterion.limits_by_name
@@ -180,14 +180,14 @@ def _estimate_of_input(evaluated: EvaluatedValues, name: str) -> Estimate | Abse
         with np.errstate(all="ignore"):
             si = getattr(template, declared.attribute)
     if isinstance(si, float):
-        return Estimate(si) if si == si else Absent((name,), f"give {name}")  # NaN stands for none
+        return Estimate(si) if si == si else Absent((name,), f"give {name}")  # NaN means not given
     if not np.ndim(si) and np.isnan(si):
         return Absent((name,), f"give {name}")
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
 
 
 def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
-    """Return a limit of the user: one for all points, one for each, or a curve."""
+    """Return the user's limit: one for all points, one for each point, or a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
         return _default(evaluated, limit) if limit.default else _not_given(limit)
@@ -203,9 +203,9 @@ def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estima
 
 
 def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
-    """Return a missing limit.
+    """Return the default of a limit that was not given, if it has one.
 
-    An end of an input that is a list, where that is declared and given.
+    The default is the smallest or largest value of an input that is a list, if the user gave that list.
     """
     if limit.default is not None:
         function, name = limit.default
@@ -216,13 +216,13 @@ def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
     return _not_given(limit)
 
 
-@lru_cache(maxsize=1024)  # criteria of worksheets come and go
+@lru_cache(maxsize=1024)  # bounded, because worksheets keep adding criteria
 def _not_given(limit: Limit) -> Absent:
     return Absent((limit.name,), limit.remedy)
 
 
 def _stated_reason(evaluated: EvaluatedValues, missing: MissingValue) -> Absent | None:
-    """Return the criterion's reason why an output has no value although another output has one."""
+    """Return the reason that a criterion declares for an output without a value although another has one."""
     beside = evaluated.answers.get(missing.beside)
     return Absent((), missing.reason) if beside and beside.value is not None else None
 
@@ -249,7 +249,7 @@ def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Abs
 
 
 def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
-    """Return an error with NaN at the points where its reference value is missing."""
+    """Return an error with NaN at points without a reference value, and the reference value."""
     if not np.ndim(scale):
         return float("nan"), None
     return np.where(np.isnan(scale), np.nan, error), scale
@@ -258,8 +258,9 @@ def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
 def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     """Return the reference value of an output's relative error [SI]; None if it is the output itself.
 
-    The largest of several outputs, such as the four stiffnesses, counts, as large as the truth may be by
-    their own errors; NaN stands for a size that is no output. The error of an angle is relative to 90°.
+    For several reference outputs, such as the four stiffnesses, the largest counts, enlarged to the largest
+    true value that their own errors allow. NaN means that the reference quantity is not an output. The error
+    of an angle is relative to 90°.
     """
     table = evaluated.measured.content.get("relative_to", {}) if evaluated.measured else {}
     if name not in table:
@@ -275,17 +276,17 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
-    """Return why an output is missing: optional inputs to give, or its own reason."""
+    """Return why an output is missing: the optional inputs to give, or the output's own reason."""
     missing = sorted(template.ledger.missing & template.ancestors(formula.attribute))
     give = tuple(template.declarations[attribute].name for attribute in missing)
     return Absent(give, reason or absence(template, formula))
 
 
 def error_of(evaluated: EvaluatedValues, name: str) -> Any:
-    """Return the relative error of an output, NaN if unknown.
+    """Return the relative error of an output; NaN if it is unknown.
 
-    A template of which no errors were measured, or one without levels whose table does not name the output,
-    states none.
+    No error is stated by a template without measured errors, nor by a template without levels whose table
+    does not contain the output.
     """
     error, table = evaluated.errors.get(name), evaluated.measured
     if error is None or table is None or not (evaluated.template.levels or name in table.outputs):
@@ -294,7 +295,7 @@ def error_of(evaluated: EvaluatedValues, name: str) -> Any:
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:
-    """Return the places of the first curve among some names, if there is one."""
+    """Return the places along the first curve among some names, if there is one."""
     for name in names:
         curve = template.formulas.get(name)
         if isinstance(curve, Profile) and curve.axes == 1:
@@ -313,10 +314,11 @@ def _places(template: Template, axis: Declaration) -> Along | None:
 
 
 def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
-    """Yield a warning for every criterion that declares one and whose value misses its limit.
+    """Yield a warning for every criterion that declares one and whose value violates its limit.
 
-    Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
-    whose error is not known is warned of all the same. So is a check of a worksheet that cannot be judged.
+    The warning is also given if the verdict is undecided because the limit lies within the error: a film of
+    1 nm gives a warning even if its error is unknown. A check of a worksheet that cannot be judged gives a
+    warning too.
     """
     for judgement in judgements:
         if judgement.warning and judgement.misses:
@@ -326,5 +328,5 @@ def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]
 
 
 def _about(cls: type[Template], judgement: Judgement) -> str:
-    """Return the name that a warning is about: the first of its criterion."""
+    """Return the name that a warning concerns: the first name of its criterion."""
     return next(c for c in cls.declared_criteria if c.name == judgement.name).names[0]

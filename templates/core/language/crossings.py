@@ -1,4 +1,7 @@
-"""Find where a sampled curve meets its target: crossings located to rounding, touching points, and jumps."""
+"""Find where a sampled curve meets its target: crossings, touching points, and jumps.
+
+Crossings are located to within rounding error.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from scipy.optimize import brentq
 from templates.core.arrays import Array
 from templates.core.language.scan import SampledCurve, Samples
 
-MOST_ROOTS = 50  # crossings that are closed in
+MOST_ROOTS = 50  # most crossings that are located
 JUMP = (
     1e-6  # relative miss at a crossing beyond which it is a jump, and at an extremum within which it touches
 )
@@ -19,7 +22,7 @@ JUMP = (
 
 @dataclass(frozen=True)
 class Place:
-    """A value of the unknown [SI] at which the output has its target; slope 1 rises, −1 falls, 0 neither."""
+    """A value of the unknown [SI] where the output meets the target; slope 1 rises, −1 falls, 0 neither."""
 
     x: float
     slope: int
@@ -28,7 +31,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Leap:
-    """A value of the unknown at which the output jumps across its target; the output on both sides [SI]."""
+    """A value of the unknown at which the output jumps across the target; the output on both sides [SI]."""
 
     x: float
     before: float
@@ -43,11 +46,11 @@ class Crossings:
     touching: list[Place] = field(default_factory=list)
     leaps: list[Leap] = field(default_factory=list)
     more: int = 0
-    """Crossings that were not closed in."""
+    """Number of crossings that were not located."""
 
 
 def meetings(curve: SampledCurve, samples: Samples) -> Crossings:
-    """Find where the curve meets its target."""
+    """Return the places where the curve meets its target."""
     result = Crossings()
     if np.isnan(samples.miss).all():
         return result
@@ -68,7 +71,7 @@ def meetings(curve: SampledCurve, samples: Samples) -> Crossings:
 
 
 def _exact(samples: Samples) -> Iterator[Place]:
-    """Yield samples that have the target exactly; of neighbours that all do, the first."""
+    """Yield samples that equal the target exactly; of consecutive ones, the first."""
     zero = np.flatnonzero(samples.miss == 0)
     for run in np.split(zero, np.flatnonzero(np.diff(zero) > 1) + 1):
         if run.size:
@@ -78,12 +81,12 @@ def _exact(samples: Samples) -> Iterator[Place]:
 
 
 def _sign(miss: Array, i: int) -> float:
-    """Return the side of the target on which a sample lies; 0 beyond the bounds, or without a value."""
+    """Return the side of the target on which a sample lies; 0 outside the samples or without a value."""
     return float(np.nan_to_num(np.sign(miss[i]))) if 0 <= i < miss.size else 0.0
 
 
 def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
-    """Return extrema that come within rounding of the target without crossing it."""
+    """Return the extrema that reach the target within rounding error without crossing it."""
     spread = float(np.nanmax(samples.miss) - np.nanmin(samples.miss))
     size = min(abs(curve.wanted) or spread, spread)
     near = samples.nearest()
@@ -94,7 +97,7 @@ def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
 
 
 def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
-    """Return the nearest to the target of each run of consecutive samples."""
+    """Return the sample nearest to the target in each run of consecutive samples."""
     best: list[int] = []
     for i in near:
         if best and i - best[-1] <= 2:
@@ -105,7 +108,7 @@ def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
 
 
 def _closed(curve: SampledCurve, samples: Samples, i: int) -> Place | Leap:
-    """Return the crossing between two samples, located to rounding.
+    """Return the crossing between two samples, located to within rounding error.
 
     It is a jump if the output never equals the target.
     """

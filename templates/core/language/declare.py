@@ -1,11 +1,11 @@
-"""Declarations of a template: givens, choices, curves, derived givens, formulas and requirements.
+"""Functions that declare the parts of a template: givens, choices, curves, formulas and requirements.
 
-Each is declared once. Its words give the API name, the label and the line in the report; its symbol gives the
-formula on paper; its bounds give the check, the schema and the message.
+Each part is declared once. Its words give the API name, the label and the line in the report; its symbol
+gives the printed formula; its bounds give the check, the schema and the message.
 
 There are two kinds of bounds. The *domain* is the range in which a quantity has a meaning: a value outside it
 is refused. The *published* range is the range for which the source states its formula: outside it the answer
-carries a warning that names the limit.
+contains a warning that names the limit.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def _meaning(unit_text: str, words: str, **keywords: Unpack[Keywords]) -> Meaning:
-    """Return the meaning of a result; one in K is a temperature, as differences are in delta_degC."""
+    """Return the meaning of a result. In K it is a temperature; differences are declared in delta_degC."""
     meant = meaning(unit_text, words, **keywords)
     return replace(meant, read_as="degC") if unit_text == "K" else meant
 
@@ -59,9 +59,9 @@ def given(
 ) -> Any:
     """Declare an input in `unit`, with bounds in that unit; required unless it has a default or is optional.
 
-    An optional input that is missing is NaN; outputs that need it do not exist, and say so. An `alternative`
-    is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
-    A `single` input refuses arrays: all points share its value.
+    A missing optional input is NaN; outputs that need it do not exist, and their reason names it. An
+    `alternative` is an optional input that is one of several ways to give the same information; its formulas
+    handle the NaN themselves. A `single` input refuses arrays: all points share its value.
     """
     meant = meaning(unit, words, **keywords)
     return Given(meant, default, optional=optional, alternative=alternative, single=single)
@@ -77,7 +77,7 @@ def limits(
     le: float | None = None,
     published: tuple[float | None, float | None] = (None, None),
 ) -> tuple[Bounds, Bounds]:
-    """Return domain and published range at one level of fidelity, for `per_level`, in the declared unit."""
+    """Return the domain and the published range at one level, in the declared unit, for `per_level`."""
     return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
 
 
@@ -85,9 +85,9 @@ def curve(
     unit: str, words: str, *, default: Any = None, constant: bool = False, along: str = "cycle",
     optional: bool = False, alternative: bool = False, **keywords: Unpack[Keywords],
 ) -> Any:  # fmt: skip
-    """Declare an input that is an array along the crank angle (last axis), or a `constant` if it may be.
+    """Declare an input that is an array along the crank angle (last axis), or a single value if `constant`.
 
-    `along` names another axis: `inertias`. Optional ones that are missing are NaN, as those of `given`.
+    `along` names another axis, such as `inertias`. Missing optional curves are NaN, as with `given`.
     """
     return Curve(
         meaning(unit, words, **keywords), default,
@@ -109,14 +109,14 @@ def choice(
 def formula(
     unit: str, words: str, *, latex: str | None = None, **keywords: Unpack[Keywords]
 ) -> Callable[[Callable[[T], Any]], Formula[T]]:
-    """Declare an output in `unit`; `latex` by hand only where the code is opaque."""
+    """Declare an output in `unit`; give `latex` only if it cannot be derived from the code."""
     return lambda function: Formula(function, _meaning(unit, words, **keywords), latex)
 
 
 def derived(
     unit: str, words: str, *, shown: bool = False, **keywords: Unpack[Keywords]
 ) -> Callable[[Callable[[T], Any]], Derived[T]]:
-    """Declare an optional input that defaults to this formula of others; `shown`: it is an output too."""
+    """Declare an optional input with this formula as its default; if `shown`, it is an output too."""
     return lambda function: Derived(function, _meaning(unit, words, **keywords), shown=shown)
 
 
@@ -129,7 +129,7 @@ def profile(
     latex: str | None = None,
     **keywords: Unpack[Keywords],
 ) -> Callable[[Callable[[T], Any]], Profile[T]]:
-    """Declare an output that is an array along its last axis, or axes, at the places given by `along`."""
+    """Declare an output that is an array along its last axis or axes, at the places given by `along`."""
     return lambda function: Profile(function, _meaning(unit, words, **keywords), latex, along, axes)
 
 
@@ -147,7 +147,7 @@ def shared(
 ) -> Shared[T] | Callable[[Callable[[Any], T]], Shared[T]]:
     """Declare an intermediate result that several formulas use.
 
-    With a `unit`, sentences on rules that compare it print it in that unit.
+    If a `unit` is given, messages about rules that compare the result use that unit.
     """
     return Shared(function) if function is not None else lambda declared: Shared(declared, unit)
 
@@ -157,9 +157,9 @@ def require(
 ) -> Callable[[Callable[[Any], Any]], Requirement]:
     """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
 
-    Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
-    With the code of a `warning` nothing is refused, and the answer carries a sentence that is made from the
-    comparisons that do not hold.
+    The rule is skipped if an optional input that it uses is missing, unless the rule is about a `missing`
+    input. A rule with a `warning` code refuses nothing: the answer contains a warning with the comparisons
+    that are false.
     """
     return lambda function: Requirement(function, names, remedy, missing, warning)
 
@@ -169,10 +169,10 @@ def units(
 ) -> Callable[[F], F]:
     """Declare the units of a physics function's arguments and result.
 
-    For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
-    test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
-    (or pure numbers) so that nothing needs converting in the hot path. None stands for an argument that is no
-    quantity: a word, or a record that several formulas share.
+    This is for functions that are not dimensionally consistent inside, such as Walther's `nu + 0.7`: the
+    dimension test of the whole catalogue checks calls at this boundary. The units must be SI or pure numbers,
+    so no conversion is needed in the hot path. None marks an argument that is no quantity: a word, or a
+    record that several formulas share.
 
     Raises
     ------
@@ -193,9 +193,9 @@ def units(
 
 
 def on_paper(words: str | Mapping[str, str]) -> Callable[[F], F]:
-    """Declare how a physics function computes a result without a formula, in words for reports.
+    """Declare a description for reports of how a physics function computes a result without a formula.
 
-    Where that depends on the level, `words` are by level.
+    If the method depends on the level, `words` maps each level to its description.
     """
 
     def mark(function: F) -> F:
@@ -211,7 +211,7 @@ def by_name(declarations: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     TypeError
-        If two of them make the same API name; one then needs an explicit `name=`.
+        If two declarations have the same API name; one of them then needs an explicit `name=`.
     """
     named: dict[str, Any] = {}
     for declaration in declarations.values():

@@ -19,7 +19,7 @@ def declared_criteria(
     Raises
     ------
     TypeError
-        Naming the class and the criterion that is wrong.
+        If a criterion is wrong; the message names the class and the criterion.
     """
     if not raw:
         return ()
@@ -46,9 +46,9 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 def meanings_of(
     inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> dict[str, NameDescription]:
-    """Return the units of the names that a criterion may use; words and tables are left out.
+    """Return unit and label of each name that a criterion may use, without texts, choices and tables.
 
-    Who writes a template knows that a speed is in rad/s: of its criteria no two readings are reported.
+    The author of a template knows that a speed is in rad/s, so no second reading of a criterion is reported.
     """
     declared = {**inputs, **formulas}
     return {

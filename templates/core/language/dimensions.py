@@ -1,9 +1,10 @@
-"""Check the dimensions of a template's formulas by evaluating each on Pint quantities.
+"""Check the dimensions of a template's formulas by evaluating each formula with Pint quantities.
 
-Tests use this module: a wrong dimension fails the build, and no Pint object exists in the hot path. Every
-formula is evaluated by itself, at the template's example. Physics functions marked by `units(...)` are
-checked at that boundary and run on magnitudes; all others are dimensionally pure and run on the quantities.
-Angles have no dimension here, so a missing 2π goes unnoticed; literature tests detect it.
+Tests use this module: a wrong dimension fails the build, and the hot path contains no Pint object. Every
+formula is evaluated on its own, with the values of the template's example. Physics functions marked by
+`units(...)` are checked at their boundary and evaluated with magnitudes; all others are dimensionally
+consistent and evaluated with quantities. Angles have no dimension here, so a missing 2π is not detected;
+literature tests detect it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ Checked = Formula[Any] | Requirement
 
 
 def faults(cls: type[Template]) -> list[str]:
-    """Return the faults of a template's dimensions, a sentence for each formula or rule."""
+    """Return a sentence for each formula or rule of a template with wrong dimensions."""
     return [fault for _, fault in faults_by_part(cls)]
 
 
@@ -44,7 +45,7 @@ def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
 
 
 def _checked(cls: type[Template]) -> Iterator[Checked]:
-    """Yield the formulas and rules of Python; bodies of a worksheet were checked when it was read."""
+    """Yield the formulas and rules written in Python; those of a worksheet were checked when it was read."""
     parts: list[Checked] = [d for d in cls.declarations.values() if isinstance(d, (Formula, Derived))]
     parts += cls.requirements
     yield from (part for part in parts if not isinstance(part.function, Body))
@@ -81,13 +82,13 @@ def _fault_of_rule(template: Template, rule: Requirement) -> str | None:
 
 
 def _applied(template: Template, function: Callable[..., Any]) -> Any:
-    """Return the function of a template, on quantities for its attributes."""
+    """Return the result of a template's function with quantities in place of attributes."""
     values = {name: _quantity(template, name) for name in attributes_used(function)}
     return rebound(function, {})(_Record(values))
 
 
 class _Record:
-    """Stands for the template: its attributes are quantities."""
+    """Replacement for the template whose attributes are quantities."""
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         self.__dict__.update(values)
@@ -104,7 +105,7 @@ def _quantity(template: Template, name: str) -> Any:
 
 
 def _magnitude(result: Any, declared: str) -> Any:
-    """Return the SI magnitude of a result, or None if it does not have the declared kind."""
+    """Return the SI magnitude of a result, or None if it is not of the declared kind."""
     wanted = unit(declared).base
     quantity = result if isinstance(result, pint.Quantity) else registry.Quantity(result, "")
     if quantity.dimensionality != registry.get_dimensionality(wanted):
@@ -117,7 +118,7 @@ def _units(result: Any) -> str:
 
 
 def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..., Any]:
-    """Return the same function, in a scope where every physics function checks its border."""
+    """Return the same function in a scope where every physics function checks its arguments."""
     if function in copies:
         return copies[function]
     if hasattr(function, "border"):
@@ -137,7 +138,7 @@ def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..
 
 
 def _names(code: CodeType) -> set[str]:
-    """Return the names that a function's code refers to, in nested functions too."""
+    """Return the names to which a function's code refers, including nested functions."""
     nested = (constant for constant in code.co_consts if isinstance(constant, CodeType))
     return set(code.co_names).union(*map(_names, nested))
 
@@ -151,9 +152,9 @@ def _in_scope(value: Any, copies: dict[Any, Any]) -> Any:
 
 
 def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function marked by `units(...)`, on quantities.
+    """Return a wrapper that calls a function marked by `units(...)` with quantities.
 
-    Arguments are checked, the result gets its unit.
+    The wrapper checks the arguments and attaches the unit of the result.
     """
     arguments, returns = function.border  # type: ignore[attr-defined]
 
@@ -173,12 +174,12 @@ def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _outside(result: Any, declared: str) -> Any:
-    """Return a result in its declared unit; a truth value has none."""
+    """Return a result with its declared unit; a truth value has none."""
     return result if np.asarray(result).dtype == bool else registry.Quantity(result, unit(declared).base)
 
 
 def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str | None) -> Any:
-    """Return the magnitude of an argument, if it has the declared kind."""
+    """Return the magnitude of an argument if it is of the declared kind."""
     name, value = argument
     if declared is None:
         return value

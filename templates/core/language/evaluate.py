@@ -1,4 +1,4 @@
-"""Evaluate a template: from a user's inputs to named answers, computing only the requested outputs."""
+"""Evaluate a template: turn a user's inputs into named answers, and compute only the requested outputs."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ _AMOUNT = re.compile(r"-?[0-9][0-9.e+-]* ?[A-Za-z]*")
 
 @dataclass(frozen=True)
 class Assumption:
-    """What an answer takes for granted, and what makes a part look safer.
+    """An assumption behind an answer that errs on the unsafe side.
 
-    Of the model, as its `assumptions` say, of a default that declares `assumed=`, and of a limit that the
-    template states itself. `name` is the input or criterion, empty for the model. Nothing is wrong with it,
-    so it is no warning.
+    It comes from the model (`assumptions`), from a default that declares `assumed=`, or from a limit that the
+    template itself provides. `name` is the input or criterion, empty for the model. An assumption is no fault
+    of the answer, so it is not a warning.
     """
 
     name: str
@@ -48,10 +48,11 @@ class Assumption:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The result of `evaluate`; `template` is the evaluated instance with every SI value it computed.
+    """The result of `evaluate`; `template` is the evaluated instance with every SI value that it computed.
 
     `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
-    shape of the outputs. `criteria` are those of the template that name no other outputs, worst first.
+    shape of the outputs. `criteria` are the judged criteria of the template that use only these outputs,
+    worst first.
     """
 
     template: Template
@@ -83,16 +84,16 @@ def evaluate(
     per_point: bool = False,
     judge: bool = True,
 ) -> Evaluation:
-    """Evaluate the outputs named (all, if None) for inputs as a user types them.
+    """Evaluate the named outputs (all, if None) for inputs as a user types them.
 
-    `units` names other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
-    level serves all points, unless `per_point` asks for the cheapest level at each. `limits` are those
-    that the template's criteria take from their user; no criterion is judged unless `judge`.
+    `units` gives other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
+    level serves all points, unless `per_point` requests the cheapest level at each point. `limits` are those
+    that the template's criteria expect from the user; criteria are judged only if `judge` is true.
 
     Raises
     ------
     InvalidInputs
-        Naming everything that is wrong with the request at once, or the result that is out of its domain.
+        If anything in the request is wrong, with all faults at once, or if a result is outside its domain.
     """
     start = time.perf_counter()
     request = read_request(cls, raw, outputs, units, level, limits)
@@ -117,7 +118,7 @@ def evaluate(
 def _judged(
     rungs: list[Rung], whole: _Part, shown_in: Mapping[str, Unit], limits: Mapping[str, GivenLimit]
 ) -> list[Judgement]:
-    """Return the criteria whose outputs were evaluated."""
+    """Return the judgements of the criteria whose outputs were evaluated."""
     template, is_joined = rungs[0].template, rungs[0].where is not None
     measured = accuracy(type(template))
     return judged(
@@ -129,7 +130,7 @@ def _judged(
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The answers at one level, or of all levels joined."""
+    """The answers at one level, or the joined answers of all levels."""
 
     answers: dict[str, Answer]
     level: Any
@@ -154,7 +155,7 @@ def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) ->
 
 
 def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
-    """Return the answers of several levels, each at its own points, as arrays over all points."""
+    """Return the answers of several levels, each computed at its own points, as arrays over all points."""
     answers = {
         name: _joined_answer(rungs, rungs[0].template.formulas[name], [part.answers[name] for part in parts])
         for name in parts[0].answers
@@ -183,7 +184,7 @@ def _scattered(
 
 
 def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> dict[str, Answer]:
-    """Return outputs in their units; one that is neither an array nor words is a single value."""
+    """Return outputs in their units; an output that is neither an array nor text is a single value."""
     answers, absent = {}, template.ledger.absent
     for name in names:
         formula = template.formulas[name]
@@ -206,9 +207,9 @@ def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit])
 
 
 def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
-    """Return an answer in words.
+    """Return an answer that is text.
 
-    An empty word is none, and there is none where a mask of anything beneath lies.
+    An empty text means that there is none; points that are masked upstream have none either.
     """
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
@@ -230,8 +231,8 @@ def _with_reasons(
 ) -> tuple[Array, NDArray[np.object_] | None]:
     """Return the values with NaN where an upstream mask applies, and the reason for each NaN.
 
-    A profile has one reason as a whole. A result beneath that means nothing is the reason before one that is
-    only absent.
+    A profile has one reason as a whole. If several reasons apply, an invalid upstream value takes precedence
+    over one that is merely absent.
     """
     beneath = template.depends_on(formula.attribute)
     profile = formula if isinstance(formula, Profile) else None
@@ -253,9 +254,9 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """Return whether an answer reports an input.
+    """Return whether an answer lists an input as used.
 
-    It is given, or has a default that is not an output as well.
+    This is true if the input is given, or has a default that is not also an output.
     """
     if declared.name in template.ledger.typed:
         return True
@@ -265,7 +266,7 @@ def is_reported(template: Template, declared: Input) -> bool:
 
 
 def echoes_of(template: Template) -> dict[str, UsedInput]:
-    """Return the inputs as they were used: those given, and the defaults that an answer reports."""
+    """Return the inputs as they were used: the given ones, and the defaults that an answer lists."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
@@ -279,7 +280,7 @@ def echoes_of(template: Template) -> dict[str, UsedInput]:
 
 
 def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
-    """Return an input that is an option, or whose default is a formula."""
+    """Return the used value of an input that is a choice, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
     return (
@@ -289,7 +290,7 @@ def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
     )
 
 
-@lru_cache(maxsize=4096)  # worksheets come and go
+@lru_cache(maxsize=4096)  # bounded, because worksheets keep adding inputs
 def default_of(declared: Given) -> UsedInput:
     """Return the constant default of an input."""
     assert declared.default is not None
@@ -303,7 +304,7 @@ def _shown(declared: Given | Derived[Any], si: Any, source: str) -> UsedInput:
 
 
 def _with_nulls(shown: Array) -> list[Any]:
-    """Return an array as a list, None where a default follows from an input that means nothing."""
+    """Return an array as a list, with None where a default depends on an invalid input."""
     plain = shown.astype(object)
     plain[np.isnan(shown)] = None
     return plain.tolist()
@@ -312,7 +313,7 @@ def _with_nulls(shown: Array) -> list[Any]:
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
     """Return the warnings that apply to every calculation with these inputs.
 
-    Of the version, and of tolerances.
+    They concern the version and the tolerances.
     """
     noted = tolerances.unused(given)
     if cls.withdrawn:
@@ -322,12 +323,12 @@ def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
 
 
 def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[str, Answer], dict[str, Any]]:
-    """Return answers in declared units and error estimates of a template at its level, without warnings.
+    """Return a template's answers in declared units and their errors at its level, without warnings.
 
     Raises
     ------
     InvalidInputs
-        If a result is out of its domain.
+        If a result is outside its domain.
     """
     with np.errstate(all="ignore"):
         part = _part(template, list(outputs), {})
@@ -337,21 +338,21 @@ def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[s
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
-    """Return answers in declared units, error estimates, and all warnings so far of a template at its level.
+    """Return a template's answers in declared units, their errors, and all warnings so far, at its level.
 
-    What the template has computed before is not computed again.
+    Values that the template has computed before are not computed again.
 
     Raises
     ------
     InvalidInputs
-        If a result is out of its domain.
+        If a result is outside its domain.
     """
     answers, errors = answers_at_level(template, outputs)
     return answers, errors, notices_of(template)
 
 
 def notices_of(template: Template) -> list[Notice]:
-    """Return all present warnings of a template at its level, except those of criteria."""
+    """Return all warnings so far of a template at its level, except those of criteria."""
     return [*_standing(type(template), template.ledger.typed), *_noticed([Rung(template, None)])]
 
 
@@ -374,27 +375,27 @@ def _noticed(rungs: list[Rung]) -> list[Notice]:
 
 
 def assumed(
-    template: Calculation, outputs: Collection[str], criteria: Iterable[Judgement] = ()
+    template: Calculation, outputs: Collection[str], criteria: Sequence[Judgement] = ()
 ) -> list[Assumption]:
-    """Return the assumptions behind outputs of a template and its judged criteria."""
+    """Return the assumptions behind the outputs and the judged criteria of a template."""
     cls, typed = type(template), template.ledger.typed
-    own = [Assumption("", detail) for detail in cls.assumptions]
-    given = frozenset(name for name in typed if isinstance(cls.inputs.get(name), Derived))
-    stated = _defaults(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
-    defaults = [one for one in stated if one.name not in typed]
-    return [*own, *defaults, *_limits(cls, list(criteria))]
+    given = frozenset([name for name in typed if isinstance(cls.inputs.get(name), Derived)])
+    stated = _stated(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
+    return [*(one for one in stated if one.name not in typed), *_limits(cls, criteria)]
 
 
 @lru_cache(maxsize=1024)
-def _defaults(
-    cls: type[Calculation], outputs: frozenset[str], given: frozenset[str]
-) -> tuple[Assumption, ...]:
-    """Return the assumptions of inputs on which outputs depend where these derived inputs are given."""
+def _stated(cls: type[Calculation], outputs: frozenset[str], given: frozenset[str]) -> tuple[Assumption, ...]:
+    """Return the assumptions of the model, and of the inputs on which the outputs depend.
+
+    `given` are the derived inputs that the user gave.
+    """
+    own = tuple(Assumption("", detail) for detail in cls.assumptions)
     declared = {name: one.meaning.assumed for name, one in cls.inputs.items()}
     if not any(declared.values()):
-        return ()
+        return own
     reached = set(_beneath(cls, outputs, given))
-    return tuple(
+    return own + tuple(
         Assumption(name, detail)
         for name, detail in declared.items()
         if detail and (cls.inputs[name].attribute in reached or getattr(cls.inputs[name], "optional", False))
@@ -402,7 +403,7 @@ def _defaults(
 
 
 def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[str]) -> Iterator[str]:
-    """Yield the attributes on which outputs depend; a given input depends on none."""
+    """Yield the attributes on which the outputs depend; a given input depends on nothing."""
     waiting = [cls.formulas[name].attribute for name in outputs]
     seen = set(waiting)
     while waiting:
@@ -415,13 +416,25 @@ def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[s
         waiting += uses
 
 
-def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> Iterator[Assumption]:
-    """Yield the limits that a template provides where the user has given none."""
+def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> list[Assumption]:
+    """Return the limits that a template provides where the user gave none."""
     open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
-    checked = [one for one in criteria if one.verdict != "not_checked"] if open_values else []
+    if not open_values:
+        return []
+    checked = [one for one in criteria if one.verdict != "not_checked"]
     open_values.difference_update([one.sides[0] for one in checked if not one.has_fixed_limit])
-    declared = {(one.name, one.require) for one in cls.declared_criteria} if open_values and checked else ()
-    for one in checked:
-        value, limit = one.sides
-        if value in open_values and _AMOUNT.fullmatch(limit) and (one.name, one.require) in declared:
-            yield Assumption(one.name, f"the limit of {value.replace('_', ' ')} is {limit}, a default")
+    provided = _provided(cls)  # type: ignore[arg-type]  # a class has a hash
+    found = (provided.get((one.name, one.require)) for one in checked if one.sides[0] in open_values)
+    return [one for one in found if one]
+
+
+@lru_cache(maxsize=1024)
+def _provided(cls: type[Calculation]) -> dict[tuple[str, str], Assumption]:
+    """Return the fixed limits of a template's criteria, by name and requirement."""
+    return {
+        (one.name, one.require): Assumption(
+            one.name, f"the limit of {one.value.text.replace('_', ' ')} is {one.limit.text}, a default"
+        )
+        for one in cls.declared_criteria
+        if _AMOUNT.fullmatch(one.limit.text)
+    }

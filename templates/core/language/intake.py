@@ -1,4 +1,4 @@
-"""Read typed inputs as the SI values of a template, and collect all faults before reporting them."""
+"""Read typed inputs as the SI values of a template, and report all faults together."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from templates.core.units.units import Value, unit
 def read_inputs(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[dict[str, TypedQuantity | str], list[Fault]]:
-    """Return every input that was given, read in its unit, and the faults of the others."""
+    """Return every given input, read in its unit, and the faults of the other inputs."""
     typed: dict[str, TypedQuantity | str] = {}
     raw, faults = _in_declared_sizes(cls, raw)
     faults += unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
@@ -48,9 +48,9 @@ def read_inputs(
 def _in_declared_sizes(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[Mapping[str, Any], list[Fault]]:
-    """Return inputs with radial sizes converted to diametral ones, or vice versa.
+    """Return inputs with radial sizes converted to diametral ones, or vice versa, and the faults.
 
-    A radial clearance is half the diametral one. Where both are given they must agree.
+    A radial clearance is half the diametral one. If both are given, they must agree.
     """
     faults: list[Fault] = []
     for other, name in other_sizes(cls):
@@ -74,16 +74,21 @@ def _in_declared_sizes(
 
 
 def other_sizes(cls: type[Calculation]) -> tuple[tuple[str, str], ...]:
-    """Return the radial name of each diametral input without one, and vice versa."""
+    """Return pairs of the opposite name (radial or diametral) and the declared name of a clearance.
+
+    A template that declares both names needs no such pair.
+    """
     pairs = ((name, _DIAMETRAL.sub(_opposite, name)) for name in cls.inputs)
     return tuple((other, name) for name, other in pairs if other != name and other not in cls.inputs)
 
 
 def factor_of(name: str) -> float:
-    """Return the ratio of a size, radial or diametral, to the other one."""
+    """Return the ratio of a size, radial or diametral, to its counterpart."""
     return 2.0 if name.startswith("diametral") else 0.5
 
 
+WIDEST_ROW = 9
+"""Values of a row that a refusal prints one by one."""
 _DIAMETRAL = re.compile(r"\A(?:diametral|radial)(?=_clearance)")
 
 
@@ -103,7 +108,7 @@ def _read_one(declared: Input, raw: Any) -> TypedQuantity | str:
 
 
 def option_named(options: tuple[str, ...], text: str) -> str | None:
-    """Return the option that a text names, also as it is printed: `ISO VG 46` is iso_vg_46."""
+    """Return the option that a text names, also in its printed form: `ISO VG 46` is iso_vg_46."""
     if text in options:
         return text
     letters = _letters(text)
@@ -124,7 +129,7 @@ def _example(declared: Input) -> str:
 
 @dataclass(frozen=True)
 class Intake:
-    """SI values of inputs by attribute, with the faults, masked points and warnings that came up."""
+    """SI values of inputs by attribute, with the faults, masked points and warnings of reading them."""
 
     values: dict[str, Any] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
@@ -158,7 +163,7 @@ def admitted(cls: type[Calculation], typed: Mapping[str, TypedQuantity | str]) -
 
 
 class Plain(NamedTuple):
-    """Inputs of which nothing is wrong, or to be noted: single values and options."""
+    """Inputs without any fault or remark: single values and options."""
 
     typed: dict[str, TypedQuantity | str]
     values: dict[str, Any]
@@ -166,14 +171,14 @@ class Plain(NamedTuple):
 
 
 class PlainText(NamedTuple):
-    """An input as typed, and its value [SI] or option."""
+    """An input as typed, with its value [SI] or option."""
 
     typed: TypedQuantity | str
     value: Any
 
 
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
-    """Return the inputs of most requests, read and checked at once; None if any needs a closer look."""
+    """Return the inputs of a simple request, read and checked at once; None if any needs the full check."""
     left_out = _defaults.get(cls) or _left_out(cls)
     if not left_out.needed <= raw.keys():
         return None
@@ -195,7 +200,7 @@ def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
 
 
 class LeftOut(NamedTuple):
-    """What stands for inputs that are not given, by attribute, and the names of those that have to be."""
+    """Replacements for missing inputs, by attribute, and the names of the inputs that are required."""
 
     values: dict[str, Any]
     missing: set[str]
@@ -206,7 +211,7 @@ _defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
 def _left_out(cls: type[Calculation]) -> LeftOut:
-    """Return the defaults for missing inputs of a version."""
+    """Return the defaults of a version for inputs that are not given."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default
@@ -221,11 +226,11 @@ def _left_out(cls: type[Calculation]) -> LeftOut:
     return left_out
 
 
-@lru_cache(maxsize=4096)  # who varies one input sends the others again
+@lru_cache(maxsize=4096)  # a user who varies one input sends the others again
 def plain_text(declared: Input, text: str) -> PlainText | None:
-    """Return an input as typed and its value [SI], if it needs no closer look.
+    """Return an input as typed and its value [SI]; None if it needs the full check.
 
-    For texts short enough to keep.
+    Results are cached, so call this only with short texts.
     """
     try:
         typed = _read_one(declared, text)
@@ -236,7 +241,7 @@ def plain_text(declared: Input, text: str) -> PlainText | None:
 
 
 def _plain_value(declared: Input, typed: TypedQuantity) -> np.float64 | None:
-    """Return one number within its bounds and the published range."""
+    """Return a single number within its bounds and its published range, else None."""
     si, bounds = typed.si, declared.plain
     if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
         value = np.float64(si)
@@ -253,9 +258,9 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask | None]:
-    """Return the value and its faults.
+    """Return the value and its fault, if there is one.
 
-    A faulty point of an array is masked, and is not a fault.
+    An invalid point of an array is not a fault; the point is masked.
     """
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
@@ -274,7 +279,7 @@ def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask |
 
 
 def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
-    """Return the fault of a tolerance that lets a single value exceed its bounds."""
+    """Return a fault if the tolerance of a single value extends beyond its bounds."""
     ends = (si + tolerance.lower, si + tolerance.upper)
     outside = next((end for end in ends if not declared.meaning.admits(end)), None)
     if outside is None:
@@ -296,7 +301,7 @@ def _along_a_cycle(declared: Curve, typed: TypedQuantity) -> tuple[Any, Fault | 
 
 
 def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
-    """Return the rows of a table; a single row need not be in a list."""
+    """Return the rows of a table, and the fault if they are invalid; a single row need not be in a list."""
     rows = np.atleast_2d(value)
     fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
     if not fits or not np.all(declared.meaning.admits(rows)):
@@ -339,9 +344,9 @@ def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
 
 
 def check_shapes(self: Calculation) -> None:
-    """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
+    """Raise an error if arrays of points do not broadcast together, or if curves have different lengths.
 
-    A list of one value is as good as a number only for a curve that may be constant.
+    A list of one value is equivalent to a number only for a curve that may be constant.
 
     Raises
     ------
@@ -369,7 +374,7 @@ def check_shapes(self: Calculation) -> None:
 
 
 def _of_different_shapes(self: Calculation, shapes: Iterable[str], remedy: str) -> list[Fault]:
-    """Return a fault for each of the arrays that must have one shape, with the shapes of all."""
+    """Return a fault for each array of a set that must have a common shape; each fault lists all shapes."""
     names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
     detail = f"arrays of different shapes do not fit together ({listed}); {remedy}"
@@ -377,7 +382,7 @@ def _of_different_shapes(self: Calculation, shapes: Iterable[str], remedy: str) 
 
 
 def is_single(declared: Declaration) -> bool:
-    """Return whether an input is one value for all points."""
+    """Return whether all points share one value of an input."""
     return isinstance(declared, Given) and declared.single
 
 
@@ -389,14 +394,14 @@ def is_curve(self: Calculation, attribute: str) -> bool:
 def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]:
     """Return the shape of the points in arrays of inputs, by attribute.
 
-    A curve is one thing for each.
+    The last axis of a curve does not count as points.
     """
     shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
     return np.broadcast_shapes(*shapes)
 
 
 def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
-    """Return the faults of broken rules; points of arrays are masked instead."""
+    """Return the faults of broken rules; invalid points of arrays are masked instead."""
     faults: list[Fault] = []
     missing = self.ledger.missing
     for rule in rules:
@@ -422,7 +427,7 @@ def _violation(self: Calculation, rule: Requirement) -> Fault:
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
-    """Return the mask of the points at which a rule is broken, if there are any."""
+    """Return the masks of the points at which a rule is broken, if there are any."""
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
@@ -433,7 +438,7 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
-    """Yield a warning for every broken rule that only warns, and for every remark."""
+    """Yield a warning for every broken rule that only warns, and for every remark of a worksheet."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             for name in rule.names:
@@ -448,6 +453,8 @@ def _shown(self: Calculation, declared: Declaration) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):
+        if value and len(value[0]) > WIDEST_ROW:
+            return f"{len(value)} × {len(value[0])} values"
         shown = [[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value[:2]]
         return str(shown) if len(value) <= 2 else f"{len(value)} rows from {shown[0]}"
     if np.ndim(value):

@@ -1,4 +1,4 @@
-"""Notes taken while a template is created and evaluated: warnings, and points without a valid value."""
+"""Notes made while a template is created and evaluated: warnings, and points without a valid value."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from templates.core.units.quantity import TypedQuantity
 
 @dataclass(frozen=True)
 class Notice:
-    """Something that the user of an answer should know: which name, a code, a sentence."""
+    """Information for the reader of an answer: a name, a code and a sentence."""
 
     code: str
     name: str
@@ -21,9 +21,10 @@ class Notice:
 
 @dataclass(frozen=True)
 class Mask:
-    """Points of an array that mean nothing, and why; `names` are the attributes it comes from.
+    """Invalid points of an array, with the reason; `names` are the attributes in which they occur.
 
-    What follows from them means nothing either, unless the mask only `explains` why a result is absent.
+    Every result that depends on a masked point is invalid too, unless the mask only `explains` why a result
+    is absent.
     """
 
     names: tuple[str, ...]
@@ -34,7 +35,7 @@ class Mask:
 
 @dataclass
 class Ledger:
-    """Notes taken while a template was made and evaluated."""
+    """Notes made while a template was created and evaluated."""
 
     typed: dict[str, TypedQuantity | str] = field(default_factory=dict)
     warnings: list[Notice] = field(default_factory=list)

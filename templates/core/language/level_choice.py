@@ -1,7 +1,7 @@
 """Choose the level of fidelity: the cheapest level with stated errors within a tolerance.
 
-One level serves all points of a request: if the level changed from point to point, curves would have steps
-and false optima. `per_point` chooses the cheapest level for each point instead.
+One level serves all points of a request, because a change of level from point to point would put steps and
+false optima into curves. `per_point` chooses the cheapest level for each point instead.
 
 If no level is known to be within the tolerance, the finest level whose stated cost is within the budget is
 chosen: a user who gives a tolerance wants the most accurate answer, not the cheapest.
@@ -23,12 +23,12 @@ from templates.core.language.spec import Profile, Text
 from templates.core.language.template import Template
 
 BUDGET = 10.0
-"""Stated cost of a level [s] up to which it answers without a known error."""
+"""Largest stated cost [s] of a level that may be chosen without a known error."""
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A template at one level, for those points for which that level was chosen (all, if None)."""
+    """A template at one level, and the points for which that level was chosen (all, if None)."""
 
     template: Template
     where: Mask | None
@@ -37,10 +37,10 @@ class Rung:
 def climb(
     template: Template, outputs: Iterable[str], tolerance: float, *, per_point: bool = False
 ) -> Iterator[Rung]:
-    """Yield the levels for a request with a tolerance; one, unless each point has its own.
+    """Yield the levels for a request with a tolerance: one for all points, or several if `per_point`.
 
-    It is the cheapest level whose errors are within the tolerance for all outputs, else the finest within
-    the budget. What has no value needs no error.
+    The level is the cheapest whose errors are within the tolerance for all outputs, else the finest within
+    the budget. Outputs without a value are ignored.
     """
     names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
     search = _Search(template, names, tolerance, accuracy(type(template)))
@@ -51,7 +51,11 @@ def climb(
 
 
 def reachable(cls: type[Template], ladder: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the levels that a tolerance may choose: those that state an error, or are within the budget."""
+    """Return the levels that a tolerance may choose.
+
+    These are the levels up to the default level, and finer levels that state an error or are within the
+    budget.
+    """
     if cls.default_level not in ladder:
         return ladder
     start = ladder.index(cls.default_level)
@@ -68,7 +72,7 @@ def states_any(cls: type[Template], level: str) -> bool:
 def is_affordable(cls: type[Template], level: str, points: int) -> bool:
     """Return whether a level accepts a number of points at once, at a stated cost within the budget.
 
-    Without a stated cost it does if it states an error.
+    A level without a stated cost is affordable if it states an error.
     """
     measured = accuracy(cls)
     if measured is None or points > cls.most_points.get(level, points):
@@ -81,14 +85,14 @@ def is_affordable(cls: type[Template], level: str, points: int) -> bool:
 
 
 def best_first(cls: type[Template], ladder: tuple[str, ...], start: str, points: int) -> Iterator[str]:
-    """Yield the levels from the finest within the budget down to the starting one, which needs no budget."""
+    """Yield the affordable levels from the finest to the starting level, which is always included."""
     finer = ladder[ladder.index(start) + 1 :] if start in ladder else ()
     yield from (level for level in reversed(finer) if is_affordable(cls, level, points))
     yield start
 
 
 def has_value(template: Template, output: str) -> Any:
-    """Return the mask of the points where an output exists, of the shape of the points or a part of it."""
+    """Return the mask of the points where an output exists; it broadcasts to the shape of the points."""
     formula = template.formulas[output]
     there = ~np.isnan(getattr(template, formula.attribute))
     return formula.inside(there) if isinstance(formula, Profile) else there
@@ -96,7 +100,7 @@ def has_value(template: Template, output: str) -> Any:
 
 @dataclass(frozen=True)
 class _Search:
-    """The choice of levels for one request."""
+    """The search for the levels of one request."""
 
     template: Template
     names: list[str]
@@ -130,13 +134,13 @@ class _Search:
         return self.best(int(np.prod(self.template.shape_of_points())))
 
     def best(self, points: int) -> str:
-        """Return the finest level within the budget that answers."""
+        """Return the finest level within the budget that accepts the inputs."""
         levels = best_first(type(self.template), self.ladder, self.start, points)
         return next((level for level in levels if self._answers(level)), self.start)
 
     @property
     def _promising(self) -> Iterator[str]:
-        """Yield the levels that may be sufficient: up to the starting one, and finer ones with errors."""
+        """Yield the levels up to the starting level, and finer levels with stated errors."""
         cls, start = type(self.template), self.start
         last = self.ladder.index(start) if start in self.ladder else 0
         for i, level in enumerate(self.ladder):
@@ -144,7 +148,7 @@ class _Search:
                 yield level
 
     def _answers(self, level: str) -> bool:
-        """Return whether a level does not refuse these inputs."""
+        """Return whether a level accepts these inputs."""
         try:
             rung = self.at(level)
             for name in self.names:
@@ -154,7 +158,7 @@ class _Search:
         return True
 
     def by_point(self) -> Iterator[Rung]:
-        """Yield the levels, each with the points at which it is the cheapest that serves."""
+        """Yield the levels, each with the points at which it is the cheapest sufficient level."""
         left = np.ones(self.template.shape_of_points(), dtype=bool)
         for level in self._promising:
             rung = self.at(level) if left.all() else at_level(self.template, level, left)
@@ -168,12 +172,12 @@ class _Search:
         yield Rung(self._best_of(left), _part(left))
 
     def _best_of(self, left: Mask) -> Template:
-        """Return the template at the best level for the points left."""
+        """Return the template at the best level for the remaining points."""
         best = self.best(int(left.sum()))
         return self.at(best) if left.all() else at_level(self.template, best, left)
 
     def _met(self, rung: Template, where: Mask | None) -> Mask:
-        """Return at which points all errors are within the tolerance; at none if the level refuses."""
+        """Return a mask of the points with all errors within the tolerance; all False on refusal."""
         met = np.ones((), dtype=bool)
         if self.measured is None:
             return ~met
@@ -190,7 +194,7 @@ class _Search:
         return met
 
     def _wanted(self, rung: Template, name: str, where: Mask | None) -> Mask:
-        """Return the mask of where an output has a value at the starting level, shaped as a rung's points."""
+        """Return a mask of where an output has a value at the starting level, shaped as a rung's points."""
         if rung.level == self.start:
             return np.zeros((), dtype=bool)
         try:
@@ -201,5 +205,5 @@ class _Search:
 
 
 def _part(chosen: Mask) -> Mask | None:
-    """Return the points chosen; None if these are all."""
+    """Return the chosen points; None if all points are chosen."""
     return None if chosen.all() else chosen

@@ -1,23 +1,23 @@
-"""Levels of fidelity: their measured errors and costs, and the choice of the cheapest sufficient level.
+"""Levels of fidelity: their measured errors and costs, and which levels have a smaller error.
 
-A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against a converged solution, on a grid
-over two of the template's quantities. The table is not part of the frozen file, so that a version may get a
-better table.
+A template lists its levels, cheapest first. Next to its file, `<id>_v<version>.accuracy.json` contains the
+measurements of a script in `benchmarks/`: for every level and output the error against a converged solution,
+on a grid over two of the template's quantities. The table is not part of the frozen file, so a released
+version may get a better table.
 
 Each level and output names its *truth*: the solution, with its conventions, against which the error was
-measured. Two levels may follow different conventions; then their errors cannot be compared
-(`next_levels`). Every error is relative to the truth, that of a profile to its largest absolute
-value: `templates.core.criteria.bands.CONVENTION`, which the file repeats.
+measured. If two levels follow different conventions, their errors cannot be compared (`next_levels`). Every
+error is relative to the truth, and the error of a profile to its largest absolute value:
+`templates.core.criteria.bands.CONVENTION`, which the file repeats.
 
 A level may compute the error of each answer itself (`Template.own_error`); the table then states the expected
 error under `own`.
 
-Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
-them under `cases`, and `Template.measured_case` says which case its inputs are. Where an error varies much
-within a cell, `powers` has by case, level and output exponents of attributes of the template: the error is
-that of the cell times those powers, within the range of each attribute that `within` has by case. The
-attributes follow from the inputs alone, and are the same at all levels.
+Errors may be measured separately for several cases of inputs, such as ways to feed a bearing. The table then
+lists them under `cases`, and `Template.measured_case` returns the case of the inputs. If an error varies much
+within a cell, `powers` gives exponents of template attributes by case, level and output: the error of the
+cell is multiplied by these powers, within the range of each attribute that `within` gives by case. These
+attributes depend only on the inputs and are the same at all levels.
 """
 
 from __future__ import annotations
@@ -40,24 +40,24 @@ from templates.core.language.origin import file_of
 from templates.core.language.spec import Text
 from templates.core.language.template import Template
 
-SINGLE = "only"  # how the table of a template without levels calls its one
+SINGLE = "only"  # name of the only level in the table of a template without levels
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Inputs under which a further error comes on top of the table's, such as those of a heat balance."""
+    """Inputs that add a further error to that of the table, such as the inputs of a heat balance."""
 
     inputs: tuple[str, ...]
-    measured: Mapping[str, Mapping[str, float | None]]  # by level and output: the error that comes on top
+    measured: Mapping[str, Mapping[str, float | None]]  # by level and output: the additional error
 
     def holds(self, template: Template) -> bool:
-        """Return whether any of the inputs is given."""
+        """Return whether any of the inputs of the condition is given."""
         return not template.ledger.typed.keys().isdisjoint(self.inputs)
 
     def added(self, template: Template, output: str) -> float:
-        """Return the addition to the error.
+        """Return the error that the condition adds to an output.
 
-        0 where the inputs do not matter, NaN where it was not measured.
+        It is 0 if the output does not depend on these inputs, NaN if it was not measured.
         """
         beneath = template.dependencies(template.formulas[output].attribute)
         if beneath.isdisjoint(template.inputs[name].attribute for name in self.inputs):
@@ -75,15 +75,15 @@ class Accuracy:
     errors: dict[
         str, dict[str, Array]
     ]  # by level and output: the largest measured in each cell, NaN unmeasured
-    content: dict[str, Any]  # the whole file, as it is served
+    content: dict[str, Any]  # the whole file, as the API returns it
 
     @cached_property
     def cases(self) -> dict[str, dict[str, dict[str, Array]]]:
-        """Return errors of single cases of inputs, by case, level and output, in the same cells."""
+        """Return the errors of the separate cases of inputs, by case, level and output, in the same cells."""
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
     def own(self, level: str) -> Mapping[str, float]:
-        """Return by output the expected error at a level that states the error of each answer itself."""
+        """Return the expected error by output for a level that computes the error of each answer itself."""
         of_level: Mapping[str, Mapping[str, float]] = self.content.get("levels", {}).get(level, {})
         return of_level.get("own", {})
 
@@ -102,28 +102,29 @@ class Accuracy:
         return frozenset(output for table in self.errors.values() for output in table)
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
-        """Return the errors that `evaluate` reports.
+        """Return the errors that `evaluate` reports, by output.
 
-        Of a text none, 0 where the level is irrelevant, or estimates.
-
-        An estimate is the largest relative error to expect at the template's level, of a profile relative to
-        its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
+        An error is the largest relative error to expect at the template's level; for a profile it is relative
+        to its largest absolute value. It is 0 if the output is the same at all levels, and NaN if none is
+        stated. Errors are scalars, or arrays of the shape of the points. The names must not include texts.
         """
         errors = self.expected(template, template.level, outputs)
-        own = self.own(template.level) if template.states_own_errors() else {}
-        for name in own.keys() & errors.keys():
-            errors[name] = template.own_error(name) + self._added(template, name)
+        own = self.own(template.level)
+        if own and template.states_own_errors():
+            for name in own.keys() & errors.keys():
+                errors[name] = template.own_error(name) + self._added(template, name)
         return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
-        """Return the errors stated for a level in the cell of the template at its own level."""
+        """Return the errors stated for a level, in the cell that the template has at its own level."""
         names, levels = list(outputs), self.errors
         if self.cases:
             levels = self.cases.get(template.measured_case(), levels)
         tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
-        own = self.own(level or SINGLE) if there.states_own_errors() else {}
+        own = self.own(level or SINGLE)
+        own = own if own and there.states_own_errors() else {}
         available = tables if there.is_measured() else {}
         measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
@@ -136,10 +137,12 @@ class Accuracy:
             estimates |= {name: none + own[name] for name in names if name in own and name not in exact}
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
+        if not any(one.holds(there) for one in self._conditions):
+            return errors
         return {name: error + self._added(there, name) for name, error in errors.items()}
 
     def _power(self, template: Template, level: str, output: str) -> Any:
-        """Return by what the powers of attributes multiply an error; NaN out of the range of one of them."""
+        """Return the factor on an error from powers of attributes; NaN outside an attribute's range."""
         case = template.measured_case()
         exponents = self.content["powers"].get(case, {}).get(level, {}).get(output, {})
         within = self.content.get("within", {}).get(case, {})
@@ -147,14 +150,14 @@ class Accuracy:
         return prod(factors)
 
     def _added(self, template: Template, output: str) -> float:
-        """Return the error of an output that the active conditions add."""
+        """Return the sum of the errors that the active conditions add to an output."""
         return sum(one.added(template, output) for one in self._conditions if one.holds(template))
 
     def seconds(self, template: Template, level: str) -> float | None:
-        """Return the processor time to expect of all points at a level [s].
+        """Return the expected processor time of all points at a level [s]; None if the table states none.
 
-        `expected_seconds` of the table has that of a point by level and case: one number, or one in each cell
-        of `grids` over the axes. None where it states none.
+        `expected_seconds` of the table gives the time of one point by level and case: one number, or one in
+        each cell of `grids` over the axes.
         """
         by_level = self.content.get("expected_seconds", {}).get(level, {})
         stated = by_level.get("cases", {}).get(template.measured_case() if self.cases else "")
@@ -181,7 +184,7 @@ class Accuracy:
         )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
-        """Return row and column of the cell of each point, and whether there is one."""
+        """Return row and column of the cell of each point, and whether the point lies within the grid."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
             row, in_rows = _place(self._edges[0], first)
@@ -206,7 +209,7 @@ def _same_at_all_levels(template: Template, output: str) -> bool:
 
 
 def _within(value: Any, limits: tuple[float, float] | None) -> Any:
-    """Return a value; NaN outside of limits."""
+    """Return a value, or NaN if it is outside the limits."""
     if limits is None:
         return value
     return np.where((value >= limits[0]) & (value <= limits[1]), value, np.nan)[()]
@@ -220,13 +223,13 @@ def _looked_up(table: Array, cell: Any) -> Any:
 
 
 def _place(edges: list[float], value: float) -> tuple[int, bool]:
-    """Return the `_places` of one value."""
+    """Return the result of `_places` for a single value."""
     place = min(max(bisect_right(edges, value) - 1, 0), len(edges) - 2)
     return place, bool(edges[0] <= value <= edges[-1])
 
 
 def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Return the grid cell of each value, and whether there is one."""
+    """Return the index of the grid cell of each value, and whether the value lies within the grid."""
     cells = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, grid.size - 2)
     return cells, (values >= grid[0]) & (values <= grid[-1])
 
@@ -234,7 +237,7 @@ def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bo
 def accuracy_file(cls: type[Template]) -> Path | None:
     """Return the file of the measured errors of a version.
 
-    None of a worksheet, of which none are measured.
+    A worksheet has none, because its errors are not measured.
     """
     path = file_of(cls)
     return path and path.with_suffix(".accuracy.json")
@@ -277,11 +280,11 @@ class NextLevel:
 
 
 def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
-    """Return the levels that answer these inputs with a smaller stated error of an output, cheapest first.
+    """Return the levels with a smaller stated error of an output for these inputs, cheapest first.
 
-    Smaller at one point at least, or stated at one point where that of the template's level is not, and
-    measured against the same truth as the error at the template's level.
-    The errors are looked up where the template lies at its own level; nothing is calculated at another.
+    The error must be smaller at one or more points, or be stated at a point where the template's level states
+    none. Both errors must be measured against the same truth. The errors are looked up with the template's
+    values at its own level; nothing is calculated at another level.
     """
     measured = accuracy(type(template))
     truth = measured.truth(template.level, output) if measured else None
@@ -295,12 +298,12 @@ def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
 
 
 def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
-    """Return the template at a level, if the level accepts this many points.
+    """Return the template at a level, if the level accepts this number of points.
 
     Raises
     ------
     InvalidInputs
-        If there are too many.
+        If there are too many points.
     """
     count = int(np.prod(template.shape_of_points())) if where is None else int(where.sum())
     most = template.most_points.get(level, count)

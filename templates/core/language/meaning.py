@@ -20,7 +20,7 @@ _RELATIONS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
 
 @dataclass(frozen=True)
 class Bounds:
-    """Limits of a value, in its declared unit; None leaves a side open."""
+    """Bounds of a value in its declared unit; None leaves a side open."""
 
     gt: float | None = None
     ge: float | None = None
@@ -28,12 +28,12 @@ class Bounds:
     le: float | None = None
 
     def in_si(self, scale: Unit) -> Bounds:
-        """Return the same limits in SI."""
+        """Return the same bounds in SI."""
         limits = (getattr(self, side) for side, _ in _RELATIONS)
         return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
 
     def admits(self, value: Any) -> Any:
-        """Return the mask of the values (scalar or array) within the limits; NaN is not."""
+        """Return the mask of the values (scalar or array) within the bounds; NaN is outside."""
         inside = value == value
         if self.gt is not None:
             inside = inside & (value > self.gt)
@@ -46,7 +46,7 @@ class Bounds:
         return inside
 
     def interval(self) -> tuple[float, float]:
-        """Return the least and the greatest finite number within the limits."""
+        """Return the smallest and largest finite number within the bounds."""
         low, high = -sys.float_info.max, sys.float_info.max
         low = low if self.gt is None else max(low, math.nextafter(self.gt, math.inf))
         low = low if self.ge is None else max(low, self.ge)
@@ -70,12 +70,12 @@ class Bounds:
 class Meaning:
     """The meaning of a number: its words, unit, symbol, bounds and source.
 
-    `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
-    outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
-    published range bounds this formula too, though it does not use them. `absent` says why a result may be
-    NaN without being a fault. `assumed` is what an input's default takes for granted, where that makes a part
-    look safer. `per_level` narrows domain and published range at single levels of fidelity.
-    `read_as` is degC for a temperature that is declared in K, which else may be a difference as well.
+    `domain` is the range in which the number has a meaning, `published` the range that its source states;
+    `remedy` tells the user what to do outside. `also` are alternative names. `assumes` are attributes of the
+    template whose published range also limits this formula, although it does not use them. `absent` is the
+    reason why a result may be NaN without being a fault. `assumed` is the unsafe assumption behind an input's
+    default, if there is one. `per_level` narrows domain and published range at single levels of fidelity.
+    `read_as` is degC for a temperature declared in K, which could otherwise also be a difference.
     """
 
     words: str
@@ -105,16 +105,16 @@ class Meaning:
 
     @property
     def wanted(self) -> str:
-        """Return the requirement on the value in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`."""
+        """Return the required value in words, such as `a whole number ≥ 3 and ≤ 200` or `> 0 mm`."""
         limits = self.domain.text(self.unit)
         return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
 
     def with_unit(self, si: float) -> str:
-        """Return an SI value in the declared unit, for a message."""
+        """Return an SI value as text in the declared unit, for a message."""
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
     def admits(self, value: Any) -> Any:
-        """Return the mask of SI values that are finite, in the domain, and whole if they must be."""
+        """Return the mask of SI values that are finite, in the domain, and integers if required."""
         if isinstance(value, float):
             low, high = self.interval
             return low <= value <= high and not (self.integer and value != round(value))
@@ -125,32 +125,32 @@ class Meaning:
 
     @cached_property
     def scale(self) -> Unit:
-        """Return the declared unit, reduced to SI."""
+        """Return the declared unit with its conversion to SI."""
         return unit(self.unit)
 
     @cached_property
     def accepted(self) -> str:
-        """Return the unit that decides which units may be typed: for a temperature in K, degC."""
+        """Return the unit that determines which units may be typed; degC for a temperature in K."""
         return self.read_as or self.unit
 
     @cached_property
     def kind(self) -> Kind:
-        """Return the kind of the value in relations."""
+        """Return the kind of quantity that the value has in relations."""
         return kind_of(self.accepted, self.name)
 
     @cached_property
     def domain_si(self) -> Bounds | None:
-        """Return the domain in SI, or None where every finite value means something."""
+        """Return the domain in SI, or None if every finite value is allowed."""
         return None if self.domain.open else self.domain.in_si(self.scale)
 
     @cached_property
     def interval(self) -> tuple[float, float]:
-        """Return the finite numbers [SI] within the domain, as the least and the greatest of them."""
+        """Return the smallest and largest finite number [SI] within the domain."""
         return (self.domain_si or Bounds()).interval()
 
     @cached_property
     def published_si(self) -> Bounds | None:
-        """Return the published range in SI, or None where the source states none."""
+        """Return the published range in SI, or None if the source states none."""
         return None if self.published.open else self.published.in_si(self.scale)
 
 
@@ -168,7 +168,7 @@ def _named(words: str, name: str | None) -> str:
     Raises
     ------
     TypeError
-        If that is not a name in snake_case.
+        If the result is not a name in snake_case.
     """
     name = name or api_name(words)
     if not _API_NAME.fullmatch(name):
@@ -177,21 +177,21 @@ def _named(words: str, name: str | None) -> str:
 
 
 class Keywords(TypedDict, total=False):
-    """The keywords that every declaration shares: those of `meaning`, for editors and type checkers."""
+    """The keywords that every declaration accepts, those of `meaning`, for editors and type checkers."""
 
     name: str | None
-    """API name, where the words would make another."""
+    """API name, if the words would give another."""
     symbol: str | None
-    """LaTeX on paper, where the attribute would make another."""
+    """Printed symbol in LaTeX, if the attribute would give another."""
     source: str | None
-    """Who published it."""
+    """Source of the formula or value."""
     gt: float | None
     ge: float | None
     lt: float | None
     le: float | None
     """The domain, in the declared unit; a value outside is refused."""
     published: tuple[float | None, float | None]
-    """The range that the source claims; outside it an answer carries a warning."""
+    """The range that the source states; outside it an answer carries a warning."""
     remedy: str | None
     """What to do outside the domain."""
     also: tuple[str, ...]
@@ -199,11 +199,11 @@ class Keywords(TypedDict, total=False):
     integer: bool
     """Whether the value is a whole number."""
     assumes: tuple[str, ...]
-    """Attributes whose published range bounds this formula too, though it does not use them."""
+    """Attributes whose published range also limits this formula, although it does not use them."""
     absent: str | None
     """Why a result may be missing without being a fault."""
     assumed: str | None
-    """What the default of an input takes for granted, where that makes a part look safer."""
+    """The unsafe assumption behind an input's default, if there is one."""
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None
     """Domain and published range at single levels of fidelity."""
 
@@ -228,7 +228,7 @@ def meaning(
     assumed: str | None = None,
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None = None,
 ) -> Meaning:
-    """Return the keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
+    """Return a `Meaning` from the keywords of every declaration; bounds are in the declared unit."""
     return Meaning(
         words=words,
         unit=unit,

@@ -1,4 +1,4 @@
-"""The source text of a class: a file, or a worksheet that a user wrote."""
+"""Find the file that declares a class."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ from templates.core.language.calculation import Calculation
 
 
 def file_of(cls: type[Calculation]) -> Path | None:
-    """Return the file that declares a class; None where a worksheet does."""
+    """Return the file that declares a class; None if a worksheet declares it."""
     return None if cls.sheet else Path(inspect.getfile(cls))

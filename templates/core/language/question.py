@@ -1,4 +1,4 @@
-"""The question of `solve`: the unknown, its bounds and the target, checked before anything is calculated."""
+"""Read and check the question of `solve`: the unknown, its bounds and the target."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def read_question(
     tolerance: float | None = None,
     **names: Any,
 ) -> tuple[Input, tuple[float, float], Formula[Any], float]:
-    """Return the declarations and SI values that the question is about; `names` go to `read_options`.
+    """Return the declarations and SI values that define the question; `names` are passed to `read_options`.
 
     Raises
     ------
     InvalidInputs
-        Naming everything that is wrong with the question at once.
+        With everything that is wrong with the question at once.
     """
     *_, faults = read_options(cls, **names)
     declared, formula = _unknown(cls, unknown, faults), None
@@ -56,7 +56,7 @@ def read_question(
 
 
 def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | None:
-    """Return the declaration of the unknown, if it is a quantity that can take any value."""
+    """Return the declaration of the unknown, if it is a quantity with continuous values."""
     declared = cls.inputs.get(name)
     if declared is None:
         fault = unknown_name(name, _solvable(cls), "input")
@@ -105,7 +105,7 @@ def _faulty_inputs(
     declared: Input | None,
     ends: tuple[float, float],
 ) -> list[Fault]:
-    """Return the faults of the other inputs, with the unknown in the middle of its bounds."""
+    """Return the faults of the other inputs, checked with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]

@@ -1,7 +1,7 @@
 """Store the single SI values of an evaluated template as JSON, and restore the template without calculating.
 
-With such a record, the formulas of an answer can be printed again in any system of units. Arrays are left
-out, because their numbers are not printed.
+With such a record, the formulas of an answer can be printed again in any system of units. Arrays are not
+stored, because their numbers are not printed.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
     from templates.core.language.template import Template
 
 Recorded = float | str | list[None] | None
-"""A single value [SI] or a word; null where there is none; an empty list in place of an array."""
+"""A single value [SI] or a word; null for a missing value; an empty list in place of an array."""
 
 
 @dataclass(frozen=True)
 class Record:
-    """Values by attribute: those that the template was made with, and those that it computed."""
+    """Values by attribute: those from which the template was created, and those that it computed."""
 
     taken: dict[str, Recorded] = field(default_factory=dict)
     computed: dict[str, Recorded] = field(default_factory=dict)
 
     @property
     def has_arrays(self) -> bool:
-        """Return whether an array or a table was left out."""
+        """Return whether the record omits an array or a table."""
         return any(isinstance(value, list) for value in (*self.taken.values(), *self.computed.values()))
 
 
 def record(template: Template) -> Record:
-    """Return every declared value that the template has so far."""
+    """Return a record of every declared value that the template has so far."""
     record = Record()
     declared, handed = template.declarations, template.ledger.handed
     for attribute, value in vars(template).items():
@@ -48,7 +48,7 @@ def record(template: Template) -> Record:
             elif isinstance(value, str):
                 values[attribute] = value
             else:
-                values[attribute] = None if np.size(value) == 0 else []  # an empty table is none
+                values[attribute] = None if np.size(value) == 0 else []  # an empty table counts as missing
     return record
 
 

@@ -1,4 +1,4 @@
-"""A request to a template, checked as a whole before any formula runs."""
+"""Check a request to a template as a whole, before any formula is evaluated."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from templates.core.units.quantity import Unit, beside, require_same_kind
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request in which nothing is wrong: inputs, names of outputs, units in which some are shown."""
+    """A valid request: inputs, names of outputs, and the units in which some outputs are shown."""
 
     template: Template
     names: list[str]
@@ -32,12 +32,12 @@ def read_request(
     level: str | None = None,
     limits: Mapping[str, Any] | None = None,
 ) -> Request:
-    """Read inputs and limits as typed, and the names of the requested outputs.
+    """Return the request read from typed inputs and limits and from the names of the requested outputs.
 
     Raises
     ------
     InvalidInputs
-        Naming everything that is wrong at once.
+        With everything that is wrong at once.
     """
     names, shown_in, faults = read_options(cls, outputs, units, level)
     given, wrong = _limits(cls, limits) if limits else ({}, [])
@@ -52,7 +52,7 @@ def read_request(
 
 
 def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits that are given for the template's criteria, and their faults."""
+    """Return the limits given for the template's criteria, and their faults."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -60,9 +60,9 @@ def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Give
 
 
 def require_points(template: Template, level: str | None, tolerance: float | None) -> None:
-    """Check that the level accepts the number of points; raises InvalidInputs.
+    """Raise InvalidInputs if the level does not accept the number of points.
 
-    With a tolerance the level of each point follows from the calculation, so there is nothing to check.
+    With a tolerance, the calculation chooses the level of each point, so there is nothing to check here.
     """
     if template.levels and (level is not None or tolerance is None):
         at_level(template, level or template.starting_level())
@@ -74,7 +74,7 @@ def read_options(
     units: Mapping[str, str] | None = None,
     level: str | None = None,
 ) -> tuple[list[str], dict[str, Unit], list[Fault]]:
-    """Return the requested outputs, their units, and all faults of these and of the level."""
+    """Return the requested outputs, their units, and all faults in these and in the level."""
     names = list(cls.formulas) if outputs is None else list(outputs)
     faults = unknown_names(filterfalse(cls.formulas.__contains__, names), cls.formulas, "output")
     shown_in = _units(cls, units or {}, faults)

@@ -1,4 +1,4 @@
-"""Every value of an unknown that gives a wanted output, and the curve between the bounds."""
+"""Find every value of an unknown that gives a wanted output, and the curve between the bounds."""
 
 from __future__ import annotations
 
@@ -16,17 +16,19 @@ from templates.core.language.crossings import Crossings, Leap, meetings
 from templates.core.language.ledger import Notice
 from templates.core.language.scan import SampledCurve, Samples
 
-NAMED = 10  # solutions that a warning names
-AT_BOUND = 1e-9  # of the width of the search: nearer to a bound a solution lies on it
-BESIDE = 12  # samples of the scan, from a solution to those drawn of a level that takes few points
-MISSED = 1e-6  # relative miss of a solution beyond which a warning says so
+NAMED = 10  # most solutions that a warning names
+AT_BOUND = 1e-9  # fraction of the search interval within which a solution counts as lying on a bound
+BESIDE = (
+    12  # distance, in scan samples, from a solution to the drawn samples of a level that accepts few points
+)
+MISSED = 1e-6  # relative miss of a solution above which there is a warning
 
 
 @dataclass(frozen=True)
 class Jump:
     """A value of the unknown at which the output jumps across the target, and the output on both sides.
 
-    In the declared units.
+    All values are in the declared units.
     """
 
     value: float
@@ -36,9 +38,9 @@ class Jump:
 
 @dataclass(frozen=True)
 class TracedCurve:
-    """The output over the unknown: samples between the bounds at one level, in the declared units.
+    """The output as a function of the unknown: samples between the bounds at one level, in declared units.
 
-    NaN where there is no value; `reasons` says why, None where there is one.
+    Missing values are NaN; `reasons` explains them and is None where there is a value.
     """
 
     x: Array
@@ -52,8 +54,8 @@ class Roots:
     """All values of an unknown that give a target.
 
     `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
-    `lowest` is the first of them that the level requested confirms. `curve` is the one that was searched;
-    `finer` are those that solutions were confirmed on, where these are at other levels.
+    `lowest` is the first of them that is confirmed at the requested level. `curve` is the scanned curve;
+    `finer` are the curves at the levels that confirmed solutions, if these differ from that of the scan.
     """
 
     lowest: Root
@@ -66,14 +68,14 @@ class Roots:
 
 
 def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, float]) -> Roots:
-    """Return every solution between bounds [SI]: scanned on the cheap curve, confirmed on the one requested.
+    """Return every solution between bounds [SI], scanned on the cheap and confirmed on the requested curve.
 
     Raises
     ------
     InvalidInputs
-        If the level requested refuses every solution.
+        If the requested level refuses every solution.
     Unreachable
-        If no value between the bounds gives the target, with the range that is reachable.
+        If no value between the bounds gives the target; the error contains the reachable range.
     """
     scanned, even, samples = cheap.scan(*bounds)
     met = meetings(scanned, samples)
@@ -119,7 +121,7 @@ def _at_bounds(curve: SampledCurve, roots: list[Root], bounds: tuple[float, floa
 
 
 def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> Unreachable:
-    """Return the error where the solutions of the scan are none between the bounds at the level requested."""
+    """Return the error if the requested level has none of the scanned solutions between the bounds."""
     error = scanned.unreachable(samples)
     there = scanned.level
     detail = (
@@ -129,14 +131,14 @@ def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> U
 
 
 def _jump(curve: SampledCurve, leap: Leap) -> Jump:
-    """Return a leap in declared units."""
+    """Return a leap as a `Jump` in declared units."""
     output = curve.y.scale
     sides = (float(output.from_si(side)) for side in (leap.before, leap.after))
     return Jump(float(curve.x.scale.from_si(leap.x)), *sides)
 
 
 def _traced(curve: SampledCurve, samples: Samples) -> TracedCurve:
-    """Return samples in declared units."""
+    """Return samples as a `TracedCurve` in declared units."""
     x, y = curve.x.scale, curve.y.scale
     return TracedCurve(
         np.asarray(x.from_si(samples.x)),
@@ -149,9 +151,9 @@ def _traced(curve: SampledCurve, samples: Samples) -> TracedCurve:
 def _finer(
     requested: SampledCurve, scanned: SampledCurve, even: Samples, roots: Sequence[Root]
 ) -> Iterator[TracedCurve]:
-    """Yield the curve of each level that confirmed solutions, except that of the scan.
+    """Yield the curve of each level that confirmed solutions, except the level of the scan.
 
-    A level that takes few points at once has a sample to both sides of each solution.
+    A level that accepts few points at once gets a sample on either side of each solution.
     """
     confirmed_at = dict.fromkeys(root.level for root in roots if root.confirmed)
     curves = (requested.at_level(level) if level else requested for level in confirmed_at)
@@ -162,9 +164,9 @@ def _finer(
 
 
 def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Samples:
-    """Return the samples of a finer curve: those of the scan, or a few about its solutions, and these.
+    """Return the samples of a finer curve: those of the scan, or a few around its solutions, with these.
 
-    Those that the level refuses are left out.
+    Samples that the level refuses are left out.
     """
     x = np.asarray(curve.x.scale.to_si(np.array([root.value for root in roots])))
     output = np.asarray(curve.y.scale.to_si(np.array([root.output for root in roots])))
@@ -177,7 +179,7 @@ def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Sa
 
 
 def _beside(even: Array, places: Array) -> NDArray[np.intp]:
-    """Return the samples within a number of steps on both sides of some places."""
+    """Return the samples a number of steps to either side of some places."""
     nearest = np.searchsorted(even, places)
     return np.unique(np.clip(np.concatenate([nearest - BESIDE, nearest + BESIDE]), 0, even.size - 1))
 
@@ -192,7 +194,7 @@ def _not_monotone(curve: SampledCurve, residual: Array) -> list[Notice]:
 
 
 def _others(curve: SampledCurve, lowest: Root, roots: list[Root], more: int) -> list[Notice]:
-    """Return the warning that there are several solutions, which names the others."""
+    """Return a warning that names the other solutions if there are several."""
     others = [root for root in roots if root is not lowest]
     if not others:
         return []

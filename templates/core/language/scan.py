@@ -1,8 +1,8 @@
-"""Sample the target of `solve` over the unknown: array calls, refined where the curve needs it.
+"""Sample the output over the unknown of `solve`: array calls, refined where the curve needs it.
 
-257 samples between the bounds, all at one level of fidelity, show where the output crosses the target, comes
-near it, or ends. Such intervals are divided repeatedly, so that a jump is not mistaken for a crossing, two
-solutions close together are separated, and the end of the reachable range is located.
+The scan takes 257 samples between the bounds at one level of fidelity. They show where the output crosses the
+target, comes near it, or ceases to exist. These intervals are divided repeatedly, so that a jump is not
+mistaken for a crossing, two close solutions are separated, and the end of the reachable range is located.
 """
 
 from __future__ import annotations
@@ -23,48 +23,48 @@ from templates.core.language.question import typed_values
 from templates.core.language.spec import Curve, Formula, Input
 from templates.core.language.template import Template
 
-SAMPLES = 257  # of the first call
-PARTS, ROUNDS = 16, 7  # into which an interval is divided, and how often
-EDGES, EXTREMA, CROSSINGS = 8, 16, 30  # intervals of each kind that are divided in a round
+SAMPLES = 257  # in the first call
+PARTS, ROUNDS = 16, 7  # number of parts of a divided interval, and number of rounds
+EDGES, EXTREMA, CROSSINGS = 8, 16, 30  # most intervals of each kind that are divided in a round
 CROSSED = 2  # rounds in which intervals at a crossing are divided
-NEAR = 2.0  # an extremum this near, over its step to the next sample, may reach the target
-CELLS = 200_000  # values of a curve input times samples, in one call
-DECADE = 10.0  # bounds farther apart are sampled evenly in the logarithm
+NEAR = 2.0  # an extremum within this many steps of the target may reach it
+CELLS = 200_000  # most values in one call: length of a curve input times number of samples
+DECADE = 10.0  # bounds with a larger ratio are sampled at logarithmic spacing
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of the unknown, ascending, and output minus target there [SI]; NaN where it has no value."""
+    """Values of the unknown in ascending order, and output minus target [SI]; NaN without a value."""
 
     x: Array
     miss: Array
     reasons: NDArray[np.object_]
 
     def joined(self, other: Samples) -> Samples:
-        """Return both, in ascending order, each value of the unknown once."""
+        """Return both sets of samples in ascending order, each value of the unknown once."""
         x = np.concatenate([self.x, other.x])
         x, first = np.unique(x, return_index=True)
         miss, reasons = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("miss", "reasons"))
         return Samples(x, miss[first], reasons[first])
 
     def crossings(self) -> NDArray[np.intp]:
-        """Return the samples after which the output crosses the target before the next one."""
+        """Return the indices of samples after which the output crosses the target before the next."""
         return np.flatnonzero(np.sign(self.miss[:-1]) * np.sign(self.miss[1:]) < 0)
 
     def beside(self) -> NDArray[np.intp]:
-        """Return the samples after which the output is nearer to the target than its step.
+        """Return the indices of the samples after which the output is nearer to the target than its step.
 
-        It may jump there.
+        The output may jump across the target there.
         """
         near = np.minimum(np.abs(self.miss[:-1]), np.abs(self.miss[1:])) < np.abs(np.diff(self.miss))
         return np.flatnonzero(near)
 
     def edges(self) -> NDArray[np.intp]:
-        """Return the samples after which the output begins or ends to exist."""
+        """Return the indices of the samples after which the output begins or ceases to exist."""
         return np.flatnonzero(np.isnan(self.miss[:-1]) != np.isnan(self.miss[1:]))
 
     def nearest(self) -> NDArray[np.intp]:
-        """Return the samples nearer to the target than both neighbours on their side of it, in order."""
+        """Return the indices of samples nearer to the target than their neighbours on the same side."""
         before, here, after = self.miss[:-2], self.miss[1:-1], self.miss[2:]
         side = np.sign(here)
         nearer = (side * before >= side * here) & (side * after >= side * here)
@@ -72,7 +72,7 @@ class Samples:
         return np.flatnonzero((side != 0) & nearer & (np.abs(here) <= NEAR * self._steps())) + 1
 
     def _steps(self) -> Array:
-        """Return the larger of the steps to both neighbours."""
+        """Return the larger of the steps to both neighbours, for each sample."""
         steps = np.abs(np.diff(self.miss))
         return np.maximum(steps[:-1], steps[1:])
 
@@ -81,8 +81,8 @@ class Samples:
 class Outputs:
     """The output at values of the unknown [SI], NaN where it has none, and the level that calculated it.
 
-    `error` is the relative error at each value; None where none is stated. `reasons` are None where there
-    is a value.
+    `error` is the relative error at each value, or None if none is stated. `reasons` are None where there is
+    a value.
     """
 
     values: Array
@@ -93,7 +93,7 @@ class Outputs:
 
 @dataclass(frozen=True)
 class SampledCurve(ABC):
-    """An output as a function of one unknown: what `x` and `y` mean, and the value wanted of `y` [SI]."""
+    """An output as a function of one unknown: the meanings of `x` and `y`, and the target of `y` [SI]."""
 
     x: Meaning
     y: Meaning
@@ -105,16 +105,16 @@ class SampledCurve(ABC):
 
     @abstractmethod
     def at_level(self, level: str) -> Self:
-        """Return the same curve, all of it at one level."""
+        """Return the same curve with all samples at one level."""
 
     @abstractmethod
     def level_at(self, x: float) -> str | None:
-        """Return the level at one value; raises InvalidInputs where the output is refused there."""
+        """Return the level used at one value; raise InvalidInputs if the output is refused there."""
 
     @property
     @abstractmethod
     def level(self) -> str | None:
-        """Return the level of all samples; None where a tolerance chooses it, or there are no levels."""
+        """Return the level of all samples; None if a tolerance chooses it, or there are no levels."""
 
     @property
     @abstractmethod
@@ -138,7 +138,7 @@ class SampledCurve(ABC):
         return fixed, samples.joined(fixed.sample(x[self.rows :]))
 
     def sample(self, x: Array) -> Samples:
-        """Return the output at these values, in as many calls as its level needs."""
+        """Return the samples at these values, in as many calls as the level needs."""
         samples = Samples(np.empty(0), np.empty(0), np.empty(0, dtype=object))
         for start in range(0, x.size, self.rows):
             part = x[start : start + self.rows]
@@ -150,11 +150,11 @@ class SampledCurve(ABC):
         return self.miss_of(self.outputs(np.array([value])))
 
     def miss_of(self, outputs: Outputs) -> float:
-        """Return output minus target [SI] for the outputs at one value; NaN where the template refuses."""
+        """Return output minus target [SI] for already computed outputs at one value; NaN without a value."""
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
-        """Return the curve at its level, the samples between the bounds, and those with all refinements."""
+        """Return the curve at its level, the even samples between the bounds, and the refined samples."""
         curve, even = self.at_one_level(evenly(low, high))
         samples = even
         for turn in range(ROUNDS):
@@ -166,7 +166,7 @@ class SampledCurve(ABC):
         return curve, even, samples
 
     def unreachable(self, samples: Samples) -> Unreachable:
-        """Return the error with the reachable range between the bounds and the reason."""
+        """Return the error with the reachable range between the bounds and the reason for missing values."""
         meaning, name = self.y, self.y.name
         if np.isnan(samples.miss).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
@@ -198,7 +198,7 @@ class TargetCurve(SampledCurve):
 
     @property
     def level(self) -> str | None:
-        """Return the level of all samples; None where a tolerance chooses it, or there are no levels."""
+        """Return the level of all samples; None if a tolerance chooses it, or there are no levels."""
         return self.fidelity.get("level")
 
     @property
@@ -215,7 +215,7 @@ class TargetCurve(SampledCurve):
         return max(1, min(most, CELLS // max(1, longest)))
 
     def at_level(self, level: str) -> TargetCurve:
-        """Return the same curve, all of it at one level."""
+        """Return the same curve with all samples at one level."""
         return replace(self, fidelity={"level": level})
 
     def is_at_levels_of(self, other: Self) -> bool:
@@ -223,12 +223,12 @@ class TargetCurve(SampledCurve):
         return self.level == other.level
 
     def evaluation(self, values: Any) -> Evaluation:
-        """Return the output at values of the unknown [SI]."""
+        """Return the evaluation of the output at values of the unknown [SI]."""
         raw = {**self.raw, self.declared.name: typed_values(self.declared, values)}
         return evaluate(self.cls, raw, outputs=[self.formula.name], **self.fidelity)
 
     def level_at(self, x: float) -> str | None:
-        """Return the level at one value; raises InvalidInputs where the output is refused there."""
+        """Return the level used at one value; raise InvalidInputs if the output is refused there."""
         return self.evaluation(x).level
 
     def outputs(self, x: Array) -> Outputs:
@@ -258,7 +258,7 @@ def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
 def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
     """Return equally spaced values between the bounds.
 
-    Even in the logarithm where both are positive and far apart.
+    The spacing is logarithmic if both bounds are positive and far apart.
     """
     if low > 0 and high > DECADE * low:
         return np.geomspace(low, high, count)
@@ -271,7 +271,7 @@ def _inside(low: float, high: float) -> Array:
 
 
 def _divided(samples: Samples, turn: int) -> NDArray[np.intp]:
-    """Return the intervals to divide, by the sample before each; a maximum number of each kind."""
+    """Return the intervals to divide, each by the sample before it; the number of each kind is limited."""
     crossed = samples.beside()[:CROSSINGS] if turn < CROSSED else np.empty(0, dtype=np.intp)
     near = samples.nearest()
     near = near[np.argsort(np.abs(samples.miss[near]), kind="stable")][:EXTREMA]

@@ -1,8 +1,8 @@
 """Find the inputs that give a wanted output: scan between bounds, then refine every crossing.
 
-The scan is a few array calls at one level of fidelity, so a formula that jumps or is not monotone is detected
-and reported. Every solution between the bounds is returned, together with the curve. If the requested level
-differs from the scan's, each solution is recalculated at the requested level.
+The scan consists of a few array calls at one level of fidelity, so jumps and non-monotone formulas are
+detected and reported. Every solution between the bounds is returned, together with the curve. If the
+requested level differs from that of the scan, each solution is recalculated at the requested level.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Solution:
-    """The lowest value of the unknown that gives the target [its declared unit], and the evaluation there.
+    """The lowest value of the unknown that gives the target [in its declared unit], and the evaluation there.
 
     `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
-    jumps and curves have the output in `target_unit`. `finer` are the curves of the levels that solutions
-    were confirmed at, where these are not that of `curve`.
+    jumps and curves give the output in `target_unit`. `finer` are the curves at the levels that confirmed
+    solutions, if these differ from the level of `curve`.
     """
 
     unknown: float
@@ -54,17 +54,17 @@ def solve(
     target: Mapping[str, Any],
     **options: Any,
 ) -> Solution:
-    """Find the inputs `unknown` between `bounds` for which the one output in `target` has its value.
+    """Find the values of `unknown` within `bounds` for which the one output in `target` has its wanted value.
 
-    `options` go to `evaluate`. Where several solutions exist `unknown` is the lowest, and a warning names
-    the others.
+    `options` are passed to `evaluate`. If there are several solutions, `unknown` of the result is the lowest,
+    and a warning names the others.
 
     Raises
     ------
     InvalidInputs
-        If anything of the question is wrong, or the level requested refuses every solution.
+        If anything in the question is wrong, or the requested level refuses every solution.
     Unreachable
-        If no value between the bounds gives the target, with the range that is reachable.
+        If no value between the bounds gives the target; the error contains the reachable range.
     """
     declared, bounds_si, formula, wanted = read_question(cls, raw, unknown, bounds, target, **options)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
@@ -90,7 +90,7 @@ def solve(
 def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
     """Return the fidelity of the scan.
 
-    The one requested, or the default level where that may take few points.
+    It is the requested one, or the default level if the requested level accepts only few points.
     """
     if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
         return fidelity

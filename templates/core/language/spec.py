@@ -1,6 +1,6 @@
 """Classes of a template's declarations: givens, choices, curves, formulas and requirements.
 
-Authors use the functions of `templates.core.language.declare`, which create them.
+Authors create them with the functions of `templates.core.language.declare`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _NUMBER = np.float64
 
 
 class Declaration:
-    """One named thing of a template; knows the attribute under which it stands in the code."""
+    """One named part of a template; it knows the attribute to which it is assigned."""
 
     attribute: str
 
@@ -37,14 +37,14 @@ class Declaration:
 
     @cached_property
     def plain(self) -> tuple[float, float] | None:
-        """Return the range of admitted single numbers [SI]; None where more has to be checked."""
+        """Return the range of admissible single numbers [SI]; None if more must be checked."""
         return None if self.meaning.integer else self.meaning.interval
 
 
 class Given(Declaration):
-    """An input: a quantity that the user gives, its default, or NaN if it is optional and missing.
+    """An input quantity: the user's value, its default, or NaN if it is optional and missing.
 
-    A `single` one is one value for all points: it says how many values a curve has, say.
+    A `single` input has one value for all points, because it may, for example, set the length of a curve.
     """
 
     def __init__(
@@ -59,11 +59,11 @@ class Given(Declaration):
 
 
 class Curve(Given):
-    """An input that is an array along the crank angle: its last axis is the cycle, or what `along` names.
+    """An input that is an array along the crank angle (last axis), or along the axis named by `along`.
 
-    A curve means something only as a whole: one point out of its domain refuses it. Axes before the last are
-    points, as of other inputs. Where it may be `constant`, a single value holds all over the cycle. Curves
-    along the same axis are of one length.
+    A curve is valid only as a whole: one point outside its domain refuses it. Axes before the last are
+    points, as for other inputs. If it may be `constant`, a single value applies to the whole cycle. Curves
+    along the same axis have the same length.
     """
 
     def __init__(
@@ -76,9 +76,9 @@ class Curve(Given):
 
 
 class Table(Given):
-    """An optional input that is a list of rows, each of the same columns; one thing, not many points.
+    """An optional input that is a list of rows with the same columns; it is one value, not many points.
 
-    Its value is a tuple of tuples [SI]; empty when missing.
+    The value is a tuple of tuples [SI]; empty if missing.
     """
 
     def __init__(self, meaning: Meaning, columns: tuple[str, ...], most: int) -> None:
@@ -88,7 +88,7 @@ class Table(Given):
 
 
 class Choice(Declaration):
-    """An input that is one of several words."""
+    """An input that is one of several named options."""
 
     def __init__(self, meaning: Meaning, options: tuple[str, ...], default: str | None) -> None:
         super().__init__(meaning)
@@ -96,12 +96,12 @@ class Choice(Declaration):
 
     @property
     def required(self) -> bool:
-        """Return whether the template cannot do without it."""
+        """Return whether the input must be given."""
         return self.default is None
 
 
 class Formula(Declaration, Generic[T]):
-    """An output: evaluated at its first use, then kept with the template it belongs to."""
+    """An output: evaluated when first used, then stored in its template."""
 
     def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None = None) -> None:
         super().__init__(meaning)
@@ -125,7 +125,7 @@ class Formula(Declaration, Generic[T]):
     def unremarkable(self) -> tuple[float, float] | None:
         """Return the range in which a single result needs no further check [SI].
 
-        None if every result needs one.
+        The result is None if every result must be checked.
         """
         meaning = self.meaning
         if meaning.per_level or meaning.assumes:
@@ -136,7 +136,7 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def expression(self) -> ast.expr:
-        """Return the syntax tree of the returned expression."""
+        """Return the syntax tree of the expression that the formula returns."""
         return returned(self.function)
 
     @cached_property
@@ -146,12 +146,12 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """Return the inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs that the formula reads as given, without the formula of their default."""
         return inputs_read_as_given(self.function)
 
 
 class Derived(Formula[T]):
-    """An optional input: a value given by the user, else this formula of other inputs; `shown` as output."""
+    """An optional input: the user's value, else this formula of other inputs; if `shown`, also an output."""
 
     required = False
 
@@ -161,11 +161,11 @@ class Derived(Formula[T]):
 
 
 class Profile(Formula[T]):
-    """An output that is an array along its last axis, as along a pad, for each point of the inputs.
+    """An output that is an array along its last axis, such as along a pad, for each point of the inputs.
 
-    It means something only as a whole: one place out of its domain takes the profile of that point.
-    `along` is the name of the profile that says where its places are; its own for that one. A profile of
-    several `axes` is a table for each point: mode shapes [mode, inertia].
+    A profile is valid only as a whole: one place outside its domain makes the whole profile of that point
+    invalid. `along` is the name of the profile that gives the positions of the places; that profile names
+    itself. A profile of several `axes` is a table for each point, such as mode shapes [mode, inertia].
     """
 
     def __init__(
@@ -175,20 +175,20 @@ class Profile(Formula[T]):
         self.along, self.axes = along, axes
 
     def inside(self, places: NDArray[np.bool_]) -> Any:
-        """Return the mask of the points all of whose places hold."""
+        """Return the mask of the points at which the condition is true at all places."""
         return np.all(places, axis=tuple(range(-self.axes, 0)))
 
     def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return points as an array that goes with the profile."""
+        """Return values of points as an array that broadcasts along the profile."""
         return points[(..., *(None,) * self.axes)]
 
 
 class Text(Formula[T]):
-    """An output in words; empty where it does not exist."""
+    """An output that is text; empty if it does not exist."""
 
 
 class Shared(Generic[T]):
-    """An intermediate result that several formulas use: computed at its first use, then kept; no output."""
+    """An intermediate result of several formulas: computed when first used, then stored; not an output."""
 
     attribute: str
 
@@ -211,21 +211,21 @@ class Shared(Generic[T]):
 
     @cached_property
     def uses(self) -> tuple[str, ...]:
-        """Return the attributes of the template that it refers to."""
+        """Return the attributes of the template to which the function refers."""
         return attributes_used(self.function)
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """Return the inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs that the function reads as given, without the formula of their default."""
         return inputs_read_as_given(self.function)
 
 
 Input = Given | Choice | Derived[Any]
-"""What a user gives, or what stands for it."""
+"""An input in any form of declaration."""
 
 
 class Requirement:
-    """A rule between inputs; where it does not hold, the inputs it names are refused."""
+    """A rule between inputs; if it is broken, the inputs that it names are refused."""
 
     def __init__(
         self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str, missing: bool, warning: str
@@ -245,5 +245,5 @@ class Requirement:
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """Return the inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs that the rule reads as given, without the formula of their default."""
         return inputs_read_as_given(self.function)

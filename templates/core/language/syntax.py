@@ -1,4 +1,4 @@
-"""A formula's source as a syntax tree: the returned expression and the names that it uses."""
+"""Read the source of a formula as a syntax tree: the returned expression and the names that it uses."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from templates.core.language.syntax_trees import parse
 
 
 def returned(function: Callable[..., Any]) -> ast.expr:
-    """Return the expression that a function of one `return` returns.
+    """Return the expression that a function with a single `return` returns.
 
     Raises
     ------
     TypeError
-        If the function does more than return an expression (branches live in physics functions), or is the
-        body of a worksheet, which has no Python source.
+        If the function does more than return an expression (branches belong in physics functions), or is a
+        worksheet body, which has no Python source.
     """
     if isinstance(function, Body):
         raise TypeError("a formula of a worksheet has no Python source")
@@ -39,7 +39,7 @@ def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
-    """Return the names x in `self.x` and `getattr(self, "x")` in a method, each once, in order."""
+    """Return the names x in `self.x` and `getattr(self, "x")` in a method, once each, as they appear."""
     if isinstance(function, Body):
         return function.uses
     return _in_order(function, _used)
@@ -48,7 +48,7 @@ def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
 def inputs_read_as_given(function: Callable[..., Any]) -> tuple[str, ...]:
     """Return the names x in `self.as_given("x")` within a method.
 
-    The value is used, the formula of x is not.
+    The method uses the given value of x, not its formula.
     """
     if isinstance(function, Body):
         return ()
@@ -83,7 +83,7 @@ def _read_as_given(node: ast.AST) -> str | None:
 
 
 def lines_of_attributes(function: Callable[..., Any]) -> dict[str, int]:
-    """Return the first line in which a method names each attribute x, as `self.x` or by a text."""
+    """Return the first line on which a method uses each attribute x, as `self.x` or as a string."""
     first = function.__code__.co_firstlineno
     lines: dict[str, int] = {}
     for node in ast.walk(syntax(function)):

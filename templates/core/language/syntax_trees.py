@@ -29,7 +29,7 @@ def parse(source: str) -> ast.Module:
 
 
 def lines_of(cls: type) -> tuple[list[str], int]:
-    """Return the source lines of a class and the number of the first, found by `inspect` in a syntax tree.
+    """Return the source lines of a class and the number of the first, which `inspect` finds in a tree.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def lines_of(cls: type) -> tuple[list[str], int]:
 
 
 def _unlock_in_child() -> None:
-    """Unlock in a forked process: it would otherwise wait for a parsing thread that it does not have."""
+    """Release the lock in a forked process, whose copy of the lock may belong to a thread of the parent."""
     global _ONE_AT_A_TIME
     _ONE_AT_A_TIME = threading.RLock()
 

@@ -1,7 +1,7 @@
-"""Template: declare each given and each formula once; everything else is derived.
+"""The base class of templates: each given and each formula is declared once, and the rest is derived.
 
-A template is a class in a file `<id>_v<version>.py`. Its instance holds SI values: givens as attributes,
-formulas evaluated at their first use and then kept. The same code runs for one point and for 10⁶.
+A template is a class in a file `<id>_v<version>.py`. Its instance has SI values: givens are attributes, and
+formulas are evaluated when first used and then stored. The same code handles one point and 10⁶ points.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ class Template(Calculation):
 
     @classmethod
     def _own_words(cls) -> set[str]:
-        """Return the attributes of the bases that are part of the language."""
+        """Return the attributes of the base classes that belong to the language."""
         bases = (vars(base) for base in cls.__mro__[1:])
         return {name for own in bases for name, v in own.items() if not isinstance(v, Declaration)}
 
@@ -108,7 +108,7 @@ class Template(Calculation):
 
     @classmethod
     def summary(cls) -> str:
-        """Return the first paragraph of the docstring, or of its module."""
+        """Return the first paragraph of the docstring of the class, or of its module."""
         return " ".join(cls.documentation().split("\n\n")[0].split())
 
     @classmethod
@@ -118,16 +118,15 @@ class Template(Calculation):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a template from typed inputs: read, convert to SI, check.
+        """Return a template from typed inputs: read them, convert them to SI, and check them.
 
-        Once, before any formula runs.
-
-        `pending` are inputs that come later: they are not required, and no rule about them is checked.
+        This happens once, before any formula is evaluated. Inputs in `pending` will be given later: they are
+        not required yet, and rules that depend on them are not checked.
 
         Raises
         ------
         InvalidInputs
-            Naming all wrong inputs at once.
+            With all wrong inputs at once.
         """
         if (inputs := plain(cls, raw)) is not None:
             ledger = Ledger(typed=inputs.typed, missing=inputs.missing)
@@ -142,9 +141,9 @@ class Template(Calculation):
         return cls._checked(intake.values, ledger, pending)
 
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
-        """Return the same inputs at another level.
+        """Return a template with the same inputs at another level.
 
-        Only those points of arrays where `where` holds, if given.
+        If `where` is given, only the points of arrays where it is true are included.
         """
         names = (declared.attribute for declared in self.inputs.values())
         values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
@@ -156,7 +155,7 @@ class Template(Calculation):
         return type(self)({**values, "level": level}, ledger)
 
     def shape_of_points(self) -> tuple[int, ...]:
-        """Return the shape of the points that the inputs make; a curve is one thing for each."""
+        """Return the common shape of the points of all inputs; the last axis of a curve does not count."""
         given = vars(self)
         arrays = {name: given[name] for name in self.ledger.handed if isinstance(given[name], np.ndarray)}
         return points_of(self, arrays) if arrays else ()
@@ -166,34 +165,34 @@ class Template(Calculation):
         return self.levels
 
     def is_measured(self) -> bool:
-        """Return whether the measured errors apply to such inputs."""
+        """Return whether the measured errors apply to these inputs."""
         return True
 
     def measured_case(self) -> str:
-        """Return the measured case of such inputs, where errors were measured apart for several."""
+        """Return the case of these inputs, for templates whose errors were measured for several cases."""
         return ""
 
     def states_own_errors(self) -> bool:
-        """Return whether the level's own error estimate applies to such inputs, not the measured errors."""
+        """Return whether the level's own error estimate replaces measured errors for these inputs."""
         return True
 
     def own_error(self, output: str) -> Array:
-        """Return the relative error of an output that the level itself states; NaN without one [-]."""
+        """Return the relative error of an output by the level's own estimate [-]; NaN without one."""
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:
-        """Return the default level."""
+        """Return the default level, or the finest level if the default cannot calculate these inputs."""
         ladder = self.ladder()
         return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
-        """Return the masks of inputs; those of formulas are recalculated at the new level."""
+        """Return the masks of inputs; masks of formulas are recalculated at the new level."""
         inputs = {declared.attribute for declared in self.inputs.values()}
         return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
 
     @classmethod
     def from_si(cls, values: Mapping[str, Any]) -> Self:
-        """Return a template from SI values by API name, checked like a user's."""
+        """Return a template from SI values by API name, checked like a user's inputs."""
         return cls.from_quantities({name: as_typed(cls, name, value) for name, value in values.items()})
 
     @classmethod
@@ -204,7 +203,7 @@ class Template(Calculation):
 
     @classmethod
     def _kept(cls, self: Self, pending: Collection[str]) -> Self:
-        """Return the template, if it satisfies its rules."""
+        """Return the template if it satisfies its rules, else raise `InvalidInputs`."""
         with np.errstate(all="ignore"):
             faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:
@@ -213,7 +212,7 @@ class Template(Calculation):
 
     @classmethod
     def _due(cls, pending: Collection[str]) -> list[Requirement]:
-        """Return the rules that are not about inputs which are pending."""
+        """Return the rules that do not depend on pending inputs."""
         return [rule for rule in cls.requirements if not cls._waits(rule, pending)]
 
     @classmethod
@@ -224,12 +223,12 @@ class Template(Calculation):
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
 
     def inputs_si(self) -> dict[str, Any]:
-        """Return every input in SI by API name, defaults included."""
+        """Return every input in SI by API name, including defaults."""
         with np.errstate(all="ignore"):
             return {name: getattr(self, declared.attribute) for name, declared in self.inputs.items()}
 
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
-        """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
+        """Return a checked result of a formula: refuse a point, mask points of an array, or warn."""
         meaning = declaration.meaning
         if meaning.per_level:
             meaning = meaning.at(self.level)

@@ -1,4 +1,4 @@
-"""Warn about tolerances where a calculation uses only the value."""
+"""Warn about tolerances that a calculation ignores."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DETAIL = (
 
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
-    """Yield a warning for every quantity, as typed or as read, that has a tolerance."""
+    """Yield a warning for every typed or read quantity that has a tolerance."""
     for name, value in given.items():
         if value.tolerance if isinstance(value, TypedQuantity) else is_toleranced(value):
             yield Notice(UNUSED, name, DETAIL)

@@ -1,4 +1,4 @@
-"""The warning `tolerance_unmet`: errors that exceed the tolerance of a request, or are not stated at all."""
+"""The warning `tolerance_unmet`: errors that exceed the requested tolerance, or are unknown."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ CODE = "tolerance_unmet"
 def unmet(
     cls: type[Template], values: Mapping[str, Any], errors: Mapping[str, Any], level: Any, tolerance: float
 ) -> list[Notice]:
-    """Return a warning for every output with a larger error, and one for all with an unknown error.
+    """Return a warning for each output with too large an error, and one for all with an unknown error.
 
-    `values` and `errors` are those of the answer, None or NaN where there is none; an output without a value
-    needs no error.
+    `values` and `errors` are those of the answer, with None or NaN for missing ones; an output without a
+    value needs no error.
     """
     if accuracy(cls) is None:
         detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
@@ -36,7 +36,7 @@ def unmet(
 
 
 def _of_values(formula: Formula[Any], value: Any, error: Any) -> Array:
-    """Return the errors of those points that have a value, in a row."""
+    """Return the errors of the points that have a value, as a one-dimensional array."""
     if value is None:
         return np.empty(0)
     there = ~np.isnan(value)

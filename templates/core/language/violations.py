@@ -1,4 +1,4 @@
-"""The sentence for a broken rule, which states the values, built from the comparisons of the rule.
+"""Write the sentence for a broken rule from the values in the rule's comparisons.
 
 The docstring of a rule states the requirement. For a broken rule it would state the opposite of the facts, so
 this module does not use it.
@@ -23,12 +23,12 @@ from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.units.units import Unit, unit, unit_symbol
 
 UNUSED = "unused_input"
-"""The code of a warning about an input that changes nothing."""
+"""The code of a warning about an input that has no effect."""
 _ATTRIBUTE = re.compile(r"\bself\.(\w+)")
 
 
 def violation(template: Calculation, rule: Requirement, name: str) -> str:
-    """Return a sentence on the violation of a rule, for the warning about one of its names."""
+    """Return a sentence on a broken rule, for a warning about one of its names."""
     if stated := stated_case(template, rule):
         return stated
     if rule.warning == UNUSED:
@@ -39,7 +39,7 @@ def violation(template: Calculation, rule: Requirement, name: str) -> str:
 
 
 def required(rule: Requirement) -> str:
-    """Return what a rule requires, as refusals say it behind the case."""
+    """Return the requirement of a rule, in the form that a refusal appends to the actual case."""
     return f"required: {rule.sentence}; {rule.remedy}"
 
 
@@ -51,7 +51,7 @@ def stated_case(template: Calculation, rule: Requirement) -> str:
 
 
 def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np.bool_], str]]:
-    """Return where each comparison is false, with its words; nothing if one has none."""
+    """Return each false comparison in words with the points where it is false; empty if one has no words."""
     with np.errstate(all="ignore"):
         broken = list(_broken(outcome(template, rule)))
     written = [(np.asarray(one.where), _related(template, one)) for one in broken]
@@ -59,7 +59,7 @@ def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np
 
 
 def _related(template: Calculation, comparison: Comparison) -> str:
-    """Return a false comparison in words, with only the numbers of the rule; empty without words."""
+    """Return a false comparison in words, with no numbers except those in the rule; empty without words."""
     sides = comparison.left, comparison.right
     scale = _common_scale(template, comparison)
     words = [
@@ -81,7 +81,7 @@ def _common_scale(template: Calculation, comparison: Comparison) -> Unit | None:
 
 
 def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
-    """Yield the false comparisons; alternatives at the points where none holds."""
+    """Yield the false comparisons; those of alternatives at the points where none of these holds."""
     fails = np.asarray(where, dtype=bool) & ~np.asarray(result.value, dtype=bool)
     if not fails.any():
         return
@@ -125,13 +125,13 @@ def _scale(template: Calculation, side: Operand) -> Unit | None:
 
 
 def _number_of(left: Operand, right: Operand) -> Unit | None:
-    """Return the unit of two sides whose numbers need none: one of them is a constant that is not small."""
+    """Return the unit 1 if one side is a constant large enough to need no unit, else None."""
     constants = [side.constant for side in (left, right) if side.constant is not None]
     return unit("1") if any(abs(one) >= 1e-2 for one in constants) else None
 
 
 def _words(template: Calculation, side: Operand) -> str:
-    """Return a side in words; empty for a constant, and for unprintable expressions."""
+    """Return the words of a side; empty for a constant or an expression that cannot be printed."""
     if side.node is None or side.constant is not None:
         return ""
     if side.attribute is not None:
@@ -141,7 +141,7 @@ def _words(template: Calculation, side: Operand) -> str:
 
 
 def _called(template: Calculation, attribute: str) -> str:
-    """Return the words of an input, an output, or an intermediate result."""
+    """Return the label of an input, an output, or an intermediate result."""
     declared = template.declarations.get(attribute)
     if declared is not None:
         return declared.meaning.words
@@ -151,7 +151,7 @@ def _called(template: Calculation, attribute: str) -> str:
 
 
 def _given(template: Calculation, name: str) -> str:
-    """Return an input in words, with its value where that is a single one."""
+    """Return an input as text, with its value if that is a single one."""
     declared: Declaration = template.inputs[name]
     value = getattr(template, declared.attribute)
     if isinstance(value, str):

@@ -1,1 +1,1 @@
-"""Formulas, reports, checks and schemas for readers."""
+"""Formulas, reports, checks and schemas as users read them."""

@@ -1,4 +1,4 @@
-"""The criteria of a template as plain values, for its description, its page and the handbook."""
+"""Describe the criteria of a template as plain values for its description, its page and the handbook."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from templates.core.language.template import Template
 
 
 def described_criteria(cls: type[Template]) -> list[dict[str, Any]]:
-    """Return every criterion in the order of the class, with the limits that its user gives."""
+    """Return the description of every criterion in the order of the class, with the limits of its user."""
     return [_criterion(criterion) for criterion in cls.declared_criteria]
 
 
@@ -26,7 +26,7 @@ def _criterion(criterion: Criterion) -> dict[str, Any]:
 
 
 def described_limit(limit: Limit) -> dict[str, Any]:
-    """Return a limit that the user of a template gives; its default as a formula."""
+    """Return a description of a limit that the user of a template gives, with its default as a formula."""
     default = None if limit.default is None else f"{limit.default[0]}({limit.default[1]})"
     return {
         "name": limit.name,

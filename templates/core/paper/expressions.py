@@ -1,4 +1,4 @@
-"""An expression of a relation or worksheet on paper: LaTeX from its tree."""
+"""Print an expression of a relation or worksheet: LaTeX from its tree."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from templates.core.units.relation import is_relation, parse
 from templates.core.units.units import unit_symbol
 
 CONDITION = SUM - 1
-DEEPEST_ON_PAPER = 8  # the typesetter nests few formulas
-_NO_LATEX = str.maketrans("{}\\&", "()/+")  # in a text, what LaTeX or markup would read
-_TWO = {  # how it is written, how tightly it binds, and how tightly its sides must
+DEEPEST_ON_PAPER = 8  # the typesetter supports little nesting
+_NO_LATEX = str.maketrans("{}\\&", "()/+")  # characters in a text that LaTeX or markup would interpret
+_TWO = {  # LaTeX, precedence, and the least precedence of both sides
     "+": ("{}+{}", SUM, SUM, SUM),
     "-": ("{}-{}", SUM, SUM, PRODUCT),
     "/": (r"\frac{{{}}}{{{}}}", PRODUCT, CONDITION, CONDITION),
@@ -52,16 +52,16 @@ _BRACKETS = {
 
 
 def latex(node: Any, symbols: Mapping[str, str], times: str = r"\,", least: int = CONDITION) -> str:
-    """Return the LaTeX of a tree, in parentheses where it binds more loosely than `least`.
+    """Return the LaTeX of a tree, in parentheses if it binds more loosely than `least`.
 
     Parameters
     ----------
     node
         The tree.
     symbols
-        The symbols, or numbers, of its names; a name without one is written as it is called.
+        The symbols of its names, or numbers; a name without a symbol is printed as it is.
     times
-        The sign of multiplication.
+        The multiplication sign.
     """
     return _Writer(symbols, times).within(node, least)
 
@@ -69,7 +69,8 @@ def latex(node: Any, symbols: Mapping[str, str], times: str = r"\,", least: int 
 def relation_latex(raw: object) -> str:
     """Return the LaTeX of a relation as typed.
 
-    Empty where it is a name alone, too deep to be read on paper, a list of relations, or none.
+    The result is empty for a single name, a list of relations, text that is not a relation, and a relation
+    nested too deeply to be readable.
     """
     try:
         relation = parse(str(raw)) if is_relation(raw) else None
@@ -133,7 +134,7 @@ class _Writer:
         return f"{one}{times}{other}", PRODUCT
 
     def joined(self, part: Any, sign: str) -> str:
-        """Return a part of `and` or `or`, in parentheses where the two mix."""
+        """Return an operand of `and` or `or`, in parentheses if the two are mixed."""
         inner = part.operation.sign if hasattr(part, "operation") else ""
         return self.within(part, ATOM if inner in ("and", "or") and inner != sign else CONDITION)
 
@@ -157,7 +158,7 @@ class _Writer:
 
 
 def _constant(text: str) -> Written:
-    """Return a constant as it was typed."""
+    """Return the LaTeX of a constant as it was typed."""
     if not text:
         return r"\pi", ATOM
     number, _, unit = text.partition(" ")
@@ -169,14 +170,14 @@ def _constant(text: str) -> Written:
 
 
 def _symbol(block: str, name: str) -> str:
-    """Return a letter with its index, or words; behind it the block to which it belongs."""
+    """Return the LaTeX of a name: a letter with its index, or words, then the block to which it belongs."""
     symbol = named_symbol(name)
     own = symbol if not symbol.startswith(r"\mathrm") else _roman(name)
     return _indexed(own, _roman(block))
 
 
 def _indexed(symbol: str, index: str) -> str:
-    """Return a symbol with an index, behind the one that it has already."""
+    """Return a symbol with a further index after its existing one."""
     if not index:
         return symbol
     return f"{symbol[:-1]},{index}}}" if symbol.endswith("}") and "_{" in symbol else f"{symbol}_{{{index}}}"
@@ -187,5 +188,5 @@ def _roman(name: str) -> str:
 
 
 def _words(text: str) -> str:
-    """Return a text upright; a percent sign stands outside, where it begins no comment."""
+    """Return a text in upright letters, with percent signs outside it, where they do not begin a comment."""
     return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

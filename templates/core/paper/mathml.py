@@ -1,6 +1,7 @@
-"""Print a formula from its code: LaTeX by walking the syntax tree, MathML from the LaTeX.
+"""Print a formula from its code: LaTeX from the syntax tree, then MathML from the LaTeX.
 
-Calls of physics functions are written out if they are one expression, or by the LaTeX that they carry.
+Calls of physics functions are expanded if the function is a single expression, or printed by their declared
+LaTeX.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from templates.core.language.template import Template
 from templates.core.units.units import unit_symbol
 
 SUM, PRODUCT, POWER, ATOM = range(4)
-Written = tuple[str, int]  # LaTeX, and how tightly its outermost operation binds
+Written = tuple[str, int]  # LaTeX, and the precedence of its outermost operation
 
 _GREEK = {
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "pi",
@@ -31,15 +32,15 @@ _GREEK = {
 _OPERATOR = re.compile(
     r"\\operatorname\{([^{}]*)\}"
 )  # which latex2mathml would set in italics, letter by letter
-_NAMES = re.compile(r"(<mi>(?:lg|ln|exp|sin|cos|tan)</mi>)(?=<m(?!o[ >]))")  # but for before a bracket
-_KEPT = 16 * 2**20  # formulas that were converted already [bytes]
-_LESS, _MORE = "\ue000", "\ue001"  # private letters, which no formula has
+_NAMES = re.compile(r"(<mi>(?:lg|ln|exp|sin|cos|tan)</mi>)(?=<m(?!o[ >]))")  # except before a bracket
+_KEPT = 16 * 2**20  # size of the cache of converted formulas [bytes]
+_LESS, _MORE = "\ue000", "\ue001"  # private-use characters, which no formula contains
 _SPECIAL = {"eps": r"\varepsilon"}
 _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "cos": r"\cos", "tan": r"\tan"}
 
 
 def symbol(declared: Declaration) -> str:
-    r"""Return the printed symbol: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
+    r"""Return the printed symbol: the declared one, else one from the attribute, as `nu_1` → `\nu_{1}`."""
     return declared.meaning.symbol or named_symbol(declared.attribute)
 
 
@@ -79,23 +80,23 @@ def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r
 
 
 def tightness(text: str) -> int:
-    """Return the precedence of a symbol or a number with its unit."""
+    """Return the precedence of a symbol or of a number with its unit."""
     if text.startswith("-"):
         return SUM
     return PRODUCT if r"\," in text or "cdot" in text else ATOM
 
 
 def symbols(cls: type[Template]) -> dict[str, str]:
-    """Return the symbol of every declaration, by attribute."""
+    """Return the symbol of each declaration, by attribute."""
     return {attribute: symbol(declared) for attribute, declared in cls.declarations.items()}
 
 
 @cached(LRUCache(_KEPT, getsizeof=getsizeof), lock=Lock())
 def mathml(latex: str) -> str:
-    """Return LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
-    import latex2mathml.converter  # long beside a command that writes no formula
+    """Return LaTeX as MathML for browsers; texts quoted from a user are escaped."""
+    import latex2mathml.converter  # slow to import, and many commands print no formula
 
-    # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.
+    # latex2mathml does not escape texts, so placeholders replace the angle brackets during conversion.
     upright = _OPERATOR.sub(_upright, latex)
     markup: str = latex2mathml.converter.convert(upright.replace("<", _LESS).replace(">", _MORE))
     for letter, entity in ((_LESS, "&lt;"), (_MORE, "&gt;")):
@@ -109,7 +110,7 @@ def _upright(operator: re.Match[str]) -> str:
 
 
 class Writer:
-    """Writes expressions; `attributes` stand for `self.x`, `names` for a physics function's arguments."""
+    """Prints expressions; `attributes` replace `self.x`, `names` replace a physics function's arguments."""
 
     def __init__(
         self,
@@ -148,7 +149,7 @@ class Writer:
         raise TypeError(f"{ast.unparse(node)!r} is not allowed in a formula; move it to a physics function")
 
     def _in(self, node: ast.expr, tightness: int) -> str:
-        """Return the LaTeX of a node, in parentheses where it binds more loosely than its place needs."""
+        """Return the LaTeX of a node, in parentheses if it binds more loosely than its context requires."""
         text, own = self.write(node)
         return text if own >= tightness else rf"\left({text}\right)"
 
@@ -180,7 +181,7 @@ class Writer:
         return self._physics(name, [self.write(argument) for argument in node.args])
 
     def _physics(self, name: str, arguments: list[Written]) -> Written:
-        """Return a physics function: by the LaTeX it carries, written out, or by its name if it cannot be."""
+        """Return the LaTeX of a physics function: declared, expanded, or a call by its name."""
         function = self.scope.get(name)
         latex = getattr(function, "latex", None)
         if latex:
@@ -188,7 +189,7 @@ class Writer:
         return (callable(function) and self._written_out(function, arguments)) or _named(name, arguments)
 
     def _filled_in(self, latex: str, arguments: list[Written]) -> str:
-        """Return the LaTeX of a physics function with its arguments, in brackets where needed."""
+        """Return the declared LaTeX of a physics function with its arguments, in parentheses where needed."""
         shown = latex.replace(r"\,", self.times)
         for place, (_, tightness) in enumerate(arguments):
             mark, bracketed = f"{{{place}}}", rf"\left({{{place}}}\right)"
@@ -200,7 +201,7 @@ class Writer:
         return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
-        """Return the expression that a function returns, if this is all that it does and it is a formula."""
+        """Return the expression that a function returns if it does nothing else and can be printed."""
         try:
             body, parameters = returned(function), syntax(function).args.args
             names = dict(zip((p.arg for p in parameters), arguments, strict=True))

@@ -1,7 +1,7 @@
-"""The method of a result that has no printable formula, in words, for its line on paper.
+"""Describe in words the method of a result that has no printable formula, for its line in a report.
 
 A template reads such a result from a record, as in `self.film.attitude`. Its symbol alone would give an empty
-statement, `attitude = attitude`. The physics function that returned the record states its method by
+statement, `attitude = attitude`. The physics function that returned the record declares its method by
 `on_paper`.
 """
 
@@ -23,14 +23,14 @@ ANY_LEVEL = "solved numerically, by a method that depends on the level"
 def right_side(
     cls: type[Template], formula: Formula[Any], symbols: Mapping[str, str], level: str = ""
 ) -> tuple[str, bool]:
-    """Return the right side of the equation as LaTeX, and whether it is words and not a formula."""
+    """Return the right side of the equation as LaTeX, and whether it is text instead of a formula."""
     if words := _words(cls, formula, level):
         return rf"\text{{{words}}}", True
     return expression(formula, symbols), not getattr(formula.function, "has_numbers", True)
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
-    """Return the method of a result in words, if it has no formula."""
+    """Return the method of a result in words if it has no formula, else None."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
         return None
     if isinstance(formula.function, Body):
@@ -46,7 +46,7 @@ def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None
 
 
 def _is_read(node: ast.expr) -> bool:
-    """Return whether an expression is nothing but a part of a record, as `self.film.attitude`."""
+    """Return whether an expression only reads a field of a record, such as `self.film.attitude`."""
     return isinstance(node, ast.Attribute) and _of_self(node.value) is not None
 
 
@@ -58,7 +58,7 @@ def _of_self(node: ast.expr) -> str | None:
 
 
 def _maker(cls: type[Template], node: ast.expr, scope: Mapping[str, Any]) -> Callable[..., Any] | None:
-    """Return the physics function that returns a value, or the record that contains the value."""
+    """Return the physics function that computes a value, or the record that contains the value."""
     match node:
         case ast.Call(func=ast.Name(id=name)):
             function: Callable[..., Any] | None = scope.get(name)

@@ -17,7 +17,7 @@ from templates.core.units.units import unit
 
 @dataclass(frozen=True)
 class Row:
-    """One formula on paper; `numbers` and `result` are empty where an array has no single value."""
+    """One printed formula; `numbers` and `result` are empty if an array has no single value."""
 
     name: str
     words: str
@@ -42,9 +42,9 @@ NONE = r"\text{none}"
 
 
 def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator[Row]:
-    """Yield the report lines of every formula that the template has evaluated so far.
+    """Yield the report line of every formula that the template has evaluated so far.
 
-    `units` names other units than the declared ones, by attribute.
+    `units` gives other units than the declared ones, by attribute.
     """
     cls = type(template)
     names, shown_in = symbols(cls), units or {}
@@ -54,7 +54,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
             side, is_words = right_side(cls, formula, names, template.level)
-            # a worksheet tests a choice: "law = walther", not "vogel = walther"
+            # a worksheet compares a choice: "law = walther", not "vogel = walther"
             filled = {**values, **tested} if isinstance(formula.function, Body) else values
             complete = not is_words and all(values.get(used) not in (None, "", NONE) for used in formula.uses)
             yield Row(
@@ -71,7 +71,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
 def shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
     """Return the value of a declaration with its unit, as LaTeX; empty if missing or an array.
 
-    A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
+    A temperature inside an expression is printed in kelvin, because sums and ratios are valid only there.
     """
     declared = template.declarations[attribute]
     if isinstance(declared, Choice):

@@ -1,4 +1,4 @@
-"""The JSON Schema of a template's inputs and outputs, and its description, derived from the declarations."""
+"""Derive the JSON Schema of a template's inputs and outputs, and its description, from its declarations."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum"
 
 
 def describe(cls: type[Template]) -> dict[str, Any]:
-    """Return the description of one version for a form, a client or a reader."""
+    """Return the description of a version for a form, a client or a reader."""
     sections = documentation(cls)
     return {
         "id": cls.id,
@@ -68,11 +68,9 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 
 
 def limits_schema(cls: type[Template]) -> dict[str, Any]:
-    """Return the JSON Schema of the object `limits`.
+    """Return the JSON Schema of the object `limits`, which the criteria use and the calculation does not.
 
-    What the criteria compare with and the calculation does not take.
-
-    A choice of the library stands once, before all limits; a limit that its rows fill names it as `from`.
+    A choice from the library comes first, before all limits; a limit filled from its rows names it in `from`.
     """
     limits = {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
     rows = dict.fromkeys(limit.library for limit in limits.values() if limit.library)
@@ -136,7 +134,7 @@ def _default(cls: type[Template], declared: Input) -> dict[str, Any]:
 
 
 def _quantity_in(declared: Declaration) -> dict[str, Any]:
-    """Return the written forms of a quantity: text, object, and bare numbers where the unit is 1."""
+    """Return the accepted forms of a quantity: text, object, and a bare number if the unit is 1."""
     values = {"type": "array", "minItems": 1}
     listed = isinstance(declared, Table) or (isinstance(declared, Curve) and not declared.constant)
     single = is_single(declared)
@@ -185,7 +183,7 @@ def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, An
 
 
 def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterator[str]:
-    """Yield the names of declarations that are used, directly or by a shared intermediate."""
+    """Yield the names of declarations that a formula uses, directly or through intermediate results."""
     for attribute in attributes:
         if attribute in cls.declarations:
             yield cls.declarations[attribute].name
@@ -195,10 +193,7 @@ def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterato
 
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
-    """Return every bound and rule, in words.
-
-    Where a value is refused, and where an answer carries a warning.
-    """
+    """Return every bound and rule in words: those that refuse a value, and those that only give a warning."""
     ranges: list[dict[str, Any]] = []
     for declared in cls.declarations.values():
         meaning = declared.meaning
@@ -228,7 +223,7 @@ def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:
 
 
 def documentation(cls: type[Template]) -> Mapping[str, list[str]]:
-    """Return the sections of the docstring (Limits, Errata, References), each as its paragraphs or lines.
+    """Return the sections of the docstring (Limits, Errata, References), each as paragraphs or lines.
 
     A line that begins a new sentence begins a new item; other lines continue the item.
     """

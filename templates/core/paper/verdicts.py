@@ -1,7 +1,7 @@
 """The checks of a calculation report: every bound and rule of a template, compared with its values.
 
-Each check states the requirement, the value, and the used share of the allowance. Nothing is refused here: a
-template instance has passed the rules that refuse; only rules that warn may be broken.
+Each check gives the requirement, the value, and the ratio of value to limit. Nothing is refused here: a
+template instance has passed the rules that refuse, so only rules that warn may be broken.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from templates.core.units.units import Unit
 Kind = Literal["domain", "published", "rule", "warning"]
 
 _SIGNS = {"<": "<", "<=": r"\le ", ">": ">", ">=": r"\ge "}
-_SMALL = 1e-2  # of a number in a rule
+_SMALL = 1e-2  # numbers in a rule below this may be SI values
 
 
 @dataclass(frozen=True)
 class Check:
-    """One bound or rule; `demand` and `numbers` are LaTeX, empty where there is no formula or no one value.
+    """One bound or rule; `demand` and `numbers` are LaTeX, empty without a formula or a single value.
 
-    `used` is the share of the allowance that is used, at the worst point; None where it has no meaning.
+    `used` is the ratio of the value to its limit at the worst point; None if it has no meaning.
     """
 
     name: str
@@ -46,11 +46,11 @@ class Check:
     broken: int = 0  # points at which it does not hold
     points: int = 1
     source: str | None = None
-    violation: str = ""  # of a rule that does not hold: what is, in words
+    violation: str = ""  # of a broken rule: the actual relation in words
 
 
 def checks(template: Template) -> Iterator[Check]:
-    """Return every bound other than a sign, and every rule, as far as their values are calculated."""
+    """Yield a check for each bound other than a mere sign, and for each rule, whose values are calculated."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
         if isinstance(value, (float, np.ndarray)) and _has_number(value):
@@ -63,7 +63,7 @@ def checks(template: Template) -> Iterator[Check]:
 
 
 def _has_number(value: float | NDArray[np.generic]) -> bool:
-    """Return whether there is a finite number in a value; a text for each point has no bounds."""
+    """Return whether a value contains a finite number; an array of texts has no bounds."""
     numbers = np.asarray(value)
     return numbers.dtype.kind in "fiu" and bool(np.isfinite(numbers).any())
 
@@ -104,14 +104,14 @@ def _demanded(letter: str, bounds: Bounds, unit: str) -> str:
 
 
 def _share_of(bounds: Bounds, value: Any) -> float | None:
-    """Return the larger share of what a value uses of its lower and its upper limit."""
+    """Return the larger ratio of a value to its upper limit or of its lower limit to the value."""
     highs = [worst_share(value, limit) for limit in (bounds.lt, bounds.le) if limit is not None]
     lows = [worst_share(limit, value) for limit in (bounds.gt, bounds.ge) if limit]
     return max((share for share in (*highs, *lows) if share is not None), default=None)
 
 
 def _of_rule(template: Template, rule: Requirement) -> Check | None:
-    """Return a rule as satisfied or violated; None if it compared nothing because a limit is missing."""
+    """Return a check of a rule; None if it compared nothing because a limit is missing."""
     with np.errstate(all="ignore"):
         result = outcome(template, rule)
         decisive = list(result.decisive())
@@ -135,16 +135,16 @@ def _of_rule(template: Template, rule: Requirement) -> Check | None:
 
 
 def _lacks_an_input(template: Template, rule: Requirement) -> bool:
-    """Return whether one of the inputs that a rule names was not given, and follows from nothing."""
+    """Return whether an input that the rule names is neither given nor derived."""
     inputs = (template.inputs[name] for name in rule.names if name in template.inputs)
     values = (vars(template).get(declared.attribute) for declared in inputs)
     return any(isinstance(value, (float, np.ndarray)) and bool(np.isnan(value).all()) for value in values)
 
 
 def _written(template: Template, comparison: Comparison) -> tuple[str, str]:
-    """Return a comparison with symbols, and with numbers where all its values are single ones.
+    """Return a comparison with symbols, and with numbers if all its values are single ones.
 
-    Empty where a side cannot be written: the sentence of the rule says what it demands.
+    Both are empty if a side cannot be printed; the sentence of the rule then states the requirement.
     """
     left, right = comparison.left, comparison.right
     if left.node is None or right.node is None or _misleads(template, left, right):
@@ -169,7 +169,7 @@ def _joined(
 ) -> str:
     """Return both sides with the sign between them.
 
-    As demanded, or the one that is true of numbers filled in.
+    The sign is the required one, or the true one if numbers are filled in.
     """
     attributes = {name: (text, 1 if r"\," in text else 3) for name, text in texts.items()}
     writer = Writer({}, attributes, {}, times)
@@ -179,7 +179,7 @@ def _joined(
 
 
 def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> str:
-    """Return one side; a number in the unit of the input or output with which it is compared."""
+    """Return one side; a number is given in the unit of the input or output to which it is compared."""
     scale = _scale(template, other)
     if not side.constant or scale is None or scale.text == "1":
         assert side.node is not None
@@ -190,13 +190,13 @@ def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> 
 
 
 def _scale(template: Template, side: Operand) -> Unit | None:
-    """Return the unit of a side that is a value of the template, as it stands there."""
+    """Return the declared unit of a side that is a value of the template, else None."""
     declared = template.declarations.get(side.attribute or "")
     return declared.meaning.scale if declared else None
 
 
 def _misleads(template: Template, left: Operand, right: Operand) -> bool:
-    """Return whether a side is a small number in SI whose unit is not known, as lengths in metres are."""
+    """Return whether a side is a small SI number of unknown unit, such as a length in metres."""
     pairs = ((left, right), (right, left))
     return any(_is_small(one.constant) and _scale(template, other) is None for one, other in pairs)
 

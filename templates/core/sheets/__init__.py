@@ -1,7 +1,7 @@
-"""Worksheets: an engineer's text is checked and becomes a template class like one from a file.
+"""Worksheets: the text of an engineer is checked and becomes a template class like one from a file.
 
-`read` gives a `Sheet`, or raises `SheetRefused` with all faults; `Sheet.template` makes the class, and
-`run_tests` runs the tests that the worksheet holds. The language: `docs/reference/worksheets.md`.
+`read` returns a `Sheet`, or raises `SheetRefused` with all faults. `Sheet.template` creates the class, and
+`run_tests` runs the tests in the worksheet. `docs/reference/worksheets.md` describes the language.
 """
 
 from templates.core.sheets.faults import SheetFault, SheetRefused

@@ -1,4 +1,4 @@
-"""A checked tree in place of a formula's function: called with a template, it returns the value."""
+"""Checked expression trees in place of a formula's function; a call with a template returns the value."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _SIGNS = {
 _JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
-PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # of an operation, and beside it at each point [s]
+PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # time per operation, and additional time per point [s]
 
 
 def operations_seconds(operations: int, points: int) -> float:
-    """Return the time that operations take at a number of points, an order of magnitude [s]."""
+    """Return the approximate time of operations at a number of points, to an order of magnitude [s]."""
     return operations * (PER_OPERATION + PER_PLACE * points)
 
 
 def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
-    """Return the refusal where lists of different lengths meet.
+    """Return the error for lists of different lengths in one expression.
 
-    It names the result, or the inputs of a rule.
+    The error names the result, or the inputs of a rule.
     """
     declared = getattr(template, "declarations", {}).get(body.name)
     names = body.inputs or (declared.name if declared else f"line {body.line}",)
@@ -45,7 +45,7 @@ def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
 
 
 class TreeBody(Body):
-    """A tree whose units were checked; `name` is the attribute that it calculates."""
+    """A tree with checked units; `name` is the attribute that it calculates."""
 
     def __init__(self, node: Any, line: int, name: str = "") -> None:
         self.node, self.line, self.name = node, line, name
@@ -54,7 +54,7 @@ class TreeBody(Body):
         self.__qualname__ = f"line {line}"
         self._run = closure(node)
         self._explained = explained_in(node)
-        self.first: tuple[str, ...] = ()  # the formulas of a long chain beneath it, the deepest first
+        self.first: tuple[str, ...] = ()  # upstream formulas of a long chain, the deepest first
 
     def __call__(self, template: Any) -> Any:
         """Return the SI value for the values of a template.
@@ -83,19 +83,19 @@ class TreeBody(Body):
         return sum(1 for _ in nodes_of(self.node))
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """Return the expression in LaTeX, with symbols or numbers in the place of attributes."""
+        """Return the expression in LaTeX, with the given symbols or numbers in place of attributes."""
         return latex(self.node, {**self._letters, **symbols}, times)
 
     @cached_property
     def _letters(self) -> dict[str, str]:
-        """Return the symbols of curves, which are called by their names."""
+        """Return the symbols of curves, which expressions call by name."""
         return {one.sign: named_symbol(one.sign) for one, _ in self._explained}
 
 
 class RuleBody(TreeBody):
-    """A condition, whose comparisons a report can record; `sentence` is what the rule says.
+    """A condition whose comparisons a report can record; `sentence` states the rule.
 
-    One `of_items` of a list holds for all of them.
+    A condition on the items of a list (`of_items`) must be true for all of them.
     """
 
     def __init__(self, node: Any, line: int, sentence: str, *, of_items: bool) -> None:
@@ -106,12 +106,12 @@ class RuleBody(TreeBody):
 
 
 def _everywhere(run: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Return a condition on a list: it holds at all its places."""
+    """Return a condition on a list as one that is true if it is true at all places."""
     return lambda template: np.all(run(template), axis=-1)
 
 
 def _truth(node: Any) -> Callable[[Any], Any]:
-    """Return a condition as a function, its comparisons made by Python's operators, which records follow."""
+    """Return a condition as a function that uses Python's comparison operators, which can be recorded."""
     sign = node.operation.sign if isinstance(node, Apply) else ""
     if sign in _SIGNS:
         compare, left, right = _SIGNS[sign], *map(closure, node.arguments)

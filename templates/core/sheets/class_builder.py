@@ -1,4 +1,4 @@
-"""Build the parts of a worksheet's class from its statements; every fault is collected."""
+"""Build the parts of a worksheet's class from its statements, and collect every fault."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ _ORDER = (
     ("require", "check"),
     ("test",),
 )
-"""Functions are known to all others, rules know all quantities, tests know everything."""
+"""The order in which statements are read: functions first, then quantities, rules and tests."""
 
 
 class Builder:
-    """Reads statement after statement; what one refuses does not hide the faults of the next."""
+    """Reads the statements one by one; a fault in one statement does not hide those in the next."""
 
     def __init__(self, chunks: list[Chunk]) -> None:
         self.built, self.names = Built(), Names()
@@ -67,12 +67,12 @@ class Builder:
                 self._find_kinds()
 
     def _find_kinds(self) -> None:
-        """Find which names in K are temperatures and which differences, by their formulas, in any order."""
+        """Determine from formulas, in any order, which names in K are temperatures and which differences."""
         in_kelvin = [
             s for s in self.built.statements if s.kind in ("formula", "given") and self._in_kelvin(s)
         ]
         fuel, self.names.fuel = self.names.fuel, FUEL
-        for _ in in_kelvin:  # each round finds one at least, if any
+        for _ in in_kelvin:  # each round determines one or more, if any
             found = [statement for statement in in_kelvin if self._finds_kind(statement)]
             if not found:
                 break
@@ -98,11 +98,11 @@ class Builder:
         return self.names.sorts[name].kind != own.kind
 
     def _goes_on(self, statement: ParsedStatement) -> bool:
-        """Return whether to continue with a statement: a fault, or a worksheet that is too large, ends it."""
+        """Return whether to continue with a statement; a fault in it or too large a worksheet stops it."""
         return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
     def _try(self, step: Callable[[Any], None], statement: ParsedStatement | Chunk) -> None:
-        """Take a step, and note the fault that it meets."""
+        """Run a step, and note the fault that it raises."""
         try:
             step(statement)
         except Refusal as refusal:
@@ -193,7 +193,7 @@ class Builder:
     def _choose(
         self, statement: ParsedStatement, clause: Any, options: tuple[str, ...], parts: dict[str, Any]
     ) -> None:
-        """Sort a clause of a choice: an option as its example, or words."""
+        """Read a clause of a choice: an option that is its example, or words."""
         if clause.data != "example":
             parts.setdefault("said", []).append(clause)
             return
@@ -258,7 +258,7 @@ class Builder:
         for name, meant in zip(unknowns, meanings.values(), strict=True):
             body = LinearBody(name, system, statement.chunk.line)
             self._make(statement, name, Formula(body, meant), system.tree)
-        first = next(iter(meanings.values()))  # after which the line is called
+        first = next(iter(meanings.values()))  # the line is named after it
         self.built.note(statement, unknowns[0], first.unit, first.words, system.tree)
 
     def _require(self, statement: ParsedStatement) -> None:
@@ -299,7 +299,7 @@ class Builder:
     def _node(
         self, statement: ParsedStatement, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]
     ) -> tuple[Any, Kind]:
-        """Return the tree and kind of a value that is a list over an axis exactly where that is declared."""
+        """Return the tree and kind of a value; it must be a list over an axis exactly if that is declared."""
         part = self.reader.part(statement, tree)
         return self.reader.fitting(statement, part, meant.unit, name, tree, axis), part[1].kind
 
@@ -320,10 +320,7 @@ class Builder:
         return replace(meant, read_as=accepted) if unit(accepted).absolute else replace(meant, unit=accepted)
 
     def _accepted(self, statement: ParsedStatement, unit_text: str) -> str:
-        """Return the unit that determines the kind of a declaration in K from its formula.
-
-        Else as declared.
-        """
+        """Return the unit whose kind a declaration in K has by its formula; else the declared unit."""
         if statement.kind not in ("formula", "given") or kind_of(unit_text).temperatures != EITHER:
             return unit_text
         found = self.names.sorts[str(statement.parts[0])].kind

@@ -1,4 +1,4 @@
-"""Classes created from worksheets; a class pickles as its text."""
+"""Create classes from worksheets; such a class is pickled as its text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from templates.core.language.template import Template
 
 
 class SheetClass(type):
-    """The type of classes made from worksheets, by which pickle knows them."""
+    """The metaclass of classes created from worksheets, by which pickle recognises them."""
 
 
 def class_of(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Template]:

@@ -1,4 +1,4 @@
-"""The clauses of a declaration, `(> 0; example 48 mm; also "load")`: the meaning of a number."""
+"""Read the clauses of a declaration, `(> 0; example 48 mm; also "load")`, as the meaning of a number."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def meaning_of(
     reader: Reader,
     accepted: str,
 ) -> tuple[Meaning, Said]:
-    """Return the meaning of a declared number, and its example; its limits are of the kind of `accepted`.
+    """Return the meaning of a declared number, and its example; its limits have the kind of `accepted`.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     Raises
     ------
     Refusal
-        With code `too_large` or `name`, if they are too long, or there are none.
+        With code `too_large` or `name`, if the words are too long or missing.
     """
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
@@ -103,7 +103,7 @@ def said_in(
 
 
 def clause_name(clause: lark.Tree[Any]) -> str:
-    """Return the first words of a clause."""
+    """Return the first words of a clause, which name it."""
     return str(clause.children[0]) if clause.data in ("bound", "said") else str(clause.data)
 
 

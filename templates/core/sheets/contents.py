@@ -1,4 +1,4 @@
-"""The contents of a worksheet's statements, before they become a class."""
+"""The contents of a worksheet's statements before they become a class."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from templates.core.sheets.worksheet_tests import SheetTest
 
 Part = Declaration | Requirement
 RULE = "line"
-"""A rule stands in the class under its line, `line 14`: a name that no user can write."""
+"""The attribute of a rule is its line, such as `line 14`, a name that no user can write."""
 
 
 @dataclass(frozen=True)
 class Built:
-    """The contents of a worksheet's statements; `faults` are all that is wrong with them.
+    """The contents of a worksheet's statements; `faults` are all that were found in them.
 
     Attributes
     ----------
     parts
-        Declarations and rules by attribute.
+        Declarations and rules, by attribute.
     criteria
-        As a template declares them, by name.
+        Criteria in the form in which a template declares them, by name.
     example
-        By API name, as typed.
+        The example as typed, by API name.
     lines
-        Of API names.
+        The line of each API name.
     places
-        The line of each name; one that solves for several unknowns has several.
+        The line of each name; a statement that solves for several unknowns has several.
     called, said, trees
-        By line: the name that a statement declares, its words, and the tree that is written on paper.
+        By line: the name that a statement declares, its words, and the tree to print.
     """
 
     statements: list[ParsedStatement] = field(default_factory=list)
@@ -51,7 +51,7 @@ class Built:
     trees: dict[int, Any] = field(default_factory=dict)
 
     def note(self, statement: ParsedStatement, name: str, unit: str, words: str, node: Any = None) -> None:
-        """Note what a statement declares, for the editor."""
+        """Store what a statement declares, for the editor."""
         line = statement.chunk.line
         self.called[line], self.said[line] = name, words
         self.places[name] = line
@@ -61,14 +61,14 @@ class Built:
             self.named[name] = KnownName(name, unit, words, statement.kind)
 
     def declarations(self) -> dict[str, Part]:
-        """Return declarations and rules for another class.
+        """Return copies of the declarations and rules for another class.
 
-        Each gets its attribute from its class.
+        Each copy gets its attribute from that class.
         """
         return {name: copy(part) for name, part in self.parts.items()}
 
     def inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the API names of inputs from which names follow, those nearest first."""
+        """Return the API names of the inputs on which the names depend, the nearest first."""
         inputs: dict[str, None] = {}
         waiting, seen = list(names), set(names)
         for name in waiting:

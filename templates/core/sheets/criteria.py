@@ -1,4 +1,4 @@
-"""A `check` of a worksheet as a criterion of the template: a comparison of its inputs and outputs."""
+"""Read a `check` of a worksheet as a criterion: a comparison of the template's inputs and outputs."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 def criterion_of(
     statement: ParsedStatement, node: Any, words: str, said: Said, declared: Mapping[str, Any]
 ) -> tuple[str, dict[str, str]]:
-    """Return the name and content of a criterion, as templates declare them.
+    """Return the name and content of a criterion in the form in which templates declare them.
 
     Raises
     ------
     Refusal
-        With code `check`, if it is not a single comparison by <= or >=, or as `read_criterion` says.
+        With code `check` if it is not a single comparison by <= or >=, or with a code of `read_criterion`.
     """
     at = statement.parts[0]
     remedy = "write p <= 30 MPa; several conditions are several checks"
@@ -53,7 +53,7 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
     Raises
     ------
     FaultyText
-        With code `check`, if a criterion cannot express it.
+        With code `check`, if a criterion cannot express the tree.
     """
     match node:
         case Constant(text=text) if text:

@@ -1,4 +1,4 @@
-"""Curves through points: functions of one variable, linear between the points and undefined outside."""
+"""Curves through points: functions of one variable, linear between the points and undefined outside them."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def curve_of(
     points: Sequence[Any],
     said: Said,
 ) -> Call:
-    """Return the function that a curve is, from the unit of its argument to that of its value.
+    """Return the curve as a function, from the unit of its argument to the unit of its value.
 
     Raises
     ------
     Refusal
-        With code `curve`, if the points are too few or do not ascend.
+        With code `curve`, if there are too few points or they do not ascend.
     """
     sides = list(zip(*(point.children for point in points), strict=True))
     along, values = (
@@ -79,5 +79,5 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
 
 
 def points_of(parts: Sequence[Any]) -> list[lark.Tree[Any]]:
-    """Return the points among the parts of a statement."""
+    """Return the points of a curve among the parts of its statement."""
     return [part for part in parts if isinstance(part, lark.Tree) and part.data == "point"]

@@ -1,8 +1,8 @@
-"""Depths of formulas that use each other: a long chain is calculated step by step from its beginning.
+"""Order the formulas of a long chain, so that they are calculated step by step from its beginning.
 
 A formula evaluates the formulas that it uses when it is first evaluated itself. In a worksheet of 400
-statements in any order that could nest too deep for Python. So some formulas of a long chain are evaluated
-first, beginning with the deepest.
+statements in any order the calls could nest too deeply for Python. Therefore some formulas of a long chain
+are evaluated first, beginning with the deepest.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from templates.core.sheets.faults import SheetFault
 from templates.core.units.operations import Apply
 
 MOST_NESTED = 150
-"""Calls within calls, from one formula that is asked first to the next."""
-_CALLS = 3  # of a formula, beside those within its expression
+"""Most nested calls, from the formula that is evaluated first."""
+_CALLS = 3  # nested calls per formula, in addition to those within its expression
 
 
 def set_order(built: Built) -> Iterator[SheetFault]:
-    """Set the formulas that each formula of a worksheet evaluates first; a fault if defaults are too deep."""
+    """Set the formulas that each formula of a worksheet evaluates first; too deep defaults are a fault."""
     bodies: dict[str, Any] = {
         n: m.function for n, m in built.parts.items() if isinstance(m, (Formula, Derived, Requirement))
     }

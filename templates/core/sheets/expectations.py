@@ -1,4 +1,4 @@
-"""Read a `test` statement: the values that it gives and those that it expects."""
+"""Read a `test` statement: the given values and the expected values."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_of(statement: ParsedStatement, reader: Reader, every: Parts) -> SheetTe
     Raises
     ------
     Refusal
-        If a name is not an input or no output, or a value does not measure what its name does.
+        If a given name is not an input, an expected name is not an output, or a value has the wrong kind.
     """
     words, *parts, tolerance = statement.parts
     given, expected = {}, []

@@ -1,4 +1,4 @@
-"""Expressions within statements: their trees, their kinds of quantity, and limits that are one number."""
+"""Read the expressions in statements: their trees, their kinds of quantity, and limits that are a number."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from templates.core.units.units import require_same_kind, unit
 
 
 class Reader:
-    """Reads the expressions of statements, all within the names of one worksheet."""
+    """Reads the expressions of statements with the names of one worksheet."""
 
     def __init__(self, names: Names) -> None:
         self.names = names
@@ -42,11 +42,11 @@ class Reader:
             part = checked(tree, self.names)
         except FaultyPlace as error:
             message, _, remedy = str(error).partition("; ")
-            if error.code == "axis_mismatch":  # whose second half says what stands there
+            if error.code == "axis_mismatch":  # the second half of its message describes the expression
                 message, remedy = str(error), ""
             remedy = remedy or remedy_at(error.code, tree, error.meta, self.names)
             raise statement.at(error.code, message, error.meta, remedy) from None
-        try:  # what stands at several places, as an argument of a function may, was built once only
+        try:  # a part in several places, such as an argument of a function, was built only once
             self.names.spend(max(0, part[1].size - (before - self.names.fuel)))
         except FaultyText as error:
             raise statement.refuse(
@@ -63,7 +63,7 @@ class Reader:
         at: Any,
         axis: str | None = None,
     ) -> Any:
-        """Return the tree of an expression that gives what is declared; the `axis` is any, if None.
+        """Return the tree of an expression that matches its declaration; an `axis` of None allows any axis.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Reader:
         return tree
 
     def _along(self, statement: ParsedStatement, got: Sort, axis: str, name: str, at: Any) -> None:
-        """Refuse a list where a single value is declared, and the other way round."""
+        """Refuse a list where a single value is declared, or a single value where a list is declared."""
         if got.axis and not axis:
             message = f"{name} is a single value, but this is a list over {got.axis}"
             over = f"over {got.axis}" if " " not in got.axis else "over the name of its axis"
@@ -99,14 +99,15 @@ class Reader:
     def limit(
         self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, accepted: str | None = None
     ) -> float:
-        """Return a limit in the declared unit: typed in it without a unit, or in any other with one.
+        """Return a limit as a number in the declared unit; it may be typed without a unit or in another.
 
-        It takes the kind of what it limits, which `accepted` says where the declared unit does not.
+        The limit has the kind of the quantity that it limits, which `accepted` gives if the declared unit
+        does not.
 
         Raises
         ------
         Refusal
-            With code `limit` if it is not one number, or `unit_mismatch`.
+            With code `limit` if it is not a single number, or `unit_mismatch`.
         """
         part = self.part(statement, tree)
         constant, sort = part
@@ -122,14 +123,14 @@ class Reader:
         return float(unit(unit_text).from_si(value))
 
     def typed(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
-        """Return a value without names as a user types it.
+        """Return a value without names in the form in which a user types it.
 
-        A text where it is one number, else a list or a number.
+        The form is a text for a single number, else a list or a number.
 
         Raises
         ------
         Refusal
-            With code `limit` if it needs a name, or is not finite; else as `fitting`.
+            With code `limit` if it needs a name or is not finite; otherwise as `fitting`.
         """
         part = self.part(statement, tree)
         if isinstance(part[0], Constant) and part[0].text and " " not in part[0].text:
@@ -140,7 +141,7 @@ class Reader:
     def number(
         self, statement: ParsedStatement, node: Any, tree: lark.Tree[Any], unit_text: str, name: str
     ) -> Any:
-        """Return a checked tree without names as a user types it.
+        """Return a checked tree without names in the form in which a user types its value.
 
         Raises
         ------
@@ -161,7 +162,7 @@ class Reader:
         return {"value": shown.tolist(), "unit": unit_text}
 
     def _as_typed(self, statement: ParsedStatement, text: str, tree: lark.Tree[Any], unit_text: str) -> str:
-        """Return a number with its unit, if a user might type it for something in the declared unit."""
+        """Return a number with its unit, if a user might type it for a value in the declared unit."""
         if " " not in text and unit_text != "1":
             return f"{text} {unit_text}"
         try:
@@ -189,7 +190,7 @@ class Reader:
 
 
 def is_literal(axis: str) -> bool:
-    """Return whether an axis is that of a list that is written out: `3 items`."""
+    """Return whether an axis is that of a literal list, such as `3 items`."""
     return " " in axis
 
 
@@ -199,5 +200,5 @@ def _given_in(unit_text: str) -> str:
 
 
 def _along_of(axis: str) -> str:
-    """Return the advice to declare what runs over an axis, or over none."""
+    """Return the advice to declare a value over an axis, or as a single value."""
     return f"declare it over {axis}" if axis else "leave out over and the name behind it"

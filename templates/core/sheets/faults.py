@@ -21,13 +21,13 @@ class SheetFault:
 
     @property
     def sentence(self) -> str:
-        """Return the fault in one line: `line 9, column 5: …; write …`."""
+        """Return the fault as one line of text: `line 9, column 5: …; write …`."""
         remedy = f"; {self.remedy}" if self.remedy else ""
         return f"line {self.line}, column {self.column}: {self.message}{remedy}"
 
 
 class SheetRefused(TemplateError):
-    """A worksheet with faults, all of them at once, in the order of its lines."""
+    """All faults of a worksheet, in the order of its lines."""
 
     def __init__(self, faults: Iterable[SheetFault]) -> None:
         self.faults = tuple(sorted(set(faults), key=lambda fault: (fault.line, fault.column, fault.message)))
@@ -35,7 +35,7 @@ class SheetRefused(TemplateError):
 
 
 class Refusal(TemplateError):
-    """A single fault on its way to the others; its place counts from the beginning of the sheet."""
+    """A single fault before it is added to the others; its place counts from the beginning of the sheet."""
 
     def __init__(self, fault: SheetFault) -> None:
         self.fault = fault
@@ -43,4 +43,4 @@ class Refusal(TemplateError):
 
 
 class FollowsFromFault(TemplateError):
-    """A statement uses a name whose own statement is refused: that fault is reported, this is none."""
+    """A statement uses a name whose own statement has a fault; only that fault is reported."""

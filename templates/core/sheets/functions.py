@@ -1,4 +1,4 @@
-"""Functions of a worksheet, expanded wherever they are called; each sees only those above it."""
+"""Functions of a worksheet, expanded at each call; each function can use only those above it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from templates.core.units.units import compatible, unit
 
 @dataclass(frozen=True)
 class Function:
-    """A function: what its parameters measure, and the expression of them."""
+    """A function: the units of its parameters, and its expression."""
 
     name: str
     unit: str
@@ -34,7 +34,7 @@ class Function:
     node: Any = None  # the expression of its parameters
 
     def call(self, arguments: list[Part]) -> Part:
-        """Return the expression with arguments in the place of parameters.
+        """Return the expression with arguments in place of parameters.
 
         Raises
         ------
@@ -57,21 +57,21 @@ class Function:
         try:
             node, sort = checked(self.tree, self.names)
         except FaultyPlace as error:
-            raise FaultyText(error.code, str(error)) from None  # its place is that of the call
+            raise FaultyText(error.code, str(error)) from None  # report the fault at the call
         finally:
             self.names.parameters = before
-        if sort.kind.turned:  # whoever calls it is told
+        if sort.kind.turned:  # a remark is given at the call
             return node, sort
         return node, replace(sort, kind=declared_kind(sort.kind, kind_of(self.unit)))
 
 
 def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
-    """Return the kind that an argument has in the place of a parameter.
+    """Return the kind that an argument has as the value of a parameter.
 
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, if it does not fit the unit in which the parameter is declared.
+        With code `unit_mismatch`, if the argument does not fit the declared unit of the parameter.
     """
     node, got = part
     scale, wanted = unit(unit_text), kind_of(unit_text, parameter)
@@ -87,12 +87,12 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
 
 
 def function_of(statement: ParsedStatement, reader: Reader) -> Function:
-    """Return the function that a statement declares, with its formula checked for units.
+    """Return the function that a statement declares, with the units of its formula checked.
 
     Raises
     ------
     Refusal
-        Where it is wrong.
+        If the statement has a fault.
     """
     called, *parameters, unit_text, tree = statement.parts
     name, unit_name = str(called)[:-1], reader.declared_unit(statement, unit_text)

@@ -1,4 +1,4 @@
-"""The grammar of statements: `worksheet.lark` with the expressions of `relation.lark`."""
+"""Parse statements with the grammar `worksheet.lark`, which uses the expressions of `relation.lark`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from templates.core.sheets.lines import Chunk
 from templates.core.units.expressions import GRAMMAR, height
 
 LANGUAGE = 1
-"""The version of the language; a change of what a statement means makes another."""
+"""The version of the language; a change of the meaning of a statement increases it."""
 
 MOST_PARTS, MOST_DEPTH = 400, 100
 REMEMBERED = 512  # trees of up to 100 kB
@@ -33,7 +33,7 @@ _DECLARED = re.compile(r"(?:(?:given|choice|curve|solve)[ \t]+)?([A-Za-z][A-Za-z
 
 @dataclass(frozen=True)
 class ParsedStatement:
-    """A statement and its tree; `words` are those that calculate, without layout, for the digest."""
+    """A statement and its tree; `words` are its calculating tokens, without layout, for the digest."""
 
     chunk: Chunk
     tree: lark.Tree[Any]
@@ -46,21 +46,21 @@ class ParsedStatement:
 
     @property
     def parts(self) -> list[Any]:
-        """Return its relevant words and parts, None for an omitted optional one."""
+        """Return the relevant words and parts, with None for an omitted optional one."""
         return self.tree.children
 
     def text_of(self, tree: lark.Tree[Any]) -> str:
-        """Return a part as it was written, in one line."""
+        """Return the source text of a part as one line."""
         return " ".join(self.chunk.text[tree.meta.start_pos : tree.meta.end_pos].split())
 
     def refuse(
         self, code: str, message: str, at: lark.Token | lark.Tree[Any] | None = None, remedy: str = ""
     ) -> Refusal:
-        """Return a fault of this statement, at one of its words or parts."""
+        """Return a fault of this statement, located at one of its words or parts."""
         return self.at(code, message, getattr(at, "meta", at), remedy)
 
     def at(self, code: str, message: str, meta: Any, remedy: str = "") -> Refusal:
-        """Return a fault of this statement, at a position of the parser's."""
+        """Return a fault of this statement, located at a position given by the parser."""
         line = self.chunk.line + (getattr(meta, "line", None) or 1) - 1
         column = getattr(meta, "column", None) or 1
         ends_here = getattr(meta, "end_line", None) == getattr(meta, "line", None)
@@ -91,7 +91,7 @@ def parsed(chunk: Chunk) -> ParsedStatement:
 def _tree(text: str) -> tuple[lark.Tree[Any], tuple[str, ...]]:
     """Return the tree of a statement, and its words.
 
-    Of an edited worksheet most statements are the old ones.
+    Results are cached, because most statements of an edited worksheet have not changed.
     """
     reader = _parser.parse_interactive(text)
     tokens: list[lark.Token] = list(reader.iter_parse())
@@ -100,13 +100,13 @@ def _tree(text: str) -> tuple[lark.Tree[Any], tuple[str, ...]]:
 
 
 def name_of(chunk: Chunk) -> str:
-    """Return the name that a statement seems to declare which is not understood."""
+    """Return the name that a statement with a syntax fault seems to declare."""
     match = _DECLARED.match(chunk.text)
     return match[1] if match else ""
 
 
 def declared_by(statement: ParsedStatement) -> list[str]:
-    """Return the names that a statement declares, if it does."""
+    """Return the names that a statement declares."""
     if statement.kind == "system":
         return [str(unknown.children[0]) for unknown in statement.parts[:-1]]
     return [str(statement.parts[0]).rstrip("(")] if statement.kind not in ("require", "check", "test") else []
@@ -117,7 +117,7 @@ def _parts(tree: lark.Tree[Any]) -> int:
 
 
 def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> SheetFault:
-    """Return the fault of a statement that cannot be parsed; at its end, if the parser gives no place."""
+    """Return the fault of a statement that cannot be parsed, at its end if the parser gives no place."""
     lines = chunk.text.split("\n")
     is_at_end = isinstance(error, lark.exceptions.UnexpectedEOF) or getattr(error, "token", None) == ""
     row, column = (

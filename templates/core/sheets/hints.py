@@ -1,11 +1,11 @@
-"""Remedies for a statement that cannot be parsed: by the offending character, else by the missing part."""
+"""Remedies for a statement that cannot be parsed, from the offending character or the missing part."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection
 
-_SIGNS = (  # what stands before, what stands there, and what would be right
+_SIGNS = (  # the text before, the text at the fault, and the correct form
     ("", r"\^", "a power is written **, as in D**2"),
     (r"\d", r",\d", "decimals take a point, as in 2.5"),
     ("", r":=", "write =, without a colon"),
@@ -13,7 +13,7 @@ _SIGNS = (  # what stands before, what stands there, and what would be right
     ("", r"<>|=<|=>|≤|≥|≠", "a comparison is one of < <= > >= == !="),
     ("", r"×|·|÷", "operators are + - * / **"),
 )
-_MISSING = {  # what the parser expects, and how it is written
+_MISSING = {  # the expected terminal, and how it is written
     "UNIT": "the unit is missing here: write it in brackets, as in [kN], or [1] for a pure number",
     "KEY": 'clauses are > 0, <= 2 m, published 1 to 2, example 3 mm, source "…", remedy "…", also "…"',
     "FROM": 'write bounds, as in from 1 mm to 2 m; of several unknowns each its words, as in "width"',
@@ -35,16 +35,16 @@ _FORMS = {
 
 
 def remedy_of(statement: str, before: str, there: str, expected: Collection[str]) -> str:
-    """Return a remedy of a statement.
+    """Return a remedy for a statement that cannot be parsed.
 
     Parameters
     ----------
     statement
-        Its text.
+        The text of the statement.
     before, there
-        The line up to the place that is not understood, and from there on.
+        The text of the line before the fault, and from the fault onwards.
     expected
-        The terminals of the grammar that could stand there.
+        The terminals of the grammar that are possible there.
     """
     word = statement.split(maxsplit=1)[0]
     if word not in _FORMS and word.lower() in _FORMS:

@@ -1,7 +1,7 @@
 """Several unknowns in as many linear equations: `solve x [N] "…", y [N] "…" so that … == … and … == …`.
 
-The coefficients are derived symbolically from the equations when the sheet is read, without numerical
-differences; a nonlinear equation is refused before any calculation.
+The coefficients are derived symbolically from the equations when the worksheet is read, without numerical
+differentiation; a nonlinear equation is refused before any calculation.
 """
 
 from __future__ import annotations
@@ -24,22 +24,24 @@ from templates.core.units.operations import OPERATORS, Apply, Constant, Kind, Na
 
 MOST_UNKNOWNS = 10
 WORST_CONDITION = 1e12
-"""Beyond it, with rows and columns of one size, fewer than four digits of a solution are left."""
+"""Largest condition number, with equilibrated rows and columns; above it fewer than four digits are
+significant.
+"""
 
 _ADD, _SUBTRACT, _MULTIPLY = (OPERATORS[name] for name in ("add", "subtract", "multiply"))
 _DIVIDE, _NEGATIVE = OPERATORS["divide"], OPERATORS["negative"]
 _ONE = Constant(1.0, Kind(), "1")
 
 Terms = dict[str, Any]
-"""The tree of the coefficient of each unknown, and under the empty name what stands without one."""
+"""The tree of the coefficient of each unknown, and under the empty name the constant term."""
 
 
 class NotLinear(Exception):
-    """An unknown stands where its equation is not linear in it."""
+    """An equation is not linear in one of its unknowns."""
 
 
 class System:
-    """Linear equations of some unknowns: from the values of a template to the numbers of the system."""
+    """Linear equations of some unknowns: computes matrices and right sides from the values of a template."""
 
     def __init__(self, unknowns: Sequence[str], tree: Any, rows: Sequence[Terms]) -> None:
         self.unknowns, self.tree = tuple(unknowns), tree
@@ -53,7 +55,7 @@ class System:
         Raises
         ------
         ValueError
-            If lists of different lengths meet.
+            If one expression combines lists of different lengths.
         """
         parts = [*(part(template) for part in self._matrix), *(-part(template) for part in self._right)]
         values = np.stack(np.broadcast_arrays(*parts), axis=-1).astype(float)
@@ -63,12 +65,12 @@ class System:
 
 
 def _zero(template: Any) -> float:
-    """Return the zero coefficient of an unknown that is not in an equation."""
+    """Return 0, the coefficient of an unknown that does not occur in an equation."""
     return 0.0
 
 
 class LinearBody(Body):
-    """One unknown of a system in the place of a formula's function: called with a template, it gives it.
+    """One unknown of a linear system, in place of a formula's function; a call with a template returns it.
 
     Source: LU factorisation with partial pivoting, by LAPACK's `gesv` in NumPy.
     """
@@ -89,7 +91,7 @@ class LinearBody(Body):
         Raises
         ------
         InvalidInputs
-            If lists of different lengths meet.
+            If one expression combines lists of different lengths.
         """
         for name in self.first:
             getattr(template, name)
@@ -104,12 +106,12 @@ class LinearBody(Body):
         return solutions[..., self._place][()]
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """Return the equations, with symbols or numbers in the place of attributes."""
+        """Return the equations in LaTeX, with the given symbols or numbers in place of attributes."""
         return rf"\text{{solution of }}\ {latex(self.node, symbols, times)}"
 
 
 def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-    """Return the solutions of linear systems, and where a matrix is singular.
+    """Return the solutions of linear systems, and a mask of the singular ones.
 
     Parameters
     ----------
@@ -121,7 +123,7 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
     Returns
     -------
     tuple
-        Of shape (*points, n), NaN where a matrix is singular or a number is missing; and of shape (*points).
+        Solutions (*points, n), NaN where a matrix is singular or a number is missing; mask (*points).
     """
     rows = _sizes(matrices, -1)
     columns = _sizes(matrices / rows, -2)
@@ -135,7 +137,7 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
 
 
 def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
-    """Return the size of each row or column as a power of 2, by which a division is exact."""
+    """Return the size of each row or column as a power of 2, so that dividing by it is exact."""
     most = np.abs(matrices).max(axis=axis, keepdims=True)
     return np.ldexp(1.0, np.frexp(most)[1] - 1)
 
@@ -143,7 +145,7 @@ def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
 def system_of(
     statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any], unknowns: Sequence[str]
 ) -> System:
-    """Return the equations behind `so that`, joined by `and`.
+    """Return the equations after `so that`, joined by `and`.
 
     Raises
     ------
@@ -177,7 +179,7 @@ def system_of(
 
 
 def _joined(node: Any) -> Iterator[Any]:
-    """Yield the conditions that `and` joins."""
+    """Yield the conditions joined by `and`."""
     left = [node]
     while left:
         first = left.pop()
@@ -188,12 +190,12 @@ def _joined(node: Any) -> Iterator[Any]:
 
 
 def _terms(node: Any, unknowns: Sequence[str]) -> Terms:
-    """Return the coefficients of unknowns in a tree that is linear in them.
+    """Return the coefficients of the unknowns in a tree that is linear in them.
 
     Raises
     ------
     NotLinear
-        If it is not.
+        If the tree is not linear.
     """
     if isinstance(node, Name) and node.name in unknowns:
         return {node.name: _ONE}

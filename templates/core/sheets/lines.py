@@ -1,4 +1,4 @@
-"""Split the text of a worksheet into statements: an indented line continues, `#` and `>` begin prose."""
+"""Split the text of a worksheet into statements; an indented line continues one, `#` and `>` begin prose."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ MOST_BYTES = 64 * 1024
 MOST_STATEMENTS = 400
 LONGEST_STATEMENT = 2000
 _CONTROLS = frozenset("\x7f\x85\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-"""Signs that end a line, or turn the direction of reading."""
+"""Characters that end a line, or change the direction of the text."""
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """One statement as it was written: its first line, and its text with the line ends in it."""
+    """One statement as written: its first line number, and its text including line ends."""
 
     line: int
     text: str
-    kind: str = ""  # `prose`, `remark`; else the grammar says
+    kind: str = ""  # `prose` or `remark`; otherwise the grammar determines it
 
     @property
     def last_line(self) -> int:
@@ -30,17 +30,17 @@ class Chunk:
 
 
 def normal(text: str) -> str:
-    """Return a text without a byte order mark, its lines ended as the language ends them."""
+    """Return a text without a byte order mark and with uniform line ends."""
     return text.removeprefix("\ufeff").replace("\r\n", "\n")
 
 
 def chunks_of(text: str) -> list[Chunk]:
-    """Return the statements of a text, prose and remarks included, in the order of its lines.
+    """Return the statements of a text, including prose and remarks, in the order of its lines.
 
     Raises
     ------
     SheetRefused
-        If the text is too large, or holds what is not text.
+        If the text is too large, or contains characters that are not text.
     """
     if faults := list(_faults_of_text(text)):
         raise SheetRefused(faults)

@@ -12,7 +12,7 @@ MOST_LOOPS = 10
 
 
 def faults_of_loops(built: Built) -> Iterator[SheetFault]:
-    """Yield a fault for every loop, at the first line of it."""
+    """Yield a fault for every loop, at its first line."""
     uses = {name: set(getattr(part, "uses", ())) & built.parts.keys() for name, part in built.parts.items()}
     for _ in range(MOST_LOOPS):
         try:

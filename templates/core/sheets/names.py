@@ -1,4 +1,4 @@
-"""The names of a worksheet with their kinds of quantity, its functions, and its budget of operations."""
+"""The names of a worksheet with their kinds of quantity, its functions, and its limit of operations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from templates.core.units.operations import CONSTANTS, FUNCTIONS, Name
 from templates.core.units.sorts import Part, Sort
 
 FUEL = 10_000
-"""Operations of a worksheet, its functions written out."""
+"""Most operations of a worksheet, with its functions expanded."""
 
 LONGEST_NAME = 60
 _WORDS = frozenset({
@@ -38,24 +38,24 @@ class KnownName:
 
 @dataclass
 class Names:
-    """The names of a worksheet, as `Scope` of its expressions."""
+    """The names of a worksheet, used as the `Scope` of its expressions."""
 
     sorts: dict[str, Sort] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)  # as declared
     functions: dict[str, Call] = field(default_factory=dict)
-    broken: set[str] = field(default_factory=set)  # names whose statement is refused
-    parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is written out now
+    broken: set[str] = field(default_factory=set)  # names whose statement has a fault
+    parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is being expanded
     fuel: int = FUEL
 
     def name(self, text: str) -> Part:
-        """Return the part that a name refers to.
+        """Return the tree and sort to which a name refers.
 
         Raises
         ------
         FaultyText
             With code `unknown_name`.
         FollowsFromFault
-            If its own statement is refused.
+            If the statement of the name has a fault.
         """
         if text in self.parameters:
             return self.parameters[text]
@@ -67,19 +67,19 @@ class Names:
         raise FaultyText("unknown_name", fault.detail)
 
     def function(self, name: str) -> Call | None:
-        """Return the function of the worksheet with this name, if it has one.
+        """Return the worksheet function with this name, or None.
 
         Raises
         ------
         FollowsFromFault
-            If the statement of the function is refused.
+            If the statement of the function has a fault.
         """
         if name not in self.functions and name in self.broken:
             raise FollowsFromFault(name)
         return self.functions.get(name)
 
     def spend(self, operations: int = 1) -> None:
-        """Count operations.
+        """Count operations against the limit.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Names:
             raise FaultyText("too_large", detail)
 
     def check_new(self, name: str) -> None:
-        """Refuse a name that is in use, or that is reserved in the language.
+        """Raise an error for a name that is already used or reserved in the language.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class Names:
 
 
 def sort_of(text: str, name: str | None = None) -> Sort:
-    """Return the sort of a value that is declared in a unit, under a name.
+    """Return the sort of a value declared in a unit, under a name.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Operations that do not always have a value, and the reason: a curve has none outside its points."""
+"""Operations that have no value for some arguments, such as a curve outside its points, and the reason."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from templates.core.units.operations import Apply, Operation
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Partial(Operation):
-    """An operation without a value where `is_missing` holds of its arguments, for a reason.
+    """An operation that has no value if `is_missing` is true for its arguments, with the reason.
 
-    It may be applied to each item of a list: then it `is_of_items`, and one item suffices.
+    If it applies to each item of a list, it `is_of_items`, and one item without a value is enough.
     """
 
     is_missing: Callable[..., Any]
@@ -40,7 +40,7 @@ Explained = tuple[Partial, list[Callable[[Any], Any]]]
 
 
 def explained_in(node: Any) -> list[Explained]:
-    """Return the partial operations of a tree, with functions for their arguments."""
+    """Return the partial operations of a tree, each with functions that compute its arguments."""
     applied = (part for part in nodes_of(node) if isinstance(part, Apply))
     applied_to = ((_ITEM if part.operation is ITEM else part.operation, part.arguments) for part in applied)
     return [(one, list(map(closure, arguments))) for one, arguments in applied_to if isinstance(one, Partial)]

@@ -1,4 +1,4 @@
-"""Prose of a worksheet: headings and paragraphs in Markdown, which become the documentation of the class."""
+"""Turn the prose of a worksheet, headings and paragraphs in Markdown, into the documentation of its class."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def title_of(chunks: Iterable[Chunk]) -> str:
 
 
 def markdown_of(chunk: Chunk) -> str:
-    """Return prose as Markdown; a remark as its text."""
+    """Return prose as Markdown, and a remark as its text."""
     if chunk.kind == "remark":
         return chunk.text.removeprefix("//").strip()
     return "\n".join(line.removeprefix(">").removeprefix(" ") for line in chunk.text.split("\n"))

@@ -1,4 +1,4 @@
-"""Remedies for a refused expression, by its fault and by the operation at its place."""
+"""Remedies for a refused expression, chosen by its fault and by the operation at the place of the fault."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ _GENERAL = {
 
 
 def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
-    """Return a remedy of an expression.
+    """Return a remedy for a refused expression.
 
     Parameters
     ----------
     code
-        That of the fault.
+        The code of the fault.
     tree
         The expression.
     meta
-        The place of the fault in it.
+        The place of the fault in the expression.
     names
-        Those of the worksheet.
+        The names of the worksheet.
     """
     at = next((part for part in tree.iter_subtrees() if part.meta is meta), tree)
     if code == "unit_mismatch":
@@ -79,7 +79,7 @@ def common_unit(kind: Kind) -> str:
 
 
 def names_in_units(at: Any, names: Names) -> str:
-    """Return the advice to put blanks before a name that was read as a unit: `t` of `1 turn/t`, the tonne."""
+    """Return the advice to put blanks before a name that was read as a unit, as the tonne in `1 turn/t`."""
     tokens = (
         at.scan_values(lambda token: getattr(token, "type", "") == "QUANTITY") if hasattr(at, "data") else ()
     )
@@ -99,7 +99,7 @@ def _spaced(part: re.Match[str], names: Names) -> str:
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:
-    """Return a sentence on the requirement of the operation at a place."""
+    """Return a sentence on what the operation at a place requires."""
     called = str(at.children[0])[:-1] if at.data == "call" else ""
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"
@@ -113,7 +113,7 @@ def _equal(at: lark.Tree[Any], names: Names) -> str:
 
 
 def _units(at: lark.Tree[Any], names: Names) -> str:
-    """Return the units of the names of an expression: `F is in kN, D in mm`."""
+    """Return the units of the names in an expression: `F is in kN, D in mm`."""
     used = map(str, at.scan_values(lambda token: getattr(token, "type", "") == "NAME"))
     shown = {name: text for name in used if (text := _unit_of(name, names))}
     parts = [f"{name} in {text}" for name, text in list(shown.items())[:MOST_NAMES]]

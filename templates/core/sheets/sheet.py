@@ -37,11 +37,11 @@ class Statement:
     kind
         given, choice, curve, formula, function, solve, require, check, test, prose or remark.
     name
-        The attribute of the class: a symbol, or that of a rule; of a check the name of its criterion.
+        The attribute of the class: a symbol, or the name of a rule; for a check, the name of its criterion.
     words
-        What it says: words of a quantity, the sentence of a rule, Markdown of prose.
+        The text of the statement: the words of a quantity, the sentence of a rule, the Markdown of prose.
     latex
-        The line on paper; empty where it has no formula.
+        The printed line; empty if it has no formula.
     """
 
     kind: str
@@ -63,17 +63,17 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """Return the first heading; empty where there is none."""
+        """Return the first heading; empty if there is none."""
         return title_of(self.chunks)
 
     @property
     def tests(self) -> tuple[SheetTest, ...]:
-        """Return its tests; `run_tests` runs them."""
+        """Return the tests of the worksheet; `run_tests` runs them."""
         return tuple(self.built.tests)
 
     @cached_property
     def names(self) -> tuple[KnownName, ...]:
-        """Return the names that formulas may use, for completion."""
+        """Return the names that formulas may use, for completion in an editor."""
         return tuple(self.built.named.values())
 
     def digest(self) -> str:
@@ -88,7 +88,7 @@ class Sheet:
 
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
-        """Return every statement with prose and remarks, in the order of the lines."""
+        """Return every statement, including prose and remarks, in the order of the lines."""
         lines = {statement.chunk.line: statement for statement in self.built.statements}
         written = latex_of(self.template("worksheet", 1), self.built)
         return tuple(self._statement(chunk, lines.get(chunk.line), written) for chunk in self.chunks)
@@ -121,7 +121,7 @@ class Sheet:
 
 
 def read(text: str) -> Sheet:
-    """Read a worksheet.
+    """Return a worksheet from its text.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def read(text: str) -> Sheet:
 
 @lru_cache(maxsize=64)
 def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
-    """Return the class of a worksheet in this process, one for each text, id, version and withdrawal.
+    """Return the class of a worksheet, cached by text, id, version and withdrawal in this process.
 
     Raises
     ------

@@ -24,14 +24,17 @@ from templates.core.units.evaluation import nodes_of
 from templates.core.units.operations import Apply
 
 NEAR = (
-    1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more
+    1e-6  # largest difference of the sides at a root, relative to that at the bounds; it is larger at a pole
 )
-STEPS, PER_STEP = 40, 2e-4  # that a search takes, and of each, beside the operations of the equation [s]
+STEPS, PER_STEP = (
+    40,
+    2e-4,
+)  # number of steps, and time per step in addition to the operations of the equation [s]
 SEVERAL = "the equation holds at both bounds, so it does not say which value is meant"
 
 
 class SolveBody(Body):
-    """An equation in the place of a formula's function: called with a template, it gives the unknown.
+    """An equation in place of a formula's function: called with a template, it returns the unknown.
 
     Source: Chandrupatla, Advances in Engineering Software 28(3), 1997, by SciPy's `find_root`.
     """
@@ -79,7 +82,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """Estimate the time of the search at a number of points, an order of magnitude [s]."""
+        """Return the approximate time of the search at a number of points, to an order of magnitude [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property
@@ -89,7 +92,7 @@ class SolveBody(Body):
     def _roots(
         self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the roots, NaN where there is none, and the points at which both bounds are roots."""
+        """Return the roots, NaN without one, and a mask of the points at which both bounds are roots."""
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
         places = np.arange(low.size)
         ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()
@@ -108,7 +111,7 @@ class SolveBody(Body):
         return roots.reshape(low.shape), several.reshape(low.shape)
 
     def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:
-        """Return a value at some of the points, which are counted in one row."""
+        """Return a value at the selected points as a one-dimensional array."""
         if not isinstance(value, np.ndarray):
             return lambda at: value
         if name in self._lists:
@@ -122,7 +125,7 @@ class SolveBody(Body):
         return f"between {low} and {high}" if low and high else "between its bounds"
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """Return the equation, with symbols or numbers in the place of attributes."""
+        """Return the equation in LaTeX, with the given symbols or numbers in place of attributes."""
         return rf"\text{{root of }}\ {latex(self.equation, symbols, times)}"
 
 
@@ -131,7 +134,7 @@ def _is_number(value: Any) -> bool:
 
 
 def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
-    """Return the equation behind `so that`: two sides that are equal.
+    """Return the equation after `so that`, which has two equal sides.
 
     Raises
     ------

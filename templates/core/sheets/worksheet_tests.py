@@ -1,4 +1,4 @@
-"""Tests in a worksheet: inputs, and the expected outputs."""
+"""Tests in a worksheet: given inputs and expected outputs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from templates.core.units.units import Unit
 
 @dataclass(frozen=True)
 class ExpectedResult:
-    """One expected result: its value [SI], and the largest difference of a result from it [SI]."""
+    """One expected result: its value [SI], and the largest accepted difference from it [SI]."""
 
     name: str
     value: Any
@@ -26,7 +26,7 @@ class ExpectedResult:
 
 @dataclass(frozen=True)
 class SheetTest:
-    """Inputs [SI, or words] by API name, beside those of the example, and the results expected of them."""
+    """A test: inputs [SI, or words] by API name, in addition to the example's, and the expected results."""
 
     line: int
     words: str
@@ -38,7 +38,7 @@ class SheetTest:
 class TestResult:
     """The result of a test, with a message."""
 
-    __test__ = False  # of no interest to pytest
+    __test__ = False  # pytest must not collect this class
 
     line: int
     words: str
@@ -47,7 +47,7 @@ class TestResult:
 
 
 def run_tests(cls: type[Template]) -> tuple[TestResult, ...]:
-    """Run the tests of the worksheet from which a class was made; a class from a file has none."""
+    """Return the results of the tests in the worksheet of a class; a class from a file has no tests."""
     return tuple(_run(cls, test) for test in getattr(cls.sheet, "tests", ()))
 
 
@@ -65,14 +65,14 @@ def _run(cls: type[Template], test: SheetTest) -> TestResult:
 
 
 def _met(template: Template, one: ExpectedResult) -> str:
-    """Return a sentence on the results that are as expected."""
+    """Return a sentence on the results that agree with the expected ones."""
     declared = template.formulas[one.name]
     shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)
     return f"{declared.meaning.words} is {shown}: {one.shown}"
 
 
 def _missed(template: Template, test: SheetTest) -> Iterator[str]:
-    """Yield a sentence for each result that is not as expected."""
+    """Yield a sentence for each result that differs from the expected one."""
     for one in test.expected:
         declared = template.formulas[one.name]
         value = getattr(template, declared.attribute)
@@ -87,7 +87,7 @@ def _missed(template: Template, test: SheetTest) -> Iterator[str]:
 
 
 def _distance(value: Any, wanted: Any, scale: Unit) -> str:
-    """Return the difference of a single value from the expected one, in words: `: 8.3 MPa (28 %) too low`."""
+    """Return the difference of a single value from the expected one as text: `: 8.3 MPa (28 %) too low`."""
     if np.ndim(value) or np.ndim(wanted) or np.isnan(value):
         return ""
     difference, size = float(value) - float(wanted), abs(float(scale.from_si(wanted)))

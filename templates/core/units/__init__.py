@@ -1,1 +1,1 @@
-"""Units, quantities, and relations with their grammar."""
+"""Units, quantities, tolerances, and relations with their grammar."""

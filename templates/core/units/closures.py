@@ -1,4 +1,4 @@
-"""Compile a checked tree to nested functions of the object with its names: walked once, called often."""
+"""Compile a checked tree to nested functions: the tree is walked once, the functions are called often."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Closure = Callable[[Any], Any]
 def _quotient(over: Value, under: Value) -> Value:
     try:
         return over / under
-    except ZeroDivisionError:  # of two floats of Python
+    except ZeroDivisionError:  # from two Python floats
         return np.divide(over, under)
 
 
@@ -29,7 +29,7 @@ def _power(base: Value, exponent: Value) -> Value:
 
 _PLAIN: dict[
     Operation, Callable[..., Any]
-] = {  # Python's operators are quicker on single values than NumPy's functions
+] = {  # Python's operators are faster on single values than NumPy's functions
     OPERATORS["add"]: operator.add,
     OPERATORS["subtract"]: operator.sub,
     OPERATORS["multiply"]: operator.mul,
@@ -40,11 +40,10 @@ _PLAIN: dict[
 
 
 def closure(node: Any, attributes: Mapping[str, str] | None = None) -> Closure:
-    """Return a tree as a function; of a condition it gives truths, and what is not known is not true.
+    """Return a tree as a function; for a condition it returns truth values, False where it is unknown.
 
     The function takes an object with an attribute for each name of the tree, in SI: single values, or arrays
-    whose first axis is that of the points. `attributes` are those of the names, where they are called
-    otherwise.
+    whose first axis is that of the points. `attributes` maps names to attributes with a different name.
     """
     run = _closure(node, attributes or {})
     return (lambda template: np.equal(run(template), 1.0)) if is_condition(node) else run
@@ -61,7 +60,7 @@ def is_condition(node: Any) -> bool:
 def _closure(node: Any, attributes: Mapping[str, str]) -> Closure:
     match node:
         case Constant(value=value):
-            plain = np.float64(value)  # a float of Python would raise at 1/0
+            plain = np.float64(value)  # a Python float would raise an error at 1/0
             return lambda template: plain
         case Word(text=text):
             return lambda template: text

@@ -1,7 +1,7 @@
 """Conditions: comparisons, `and`, `or`, `not`, the test of a choice, and `if`.
 
-A condition is 1 where it holds, 0 where it does not, and NaN where one of its values is missing. A formula
-has no value where its condition is NaN.
+A condition is 1 if true, 0 if false, and NaN if one of its values is missing. A formula has no value where
+its condition is NaN.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def _any(*conditions: Value) -> Value:
 
 
 def _chosen(condition: Value, one: Value, other: Value) -> Value:
-    """Return either value where the condition is known; both are calculated."""
+    """Return one of two values by a condition, NaN where it is unknown; both values are calculated."""
     if isinstance(condition, np.ndarray) or isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        if isinstance(condition, np.ndarray) and condition.dtype == bool:  # all of it is known
+        if isinstance(condition, np.ndarray) and condition.dtype == bool:  # no value is missing
             return np.where(condition, one, other)
         holds = np.equal(condition, 1.0)
         return np.where(holds, one, np.where(np.equal(condition, 0.0), other, np.nan))

@@ -1,8 +1,8 @@
 """Check whether a value fits a declared unit, and suggest what else it may mean.
 
 In a formula every angular speed has its value in rad/s, whatever the unit in which it is typed or shown. A
-textbook's formula may expect turns for a name given in turns: this is reported, since the value differs by
-2*pi.
+textbook formula may expect turns for a name given in turns: this gives a remark, because the value differs
+by a factor of 2*pi.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
     Parameters
     ----------
     kind
-        That of the value.
+        The kind of the value.
     want
         The declared unit.
     text
-        The expression that gives the value, for the remedy; empty where it is not known.
+        The expression that gives the value, for the remedy; empty if unknown.
     """
     if not compatible(kind, want):
         return f"this gives {in_words(kind)}", _remedy_of_rates(kind, want, text)
@@ -44,7 +44,7 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
 
 
 def declared_kind(got: Kind, want: Kind) -> Kind:
-    """Return the kind of a value behind a declaration: as declared, but in K that of the value."""
+    """Return the kind of a declared value: that of its unit, or for a unit of K that of the value itself."""
     counts = got.temperatures
     if want.temperatures != EITHER or counts is None:
         return replace(want, temperatures=want.temperatures if want.temperatures != EITHER else counts)
@@ -89,7 +89,7 @@ def _counted(text: str) -> str:
 
 
 def _without_minutes(text: str) -> tuple[str, str]:
-    """Return a product without a factor 60, which minutes bring into formulas of numbers, and the advice."""
+    """Return a product without the factor 60 of formulas in minutes, and the advice to leave it out."""
     bare = _MINUTES.sub("", text) if not re.search(r"[-+,]", text) else text
     return bare, "leave out 60, which the units hold, and " if bare != text else ""
 
@@ -105,9 +105,9 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
     Parameters
     ----------
     kind
-        That of the formula's value.
+        The kind of the formula's value.
     want
-        The unit in which it is declared.
+        The unit in which the value is declared.
     text
         The formula.
     """
@@ -123,7 +123,7 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
 
 
 def _over(name: str, divisor: str) -> str:
-    """Return a name or a number with its unit over a divisor."""
+    """Return a name, or a number with its unit, divided by a divisor."""
     return f"{name} / ({divisor})" if " " in name else f"{name}/({divisor})"
 
 

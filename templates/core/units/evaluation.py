@@ -1,4 +1,4 @@
-"""Evaluate the tree of a relation with the values of its names."""
+"""Evaluate the tree of a relation from the values of its names."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from templates.core.units.nodes import Apply, Constant, Item, Name, Operation
 from templates.core.units.units import Value
 
 LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
-"""The operations that make lists or take them as a whole; all others go place by place."""
+"""The operations that create or reduce lists; all others act item by item."""
 
 
 def value_of(node: Any, values: Mapping[str, Value]) -> Value:
-    """Return the value of a tree, from those of its names and items by their text.
+    """Return the value of a tree from the values of its names, and of its items by their text.
 
     Raises
     ------
     FaultyText
-        With code `shape`, where a single value stands in place of a list, or a list in place of one.
+        With code `shape`, if a single value is used as a list, or a list as a single value.
     """
-    if isinstance(node, Apply):
-        if node.operation in LISTWISE:
-            parts = [value_of(argument, values) for argument in node.arguments]
-            return listwise(node.operation, parts, [np.ndim(part) for part in parts])
-        return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
     if isinstance(node, Name):
         return values[node.name]
+    if isinstance(node, Apply):
+        parts = [value_of(argument, values) for argument in node.arguments]
+        if node.operation in LISTWISE:
+            return listwise(node.operation, parts, [np.ndim(part) for part in parts])
+        return node.operation.calculate(*parts)
     if isinstance(node, Constant):
         return node.value
     return values[node.text] if isinstance(node, Item) else node.text  # a word is compared with a word
 
 
 def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:
-    """Return an operation that takes or makes a list, of parts that have so many axes at one point.
+    """Return the value of an operation that takes or makes a list; `ranks` counts the axes of each operand.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Valu
 
 
 def check_ranks(operation: Operation, ranks: list[int]) -> None:
-    """Refuse single values in place of lists, and lists in place of single values.
+    """Raise an error for a single value in place of a list, or a list in place of a single value.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def applied_in(node: Any) -> Iterator[Apply]:
 
 
 def nodes_of(node: Any) -> Iterator[Any]:
-    """Yield the nodes of a tree, each before its arguments."""
+    """Yield the nodes of a tree, each node before its arguments."""
     left = [node]
     while left:
         yield (first := left.pop())

@@ -1,7 +1,7 @@
 """Expressions of relations and worksheets: convert the parser's tree to a checked tree of our own nodes.
 
-Both share the grammar of `relation.lark`. A worksheet knows the meaning of its names when it is read, and
-calls `checked`; a relation of a design learns it later, and calls `built`. A scope may replace a name by an
+Both use the grammar of `relation.lark`. A worksheet knows the meaning of its names when it is read, and calls
+`checked`; a relation of a design learns them later, and calls `built`. A scope may replace a name by an
 expression: a parameter of a function becomes the argument of the call.
 """
 
@@ -39,20 +39,20 @@ from templates.core.units.units import Unit, is_rate, unit
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
 
 GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
-"""The grammar; its rule `expression` is the one to use in statements."""
+"""The grammar; statements use its rule `expression`."""
 
 MAX_INDEX = 10**9
 MAX_TWICE = 1000
-"""Nodes of what stands between two signs of a chained comparison."""
+"""Most nodes of an expression between two signs of a chained comparison."""
 RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
-"""Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
+"""Reserved words of the grammar; only `if` and `not` cannot be names in front of a value."""
 
 _COMPARED = frozenset(COMPARISONS.values())
 _OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}
 
 
 class Scope(Protocol):
-    """The names of an expression."""
+    """The names that an expression can use."""
 
     def name(self, text: str) -> Part:
         """Return the node of a name, and its sort.
@@ -64,10 +64,10 @@ class Scope(Protocol):
         """
 
     def function(self, name: str) -> Callable[[list[Part]], Part] | None:
-        """Return the user's function of that name, called with its arguments; None if there is none."""
+        """Return the call of the user's function of that name as an expression; None if there is none."""
 
     def spend(self) -> None:
-        """Count an operation.
+        """Count one operation against the limit.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class Scope(Protocol):
 
 
 class FaultyPlace(FaultyText):
-    """A fault of an expression and its place: `meta` has `line`, `column` and `end_column`."""
+    """A fault of an expression with its place: `meta` has `line`, `column` and `end_column`."""
 
     def __init__(self, error: FaultyText, meta: Any) -> None:
         super().__init__(error.code, str(error))
@@ -97,7 +97,7 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
 
 
 def built(tree: lark.Tree[Any]) -> Any:
-    """Return the tree of an expression before any of its names is known.
+    """Return the tree of an expression whose names are not known yet.
 
     Every unit, function and number is checked.
 
@@ -110,7 +110,7 @@ def built(tree: lark.Tree[Any]) -> Any:
 
 
 def height(tree: lark.Tree[Any]) -> int:
-    """Return the depth of a parser's tree; without recursion."""
+    """Return the depth of a parser's tree, computed without recursion."""
     deep, level = 0, [tree]
     while level:
         deep += 1
@@ -119,7 +119,7 @@ def height(tree: lark.Tree[Any]) -> int:
 
 
 class _Builder:
-    """Builds a tree; what its names are is checked later."""
+    """Builds a tree whose names are checked later."""
 
     def part(self, tree: lark.Tree[Any]) -> Part:
         match str(tree.data), tree.children:
@@ -154,7 +154,7 @@ class _Builder:
         return Name(text), Sort()
 
     def item(self, whole: Any, index: lark.Token) -> Part:
-        """Return an item of an array or of a list that is written out."""
+        """Return an item of an array or of a literal list."""
         shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
         if whole in CONSTANTS or index in CONSTANTS:
             raise FaultyText("syntax", f"{shown}: pi is neither an array nor an index")
@@ -186,12 +186,12 @@ class _Builder:
         return self.apply(operation, arguments)
 
     def compared(self, sides: list[Part], signs: list[str]) -> Part:
-        """Return a comparison; a chain of comparisons holds if all of them hold.
+        """Return a comparison; a chain of comparisons is true if all of them are true.
 
         Raises
         ------
         FaultyText
-            With code `too_large`: what stands between two signs is compared, and so calculated, twice.
+            With code `too_large`: an expression between two signs is compared, and so calculated, twice.
         """
         if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
             raise FaultyText("too_large", "chained comparisons are nested too deeply; join them by `and`")
@@ -239,7 +239,7 @@ class _CheckedBuilder(_Builder):
     def compared_alike(self, operation: Operation, one: Part, other: Part) -> list[Part]:
         """Return both sides of a comparison.
 
-        A number in degC is read as a difference beside a temperature difference.
+        A number in degC compared with a temperature difference is read as a difference.
         """
         meant = [
             as_compared(operation.sign, beside[1].kind, side[0], beside[0])
@@ -249,7 +249,7 @@ class _CheckedBuilder(_Builder):
 
 
 def check_word(name: str, word: str, options: Sequence[str]) -> None:
-    """Refuse a test of a choice that it never passes.
+    """Raise an error for a test of a choice that can never be true.
 
     Raises
     ------
@@ -273,7 +273,7 @@ def _place(shown: str, number: float) -> int:
 
 
 def constant(text: str) -> Constant:
-    """Return a number, or a number and its unit; its sign belongs to it, so that -20 degC is a temperature.
+    """Return a number, with its unit if it has one; the sign belongs to it, so -20 degC is a temperature.
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Tolerance zones of ISO 286: the limit deviations of `48 mm H7`, by class and nominal size.
+"""Tolerance zones of ISO 286: the limit deviations of `48 mm H7`, by tolerance class and nominal size.
 
-The table is `iso286.csv`; its head names its sources and describes its checks.
+The table is `iso286.csv`; its header names its sources and describes its checks.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from importlib.resources import files
 
 from templates.core.errors import FaultyText, excerpt
 
-_DIGITS = 9  # of a nominal size in mm: 50 mm, which is 50.00000000000001 after two conversions, is 50
+_DIGITS = 9  # of a nominal size in mm: two conversions turn 50 mm into 50.00000000000001
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def deviations(zone: str, size: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=1)
 def zones() -> Mapping[str, Sequence[Step]]:
-    """Return the steps of every zone that is shipped, by increasing size."""
+    """Return the steps of every zone in the table, by increasing size."""
     text = files(__package__).joinpath("iso286.csv").read_text(encoding="utf-8")
     steps = defaultdict[str, list[Step]](list)
     for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#")):
@@ -63,7 +63,7 @@ def zones() -> Mapping[str, Sequence[Step]]:
 
 
 def _unknown(zone: str) -> str:
-    """Return a sentence on the grades of a zone's letter that are shipped, or on the letters."""
+    """Return a sentence on the available grades of a zone's letter, or on the available letters."""
     letters = zone.rstrip("0123456789")
     alike = [name for name in zones() if name.rstrip("0123456789") == letters]
     if alike:

@@ -13,7 +13,7 @@ from templates.core.units.units import Value
 
 
 def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
-    """Refuse an index that is anything but a number or a parameter of unit 1.
+    """Raise an error for an index that is not a number or a parameter of unit 1.
 
     Raises
     ------
@@ -36,9 +36,9 @@ def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) 
     Parameters
     ----------
     item
-        Which one; an index with a value for each row chooses in each row.
+        The item; an index with a value for each row selects an item in each row.
     values
-        Of its names, in SI.
+        The values of its names, in SI.
     rows
         The names whose first axis is that of the rows.
 
@@ -61,7 +61,7 @@ def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) 
 
 
 def _places(item: Item, values: Mapping[str, Value], rows: Container[str], length: int) -> NDArray[np.intp]:
-    """Return the index as places from 0: a single one, or one for each row."""
+    """Return the index counted from 0: a single one, or one for each row."""
     raw = np.asarray(values[item.index] if isinstance(item.index, str) else item.index, dtype=float)
     if raw.ndim > (item.index in rows):
         raise FaultyText("index", f"{item.text}: an index is a single number, not an array")

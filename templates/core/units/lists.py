@@ -1,6 +1,6 @@
-"""Lists: `[a, b]`, `x[3]`, `sum`, `mean`, `count`, `min` and `max` of one list.
+"""Lists: `[a, b]`, `x[3]`, and `sum`, `mean`, `count`, `min` and `max` of one list.
 
-A list is the last axis of an array; the axes before it belong to points.
+A list is the last axis of an array; the axes before it are points.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def _stacked(*items: Value) -> Value:
 
 
 def _item(values: Value, index: Value) -> Value:
-    """Return the item of a list at an index from 1; NaN where the list has none."""
+    """Return the item of a list at an index from 1; NaN outside the list."""
     whole, place = np.asarray(values, dtype=float), np.asarray(index, dtype=float)
     right = (place == np.floor(place)) & (place >= 1) & (place <= whole.shape[-1])
     at = np.where(right, place, 1.0).astype(np.intp) - 1
@@ -58,7 +58,7 @@ def _trailing(value: Value) -> Value:
 LIST = Operation("list", _stacked, same)
 ITEM = Operation("item", _item, _indexed, 2)
 TRAILING = Operation("trailing", _trailing, keep, 1)
-"""A single value beside a list: an axis behind those of its points."""
+"""An operation that adds a list axis after the axes of the points to a single value."""
 OVER_LISTS = {
     operation.sign: operation
     for operation in (

@@ -25,17 +25,17 @@ class Kind:
     base
         Its unit in SI.
     cycles
-        The power of the hertz: of a rate in Hz one, in 1/s and rad/s none.
+        The power of the hertz: 1 for a rate in Hz, 0 for one in 1/s or rad/s.
     temperatures
-        How many temperatures it may add up: a temperature one, a difference of two none, a value in K either,
-        `T_1 + T_2` two. None: it cannot be said.
+        How many absolute temperatures it may contain: 1 for a temperature, 0 for a difference, either for a
+        value in K, 2 for `T_1 + T_2`. None if this is unknown.
     literal
         Whether it is a number typed in degC or degF, which may be meant as either.
     turned
-        The names and numbers in it that were given in turns, while its unit holds their angle.
+        The names and numbers in it that were given in turns, while its unit contains their angle.
     pi, twos
-        The written factors of a product: the power of pi, and whether an even number stands above (1) or
-        below the line (-1). A written 2*pi makes rad/s of Hz.
+        The literal factors of a product: the power of pi, and whether an even number is in the numerator (1)
+        or the denominator (-1). A literal 2*pi turns Hz into rad/s.
     """
 
     base: pint.Unit = ONE
@@ -77,7 +77,7 @@ def kind_of(text: str, name: str | None = None) -> Kind:
     text
         The unit.
     name
-        That of the value; where it is given in turns, a report names it.
+        The name of the value; a remark uses it if the value is given in turns.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def kind_of(text: str, name: str | None = None) -> Kind:
 
 @dataclass(frozen=True)
 class Constant:
-    """A number, or a number with a unit, in SI; its text as typed."""
+    """A number, with a unit if it has one, in SI, and its text as typed."""
 
     value: float
     kind: Kind
@@ -105,14 +105,14 @@ class Constant:
 
 @dataclass(frozen=True)
 class Word:
-    """An option of a choice, with which the choice is compared."""
+    """An option to which a choice is compared."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Name:
-    """A value of the design."""
+    """The name of a value of the design."""
 
     name: str
 
@@ -126,7 +126,7 @@ class Item:
 
     @property
     def text(self) -> str:
-        """Return the reference as the user writes it: `loads.main_load_x[2]`."""
+        """Return the reference as a user writes it: `loads.main_load_x[2]`."""
         return f"{self.name}[{self.index}]"
 
 
@@ -140,7 +140,7 @@ class Apply:
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """An operation: its function, and the kind of its result from the kinds of its operands."""
+    """An operation: its function, and the rule for the kind of its result from the kinds of its operands."""
 
     sign: str
     calculate: Callable[..., Any]

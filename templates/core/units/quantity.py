@@ -1,7 +1,7 @@
 """Quantities: convert typed values to SI floats or arrays, once.
 
 Typed values are untrusted. Every refusal is a `FaultyText` with a code and a remedy; it quotes only a few
-characters of the text, and is valid JSON text (no lone surrogates).
+characters of the text, and is valid in JSON (no lone surrogates).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ __all__ = [
     "registry", "require_same_kind", "scaled", "unit",
 ]  # fmt: skip
 
-_PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
+_PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # matches a stripped text
 _ABSOLUTE = re.compile(r"(?<![\w°])(?:degC|degF|°C|°F|celsius|fahrenheit|degree_?[CF]\w*)(?!\w)")
 _DEEPEST = 4  # axes of an array
 _DECIMAL_COMMA = re.compile(r"(?<![0-9.,])((?:[0-9]{1,3}(?:\.[0-9]{3}){1,6}|[0-9]*)),([0-9]+)(?![0-9.,])")
@@ -56,9 +56,9 @@ _GRADE = re.compile(r"(?:sae|iso ?vg|vg)[ -]?[0-9]", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class TypedQuantity:
-    """A quantity as its user typed it, and what it is in SI.
+    """A quantity as typed by the user, and its value in SI.
 
-    `extra` is its tolerance as an answer states it, `tolerance` what that means; `si` is the value alone.
+    `extra` is its tolerance as an answer states it, `tolerance` the tolerance in SI; `si` is the value alone.
     """
 
     value: Any
@@ -69,10 +69,10 @@ class TypedQuantity:
 
 
 def read(raw: Any, declared: str) -> TypedQuantity:
-    """Return a quantity from any of its written forms; `declared` is the declared unit of the value.
+    """Return a quantity from any of its accepted forms; `declared` is the declared unit of the value.
 
-    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of such, and a bare number
-    or list of numbers where the declared unit is `1`. A text or an object may hold a tolerance:
+    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of these, and a bare number
+    or list of numbers if the declared unit is `1`. A text or an object may contain a tolerance:
     `"25 ± 1 kN"`, `"plus": 1`.
 
     Raises
@@ -97,7 +97,7 @@ def read(raw: Any, declared: str) -> TypedQuantity:
 
 
 def read_beside(raw: Any, declared: str) -> TypedQuantity:
-    """Return a limit or a target, which has the same kind as the value that it limits.
+    """Return a limit or a target, read as the same kind as the value to which it belongs.
 
     For a temperature difference, `30 degC` means 30 K.
 
@@ -125,7 +125,7 @@ def _as_difference(match: re.Match[str]) -> str:
 
 
 def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
-    """Return a multiple of a quantity, its tolerance with it."""
+    """Return a multiple of a quantity, including its tolerance."""
     tolerance = typed.tolerance
     if tolerance is not None:
         tolerance = replace(
@@ -141,7 +141,7 @@ def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
 
 
 def read_any(raw: Any) -> TypedQuantity:
-    """Read a quantity of any kind; its unit decides.
+    """Return a quantity of any kind; its unit determines the kind.
 
     Raises
     ------
@@ -165,7 +165,7 @@ def _own_unit(raw: Any) -> str:
     return "1"
 
 
-@lru_cache(maxsize=4096)  # who varies one input sends the others again
+@lru_cache(maxsize=4096)  # a user who varies one input sends the others again
 def _read_text(text: str, declared: str) -> TypedQuantity:
     _refuse_decimal_comma(text, declared)
     if not (parts := _parted(text)):
@@ -181,7 +181,7 @@ def _read_text(text: str, declared: str) -> TypedQuantity:
 
 
 def _refuse_decimal_comma(text: str, declared: str) -> None:
-    """Refuse a quantity written with decimal commas, and show it with decimal points.
+    """Raise an error for a quantity with decimal commas that shows it with decimal points.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def _refuse_decimal_comma(text: str, declared: str) -> None:
 
 
 def _with_points(text: str) -> str:
-    """Return a text whose decimal commas do not hide its unit."""
+    """Return a text with decimal points for decimal commas, so that its unit can be read."""
     if "," not in text or len(text) > LONGEST_TEXT:
         return text
     ungrouped = _ENGLISH.sub(lambda match: match[0].replace(",", ""), text)
@@ -256,7 +256,7 @@ def _read_list(raw: list[Any], declared: str) -> TypedQuantity:
 
 
 def _read_each(raw: list[Any], declared: str) -> TypedQuantity:
-    """Return a list of quantities, each in its own unit; shown in the declared one."""
+    """Return a list of quantities, each typed in its own unit, in the declared unit."""
     parts = [read(item, declared) for item in raw]
     if len({np.shape(part.si) for part in parts}) > 1:
         raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
@@ -305,7 +305,7 @@ def _finite(number: float) -> float:
 
 
 def _array(raw: Sequence[Any]) -> Array:
-    """Return a list of numbers, nested evenly, as an array; `true` and texts are not numbers."""
+    """Return an evenly nested list of numbers as an array; `true` and texts are not numbers."""
     flat, shape = list(raw), [len(raw)]
     while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:
         shape.append(len(flat[0]))
@@ -326,7 +326,7 @@ def _array(raw: Sequence[Any]) -> Array:
 
 
 def _joined(rows: Sequence[Any], length: int) -> list[Any]:
-    """Return the items of all rows, which must be lists of one length."""
+    """Return the items of all rows, which must be lists of equal length."""
     if not all(isinstance(row, (list, tuple)) and len(row) == length for row in rows):
         raise FaultyText("uneven", "the rows of an array must be of equal length")
     return [item for row in rows for item in row]

@@ -1,4 +1,4 @@
-"""The unit of a change of one quantity per unit of another: `um` and `N*m` give `um/(N*m)`."""
+"""The unit of the change of one quantity per unit of another: `um` and `N*m` give `um/(N*m)`."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ _PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
 
 
 def quotient(over: str, under: str) -> str:
-    """Return the quotient of two units, in a form that `units.unit` reads.
+    """Return the quotient of two units in a form that `units.unit` reads.
 
-    Of temperatures by that of their difference.
-
-    In base units of SI, where the names of both are too long together.
+    For a temperature, the unit of a temperature difference is used. The result is in SI base units if the
+    names of both units are too long together.
     """
     text = _quotient(difference_of(over), difference_of(under))
     try:
@@ -33,7 +32,7 @@ def _quotient(over: str, under: str) -> str:
 
 
 def _parts(name: str) -> tuple[list[str], list[str]]:
-    """Return the factors in the numerator and the denominator of a unit; `1` counts as no factor."""
+    """Return the factors in the numerator and the denominator of a unit, without factors `1`."""
     top, bottom = list[str](), list[str]()
     for sign, product, factor in _PART.findall(name.replace("**", "^")):
         factors = re.split("[*·]", product) if product else [factor]

@@ -1,10 +1,10 @@
 """Relations, such as `= scale * 48 mm`: parsed to a checked tree, never evaluated as Python.
 
-A relation links a value of a design to others, like a cell of a spreadsheet. A unit follows a number and one
-blank, and contains no blank; every other word is a name. Units are checked before any calculation: a length
-can only be added to a length, an exponent is a pure number, and `degC` is an absolute temperature, which
-cannot be added. `loads.main_load_x[2]` is the second item of an array along its first axis: one curve of
-several.
+A relation derives a value of a design from others, like a cell of a spreadsheet. A unit follows a number and
+one blank, and contains no blank; every other word is a name. Units are checked before any calculation: a
+length can only be added to a length, an exponent is a pure number, and `degC` is an absolute temperature,
+which cannot be added. `loads.main_load_x[2]` is the second item of an array along its first axis: one of
+several curves.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ _parser = lark.Lark(GRAMMAR, parser="lalr", cache=definition_cache.file("relatio
 class Relation:
     """A parsed relation: its text, the names it uses, and its tree.
 
-    `choices` are those of its names that it tests, as in `film.oil is "SAE 30"`; all others are quantities.
-    In a relation that is `decided_by` some choices, words stand in their place.
+    `choices` are those names that it tests, as in `film.oil is "SAE 30"`; all others are quantities. In a
+    relation that is `decided_by` some choices, the chosen words replace these names.
     """
 
     text: str
@@ -54,19 +54,19 @@ class Relation:
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
-        """Return the names that are used as whole arrays, not item by item."""
+        """Return the names that the relation uses as whole arrays, not item by item."""
         if not self.items:
             return self.names
         return frozenset(node.name for node in nodes_of(self.tree) if isinstance(node, Name))
 
     @cached_property
     def only_name(self) -> str | None:
-        """Return the name, where the relation is nothing but a name."""
+        """Return the name if the relation consists of a single name, else None."""
         return self.tree.name if isinstance(self.tree, Name) else None
 
     @cached_property
     def tests(self) -> tuple[tuple[str, str], ...]:
-        """Return each choice that it tests, with the word."""
+        """Return each choice that the relation tests, with the word."""
         nodes = (node.arguments for node in applied_in(self.tree) if node.operation is IS)
         return tuple((choice.name, word.text) for choice, word in nodes if isinstance(choice, Name))
 
@@ -82,12 +82,12 @@ class Relation:
 
     @cached_property
     def has_lists(self) -> bool:
-        """Return whether the relation makes or sums lists; all other operations act item by item."""
+        """Return whether the relation creates or reduces lists; all other operations act item by item."""
         return any(node.operation in LISTWISE for node in applied_in(self.tree))
 
     @cached_property
     def has_conditions(self) -> bool:
-        """Return whether anything in it depends on a condition."""
+        """Return whether any part of the relation depends on a condition."""
         return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
@@ -96,15 +96,15 @@ class Relation:
         Raises
         ------
         FaultyText
-            With code `unit_mismatch`, where units do not go together; `no_truth`, where conditions and
-            quantities do not.
+            With code `unit_mismatch`, if units do not match; `no_truth`, if a condition is used as a quantity
+            or vice versa.
         """
         return _checked(self.text, self._kinds(kinds))
 
     def misfit(self, kinds: Mapping[str, Kind], declared: str) -> str:
         """Return why the value does not fit the declared unit, and a remedy; empty if it fits.
 
-        The text follows the declared name and its unit: `, but this gives a length`.
+        The text continues a sentence about the declared name and its unit: `, but this gives a length`.
 
         Raises
         ------
@@ -119,12 +119,12 @@ class Relation:
     def value(self, values: Mapping[str, Value]) -> Value:
         """Return the value in SI from the SI values of its names; it may be infinite or NaN.
 
-        Items that are known already stand among the values, by their text: `loads.main_load_x[2]`.
+        `values` may already contain items of arrays under their text: `loads.main_load_x[2]`.
 
         Raises
         ------
         FaultyText
-            With code `shape`, where arrays of different lengths meet; `index`, where an index is no place of
+            With code `shape`, if arrays of different lengths are combined; `index`, if an index is outside
             its array.
         """
         if self.only_name:
@@ -133,7 +133,7 @@ class Relation:
 
     @cached_property
     def _constant(self) -> Value:
-        """Return the value of a relation without names: computed once."""
+        """Return the value of a relation without names, computed once."""
         return self._calculated({})
 
     def _calculated(self, values: Mapping[str, Value]) -> Value:
@@ -145,19 +145,19 @@ class Relation:
             raise FaultyText("shape", f"{self.text!r} combines arrays of different lengths") from None
 
     def _with_items(self, values: Mapping[str, Value]) -> Mapping[str, Value]:
-        """Return the values, with the items of arrays added under their text, as `loads[2]`."""
+        """Return the values, with the items of arrays added under their text, such as `loads[2]`."""
         chosen = {item.text: item_of(item, values) for item in self.items if item.text not in values}
         return {**values, **chosen}
 
 
 def is_relation(raw: Any) -> bool:
-    """Return whether a value is a relation: a text that begins with `=`."""
+    """Return whether a value is a relation, which is a text that begins with `=`."""
     return isinstance(raw, str) and raw.lstrip().startswith("=")
 
 
 @lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Relation:
-    """Read a relation.
+    """Return the relation in a text.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
 
 @lru_cache(maxsize=REMEMBERED)
 def _misfit(text: str, kinds: tuple[tuple[str, Kind], ...], declared: str) -> str:
-    """Return the same as `Relation.misfit`, without its cache."""
+    """Return the result of `Relation.misfit`, without its cache."""
     kind, want, written = _checked(text, kinds), unit(declared), text.removeprefix("=").strip()
     if mismatch := misfit(kind, want, written):
         why, remedy = mismatch

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache, reduce
 from itertools import product as pairs_of
 from typing import Any
 
-from templates.core.errors import FaultyText
+from templates.core.errors import FaultyText, listed
 from templates.core.units.nodes import DIFFERENCE, EITHER, Apply, Constant, Kind, Operation, Temperatures
 from templates.core.units.units import (
     base_text,
@@ -21,11 +21,11 @@ from templates.core.units.units import (
 
 RADIAN = registry.Unit("radian")
 MAX_EXPONENT, MAX_UNIT_POWER = 12, 1000
-_MOST_COUNTS = 64  # numbers of temperatures that a value may add up
+_MOST_COUNTS = 64  # most possible counts of temperatures that a value may contain
 
 
 def same(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return all in units of one kind."""
+    """Return the kind shared by all operands."""
     return reduce(lambda one, other: shared(operation.sign, one, other, nodes), kinds)
 
 
@@ -35,15 +35,41 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     if one.temperatures is None or other.temperatures is None:
         return _kind(counted, None, is_literal=one.literal or other.literal)
     if not (both := one.temperatures & other.temperatures):
-        text = next(map(literal, filter(literal, nodes)), "")
-        remedy = f"; write {as_difference(text)} for a difference" if text else ""
         what = "a temperature and a difference of temperatures"
-        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}{remedy}")
+        remedy = _remedy(one.temperatures, other.temperatures, nodes)
+        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}; {remedy}")
     return _kind(counted, both, is_literal=one.literal or other.literal)
 
 
+def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, ...]) -> str:
+    """Return how a temperature and a difference become values of one kind.
+
+    A number typed in degC or degF as a summand of either may be meant as a difference.
+    """
+    sides = ((one, other), (other, one)) if len(nodes) == 2 else ()
+    for (own, beside), node in zip(sides, nodes, strict=False):
+        for texts, sign in _summands(node):
+            if {count - sign for count in own} & beside:
+                meant = "a difference" if len(texts) == 1 else "differences"
+                return f"write {listed([as_difference(text) for text in texts])} for {meant}"
+    return "subtract a temperature from the temperature, or add one to the difference"
+
+
+def _summands(node: Any, sign: int = 1) -> Iterator[tuple[tuple[str, ...], int]]:
+    """Yield numbers typed in degC or degF that a sum adds or subtracts; those of min and max together."""
+    match node:
+        case Constant() if text := literal(node):
+            yield (text,), sign
+        case Apply(Operation("min" | "max"), arguments) if all(map(literal, arguments)):
+            yield tuple(map(literal, arguments)), sign
+        case Apply(Operation("+" | "-" as operator), (*firsts, last)):
+            for first in firsts:
+                yield from _summands(first, sign)
+            yield from _summands(last, -sign if operator == "-" else sign)
+
+
 def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
-    """Return the common kind of two operands; 1/s takes the unit of rad/s or Hz beside it."""
+    """Return the common kind of two operands; 1/s becomes rad/s or Hz if the other operand has that unit."""
     detail = f"{sign} needs equal units, not {in_words(one)} and {in_words(other)}"
     if not compatible(one, other):
         is_of_rates = is_rate(one.base) and is_rate(other.base)
@@ -69,7 +95,7 @@ def _counted(node: Any) -> str:
 def _kind(
     of: Kind, temperatures: Temperatures, *, is_literal: bool = False, pi: int = 0, twos: Iterable[int] = ()
 ) -> Kind:
-    """Return a kind; what has no temperature in its unit adds up none, what has no angle counts no turns."""
+    """Return a kind; only a unit of temperature counts temperatures, only one with an angle counts turns."""
     is_kelvin = of.base == registry.kelvin
     few = temperatures is None or len(temperatures) <= _MOST_COUNTS
     return Kind(
@@ -84,7 +110,7 @@ def _kind(
 
 
 def relative(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...] = ()) -> None:
-    """Refuse temperatures typed in degC or degF: they may be meant as differences."""
+    """Raise an error for numbers typed in degC or degF, which may be meant as differences."""
     if any(kind.literal for kind in kinds):
         texts = [text for node in nodes if (text := literal(node))]
         what = texts[0] if texts else "a temperature in degC or degF"
@@ -94,7 +120,7 @@ def relative(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...] = (
 
 
 def literal(node: Any) -> str:
-    """Return a number typed in degC or degF, as typed."""
+    """Return the text of a number typed in degC or degF; empty for any other node."""
     return node.text if isinstance(node, Constant) and node.kind.literal else ""
 
 
@@ -115,12 +141,12 @@ def as_difference(text: str) -> str:
 def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
     """Return a number typed in degC or degF as a comparison reads it; empty if it is read as typed.
 
-    Beside a temperature difference the number is a difference too.
+    If the other side is a temperature difference, the number is a difference too.
 
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, beside a value in K that may be either.
+        With code `unit_mismatch`, if the other side is a value in K that may be either.
     """
     if not (text := literal(node)):
         return ""
@@ -152,7 +178,7 @@ def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> K
 
 
 def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return a product or a quotient; a written factor 2*pi turns cycles into an angle, or back."""
+    """Return the kind of a product or quotient; a literal factor 2*pi turns cycles into an angle, or back."""
     relative(operation, kinds, nodes)
     one, other = kinds
     sign = -1 if operation.sign == "/" else 1
@@ -169,7 +195,7 @@ def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> 
 
 
 def _scaled(sign: str, nodes: tuple[Any, ...], one: Kind, other: Kind) -> Temperatures:
-    """Return the temperatures that a product or quotient adds up; of others than plain numbers, none."""
+    """Return how many temperatures a product or quotient contains; only pure numbers count as factors."""
     factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
     if factor is not None and one.base == registry.kelvin:
         if one.temperatures is None or (sign == "/" and not factor):
@@ -179,12 +205,12 @@ def _scaled(sign: str, nodes: tuple[Any, ...], one: Kind, other: Kind) -> Temper
         return None if other.temperatures is None else frozenset(n * divided for n in other.temperatures)
     operands = [kind.temperatures for kind in (one, other) if kind.base == registry.kelvin]
     if not operands:
-        return EITHER  # of heat and heat capacity, a difference; of pressure and density, a temperature
+        return EITHER  # heat / heat capacity is a difference; pressure / density gives a temperature
     return DIFFERENCE if all(counts and 0.0 in counts for counts in operands) else None
 
 
 def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return a power; a quantity with a unit needs a constant exponent."""
+    """Return the kind of a power; a quantity with a unit needs a constant exponent."""
     relative(operation, kinds, arguments)
     base, exponent = kinds
     if not is_number(exponent):
@@ -210,10 +236,7 @@ def _raised(kind: Kind, exponent: float) -> Kind:
 
 
 def plain_number(node: Any) -> float | None:
-    """Return the value of a pure number, or of a quotient of two, such as 1/3; None for everything else.
-
-    None of everything else.
-    """
+    """Return the value of a pure number, or of a quotient of two, such as 1/3; None for everything else."""
     match node:
         case Constant(value=value, kind=kind) if is_number(kind):
             return value
@@ -224,7 +247,7 @@ def plain_number(node: Any) -> float | None:
 
 
 def root(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return a square root."""
+    """Return the kind of a square root."""
     relative(operation, kinds, arguments)
     return _raised(kinds[0], 0.5)
 
@@ -235,7 +258,7 @@ def keep(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return a function of a pure number or an angle."""
+    """Return the kind of a function of a pure number or an angle."""
     if not is_number(kinds[0]):
         raise FaultyText(
             "unit_mismatch", f"{operation.sign} takes an angle or a pure number, not {in_words(kinds[0])}"
@@ -244,13 +267,13 @@ def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return the angle of two lengths, or of two values of any one kind."""
+    """Return the kind of the angle of two lengths, or of two values of the same kind."""
     same(operation, kinds, arguments)
     return Kind(RADIAN)
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return a pure number; refuse a quantity: its whole part depends on the unit (3.7 mm is 0.0037 m)."""
+    """Return the kind of a rounded pure number; a quantity is refused, because 3.7 mm is 0.0037 m."""
     if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(
@@ -265,7 +288,7 @@ def is_number(kind: Kind) -> bool:
 
 
 def in_words(kind: Kind) -> str:
-    """Return a kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
+    """Return a kind as text, by a unit with its own name: `N` for `kg·m/s²`."""
     if is_rate(kind.base) and kind.cycles:
         return base_text(kind)
     named = (name for name, base in _named().items() if base == kind.base)
@@ -274,6 +297,6 @@ def in_words(kind: Kind) -> str:
 
 @cache
 def _named() -> dict[str, Any]:
-    """Return the derived units with names of their own, such as N, in SI base units."""
+    """Return the derived units with names of their own, such as N, by their SI base units."""
     names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
     return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}

@@ -1,4 +1,4 @@
-"""The sort of a node in an expression: a quantity, a temperature, a condition, a list, a choice."""
+"""The sort of a node in an expression: a quantity, a temperature, a condition, a list, or a choice."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ class Sort:
     Attributes
     ----------
     kind
-        What it is measured in.
+        The kind of quantity.
     truth
         Whether it is a condition, which is not a quantity.
     axis
-        The name of what its list runs over; empty for a single value.
+        The name of the axis of its list; empty for a single value.
     words
         The options of a choice.
     depth, size
-        Of its tree, which are bounded; a part at two places is calculated twice, and counts twice.
+        Depth and size of its tree, which are limited; a part that occurs twice is calculated twice and counts
+        twice.
     """
 
     kind: Kind = PURE
@@ -42,13 +43,13 @@ class Sort:
 
 
 Part = tuple[Any, Sort]
-"""A node and its result."""
+"""A node and its sort."""
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:
-    """Return an operation applied to its parts, and its sort.
+    """Return an operation applied to its operands, and its sort.
 
-    A single value that meets a list is given a trailing axis here, once.
+    A single value that is combined with a list gets a trailing axis here, once.
 
     Raises
     ------
@@ -83,7 +84,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
 
 
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
-    """Return the condition that follows from the operands; refuse operands of the wrong sort."""
+    """Return whether the result is a condition; raise an error for operands of the wrong sort."""
     if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
         raise FaultyText("no_truth", f"a choice is not a quantity: test it, as in law is {words[0]}")
     truths = [sort.truth for sort in sorts]
@@ -105,7 +106,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
 
 
 def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
-    """Return the axis of the result, and whether single values meet a list."""
+    """Return the axis of the result, and whether single values are combined with a list."""
     axes = list(dict.fromkeys(sort.axis for sort in sorts if sort.axis))
     if operation is LIST:
         if axes:
@@ -135,7 +136,7 @@ def _single_item(whole: Sort, index: Sort) -> str:
 
 
 def literal_axis(count: int) -> str:
-    """Return the axis of a list that is written out."""
+    """Return the axis name of a literal list."""
     return f"{count} item{'s' if count > 1 else ''}"
 
 

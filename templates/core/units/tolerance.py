@@ -21,7 +21,7 @@ Distribution = Literal["normal", "uniform", "triangular"]
 DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
 FORMS = "55 ± 5 um, 55 +10/-5 um or 48 mm H7"
 KEYS = ("plus", "minus", "upper", "lower", "zone", "distribution")
-"""What may stand beside `value` and `unit` in an object."""
+"""The keys that an object may have in addition to `value` and `unit`."""
 
 LONGEST_TEXT = 200
 NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
@@ -35,17 +35,17 @@ _FIT = re.compile(rf"{_ZONE.pattern}\s*/\s*{_ZONE.pattern}")
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Between which limits a value lies.
+    """The limits of a value and its distribution between them.
 
     Attributes
     ----------
     lower, upper
         Deviations of the limits from the value [SI, a difference]; one for all points, or one for each.
     distribution
-        Between the limits: `normal` with the limits at three standard deviations and cut there, `uniform`, or
-        `triangular`; the mean, and the peak, stand in the middle of the limits.
+        The distribution between the limits: `normal` (limits at three standard deviations, truncated there),
+        `uniform`, or `triangular`. Mean and peak are in the middle of the limits.
     zone
-        That of ISO 286 from which the limits come.
+        The ISO 286 zone from which the limits come.
     """
 
     lower: Value
@@ -56,7 +56,7 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Written:
-    """A tolerance as it stands in a text: the unit of the value, and what follows it."""
+    """A tolerance as written in a text: the unit of the value, and the text that follows."""
 
     unit: str
     lower: float
@@ -114,7 +114,7 @@ def _written(first: str, lower: float, upper: float, last: str) -> Written:
 
 
 def _signed(sign: str, number: str) -> float:
-    """Return a deviation; only nothing needs no sign."""
+    """Return a deviation; only zero may be written without a sign."""
     size = float(number)
     if not sign and size:
         raise FaultyText("not_a_tolerance", f"give {number} a sign, as in {FORMS}")
@@ -122,7 +122,7 @@ def _signed(sign: str, number: str) -> float:
 
 
 def is_toleranced(raw: Any) -> bool:
-    """Return whether a quantity as its user wrote it, or any of a list, has a tolerance."""
+    """Return whether a quantity as written by the user, or any item of a list, has a tolerance."""
     match raw:
         case str():
             return _has_tolerance(raw)
@@ -145,15 +145,15 @@ def _has_tolerance(text: str) -> bool:
 
 
 def is_zone(text: str) -> bool:
-    """Return whether a text names a zone that is shipped."""
+    """Return whether a text names a zone in the table."""
     return text in zones()
 
 
 def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> Tolerance | None:
     """Return the tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
 
-    `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are deviations with
-    their sign, for limits that lie on one side. Each is a number in the value's unit, or a text.
+    `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are signed
+    deviations, for limits that may both be on one side. Each is a number in the value's unit, or a text.
 
     Raises
     ------
@@ -196,9 +196,9 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
 
 
 def _of_text(name: str, declared: str) -> Unit:
-    """Return the unit of a tolerance that has its own text.
+    """Return the unit of a tolerance that is given as a text.
 
-    A tolerance on a temperature is a difference, not degC.
+    A tolerance of a temperature is a difference, so its unit is not degC.
     """
     if not name and declared != "1":
         raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
@@ -219,7 +219,7 @@ def _is_temperature(declared: str) -> bool:
 
 
 def _ends(limits: Mapping[str, float]) -> tuple[float, float]:
-    """Lower and upper deviation, from `plus` and `minus`, or from `lower` and `upper`."""
+    """Return the lower and upper deviation, from `plus` and `minus`, or from `lower` and `upper`."""
     if limits.keys() <= {"plus", "minus"}:
         for key, size in limits.items():
             if size < 0:
@@ -249,12 +249,12 @@ def _of_zone(
 def in_zone(
     zone: str, si: float, name: str, distribution: Distribution = "normal"
 ) -> tuple[Tolerance, dict[str, Any]]:
-    """Return the tolerance of a nominal size [m] in a zone of ISO 286, and how an answer states it.
+    """Return the tolerance of a nominal size [m] in a zone of ISO 286, and the text that an answer shows.
 
     Raises
     ------
     FaultyText
-        If the zone is not shipped, or not for this size; if the quantity is not a length.
+        If the zone is not available, or not for this size; if the quantity is not a length.
     """
     scale = unit(name)
     if scale.base != unit("m").base:
@@ -272,7 +272,7 @@ def _between(lower: float, upper: float, distribution: Distribution = "normal") 
 
 
 def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
-    """Return a tolerance in a unit, as an answer states it: `plus`, `minus`; `upper`, `lower` on one side."""
+    """Return a tolerance in a unit as an answer states it: `plus`, `minus`; or `upper`, `lower`."""
     lower, upper = (_short(float(end) / scale.factor) for end in (tolerance.lower, tolerance.upper))
     if lower <= 0 <= upper:
         return {"plus": upper, "minus": 0.0 if lower == 0 else -lower}
@@ -280,17 +280,17 @@ def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
 
 
 def _short(number: float) -> float:
-    """Return a number without its last digits, which are rounding errors of the conversion."""
+    """Return a number without its last digits, which are rounding errors of the unit conversion."""
     return float(f"{number:.12g}")
 
 
 def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
-    """Return the tolerances of the items of a list as one; None if no item has any.
+    """Return the tolerances of the items of a list as one tolerance; None if no item has any.
 
     Raises
     ------
     FaultyText
-        If the items are distributed in several ways.
+        If the items have different distributions.
     """
     present = [one for one in tolerances if one is not None]
     if not present:

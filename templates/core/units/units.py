@@ -1,12 +1,12 @@
 """Units: the factor to SI and the kind of quantity; the Pint registry; which unit may replace which.
 
 The registry only parses units; no Pint object reaches a formula's hot path.
-A unit text is untrusted: its grammar is checked before Pint sees it (`m**9**9**9` would hang Pint).
+A unit text is untrusted: its grammar is checked before Pint reads it (`m**9**9**9` would block Pint).
 
-Two kinds of quantity share a dimension, and the unit says which is meant:
+Two kinds of quantity have the same dimension, and the unit determines which is meant:
 
-- A temperature (degC, degF) and a difference of temperatures (delta_degC, delta_degF); K may be either.
-- An angular speed (rad/s, rpm, rev/s), kept in rad/s, and a frequency in Hz: cycles per second. 1/s may be
+- A temperature (degC, degF) and a temperature difference (delta_degC, delta_degF); K may be either.
+- An angular speed (rad/s, rpm, rev/s), stored in rad/s, and a frequency in Hz: cycles per second. 1/s may be
   either, except where turns are counted.
 """
 
@@ -43,7 +43,7 @@ _PRINTED = {
 }
 
 _PARSED = f"units-{pint.__version__}-{flexparser.__version__}-{flexcache.__version__}"
-"""The folder that keeps Pint's definitions parsed; Pint names its files by what they were made from."""
+"""The folder of Pint's parsed definitions; Pint names its files by their source."""
 
 
 def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
@@ -60,7 +60,7 @@ _PRODUCT = rf"{_FACTOR}(?:[*·]{_FACTOR})*"
 _UNIT = rf"(?:1|{_PRODUCT})(?:[*·/](?:{_FACTOR}|\({_PRODUCT}\)))*"
 _PATTERN = re.compile(_UNIT)
 _REVOLUTION = re.compile(r"(?<![A-Za-z_])r(?=/(?:min|s|h)(?![A-Za-z]))")
-"""The revolution as ISO 80000-3 writes it: r/min."""
+"""The printed form of a revolution per minute in ISO 80000-3: r/min."""
 _AMBIGUOUS = {
     re.compile(rf"(?<![A-Za-z_])(?:{names})(?![A-Za-z_])"): remedy
     for names, remedy in {
@@ -69,7 +69,7 @@ _AMBIGUOUS = {
         "[GM](?:rad|deg)": "write mrad or deg for an angle",
     }.items()
 }
-"""Words that mean one unit to a reader and another to Pint: `Grad` is German for degrees, here 1e9 rad."""
+"""Words that a reader and Pint interpret differently: `Grad` is German for degrees, here 1e9 rad."""
 LONGEST_UNIT = 60
 
 
@@ -84,7 +84,9 @@ class Unit:
     difference: bool  # of two temperatures
     cycles: float = 0.0  # the power of the hertz
     turns: bool = False  # counts revolutions: rpm, rev/s, turn
-    plain_angle: bool = True  # of angles: counts radians by name, as rad/s does and rpm and deg/s do not
+    plain_angle: bool = (
+        True  # for angles: whether the unit names radians, as rad/s does and rpm and deg/s do not
+    )
 
     @property
     def absolute(self) -> bool:
@@ -106,9 +108,9 @@ MOST_REMEMBERED = 20_000
 
 
 def forget_units() -> None:
-    """Clear the caches of Pint when they are large: Pint keeps every unit that it ever parsed.
+    """Clear Pint's caches if they are large, because Pint keeps every unit that it has parsed.
 
-    Call it where units come in that a user made up. What was forgotten is calculated again.
+    Call this where users send arbitrary units. Cleared entries are parsed again when needed.
     """
     kept = registry._cache
     for remembered in (kept.root_units, kept.dimensionality, kept.parse_unit, kept.conversion_factor):
@@ -161,7 +163,7 @@ def _hint(text: str) -> str:
 
 
 class Measured(Protocol):
-    """What a unit or a value measures: its base units in SI, and the power of the hertz among them."""
+    """What a unit or a value measures: its SI base units, and the power of the hertz among them."""
 
     @property
     def base(self) -> pint.Unit:
@@ -173,13 +175,13 @@ class Measured(Protocol):
 
 
 def base_text(measured: Measured) -> str:
-    """Return the SI unit of a quantity as `unit` reads it: `kg/m/s**2`, `1`, `Hz`."""
+    """Return the SI unit of a quantity in the form that `unit` reads: `kg/m/s**2`, `1`, `Hz`."""
     cycles = measured.cycles if is_rate(measured.base) else 0.0
     return f"{registry.Unit(measured.base * _CYCLE**cycles) if cycles else measured.base:~C}" or "1"
 
 
 def is_rate(base: pint.Unit) -> bool:
-    """Return whether base units are a power of time, with or without angles."""
+    """Return whether base units are a power of time, possibly multiplied by angles."""
     return dict(registry.get_dimensionality(base)).keys() == {"[time]"}
 
 
@@ -192,7 +194,7 @@ def radians(base: pint.Unit) -> float:
 def compatible(one: Measured, other: Measured) -> bool:
     """Return whether two values can be compared.
 
-    A rate in rad/s and one in Hz can not; 1/s may be either.
+    A rate in rad/s cannot be compared with one in Hz; 1/s can be compared with both.
     """
     if registry.get_dimensionality(one.base) != registry.get_dimensionality(other.base):
         return False
@@ -203,12 +205,12 @@ def compatible(one: Measured, other: Measured) -> bool:
 
 
 def _counted(measured: Measured) -> tuple[float, float]:
-    """Return the powers of the radian and of the hertz, by which rates differ."""
+    """Return the powers of the radian and of the hertz, by which kinds of rates differ."""
     return radians(measured.base), measured.cycles
 
 
 def dimension_of(measured: Measured) -> str:
-    """Return a text that is equal for units of one dimension; rad/s, Hz and 1/s are three."""
+    """Return a text that is equal for units of the same dimension; rad/s, Hz and 1/s have different texts."""
     dimensions = dict(registry.get_dimensionality(measured.base))
     counted = zip(("rad", "cycle"), _counted(measured) if is_rate(measured.base) else (), strict=False)
     powers = sorted([*dimensions.items(), *((name, power) for name, power in counted if power)])
@@ -222,7 +224,7 @@ def require_same_kind(typed: str, declared: str) -> Unit:
     Raises
     ------
     FaultyText
-        If it measures something else, is ambiguous as a speed, or mixes a temperature with a difference.
+        If it measures something else, is ambiguous as a speed, or confuses a temperature with a difference.
     """
     got, want = unit(typed), unit(declared)
     if compatible(got, want) and not _mixes_difference(got, want) and not _miscounts(got, want):
@@ -231,17 +233,17 @@ def require_same_kind(typed: str, declared: str) -> Unit:
 
 
 def difference_of(name: str) -> str:
-    """Return the unit of a difference of two temperatures in a unit: `delta_degC` of `degC`."""
+    """Return the unit for a difference of two temperatures in a unit: `delta_degC` for `degC`."""
     return difference_in(name) if unit(name).absolute else name
 
 
 def difference_in(name: str) -> str:
-    """Return the unit of a difference that is declared in K or its like; the unit itself if there is none."""
+    """Return the unit of a difference that is declared in a unit such as K, else the unit itself."""
     return {1.0: "delta_degC", unit("degF").factor: "delta_degF"}.get(unit(name).factor, name)
 
 
 def beside(typed: str, declared: str) -> str:
-    """Return the unit of a limit, a target or a shown value, so that it has the kind of the value itself.
+    """Return the unit of a limit, target or shown value, so that it has the same kind as the value.
 
     For a temperature difference, degC becomes delta_degC.
     """
@@ -255,9 +257,9 @@ def _mixes_difference(got: Unit, want: Unit) -> bool:
 
 
 def _miscounts(got: Unit, want: Unit) -> bool:
-    """Return whether a typed number might be wrong by 2π: angle where none is declared, or none in turns."""
+    """Return whether a typed number may be wrong by 2π: an angle where there is none, or vice versa."""
     counted, wanted = _counted(got), _counted(want)
-    if want.text == "1":  # 1e6 cycles are an angle to Pint
+    if want.text == "1":  # Pint reads 1e6 cycles as an angle
         return counted[0] != 0
     if not is_rate(got.base) or counted == wanted:
         return False
@@ -279,7 +281,7 @@ def _why_not(got: Unit, want: Unit) -> tuple[str, str]:
 
 
 def _of_other_kind(got: Unit, want: Unit) -> str:
-    """Return a sentence if a temperature was given for a temperature difference, or the reverse."""
+    """Return a sentence if a temperature was given for a temperature difference, or vice versa."""
     if want.absolute:
         return f"{got.text} does not fit: here a temperature, not a difference, is wanted; {_remedy(want)}"
     other = difference_of(got.text)
@@ -298,7 +300,7 @@ def _remedy(want: Unit) -> str:
 def _meant(got: Unit, want: Unit) -> str:
     """Return a hint on units that are often mistaken.
 
-    Pint takes C for coulomb, F for farad, U for an enzyme unit.
+    Pint reads C as coulomb, F as farad, U as an enzyme unit.
     """
     if want.base == registry.kelvin and got.text in ("C", "F"):
         return f" ({got.text} is not a temperature: write deg{got.text})"
@@ -328,9 +330,9 @@ def _measured(scale: Unit) -> str:
 
 @lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
-    """Return the printed form of a unit, with its order kept: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+    """Return the printed form of a unit, factors in the same order: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 
-    Empty for a pure number.
+    The result is empty for a pure number.
     """
     if text == "1":
         return ""

@@ -1,1 +1,1 @@
-"""Films with mass-conserving cavities, static and over time."""
+"""Films with mass-conserving cavitation, static and time-dependent."""

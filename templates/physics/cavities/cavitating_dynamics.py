@@ -1,9 +1,9 @@
 """Linear stiffness and damping of a film with mass-conserving cavities, by perturbing its discrete equations.
 
 The set of full nodes is held constant. In full nodes the pressure follows the change of the gap, in the
-others the void does: a front of re-formation moves with the oil that reaches it. The damping holds for slow
-motion: the oil stored in cavities follows the displacement, so its rate of change is proportional to the
-velocity. Grooves stand still.
+others the void fraction does; a re-formation front therefore moves with the oil that reaches it. The damping
+applies to slow motion: the oil stored in cavities follows the displacement, so its rate of change is
+proportional to the velocity. Grooves are stationary.
 
 Axes and scales are those of `film_dynamics`, but with psi²/(B D eta omega_h) in place of the load, so that
 the coefficients stay finite as the load vanishes.
@@ -22,19 +22,21 @@ from templates.physics.films.film_equations import midpoints
 from templates.physics.films.film_mesh import gap
 
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)
 class LinearFilm:
-    """Force of a film and its derivatives; along and ahead of the line of centres, in the units of So."""
+    """The force of a film and its derivatives, along and ahead of the line of centres, in units of So."""
 
     force: Array
-    """(2,)"""
+    """Force, (2,)."""
     K: Array
-    """(2, 2) by displacement over the radial clearance."""
+    """Stiffness, (2, 2), per displacement over the radial clearance."""
     B: Array
-    """(2, 2) by velocity over omega_h times the radial clearance."""
+    """Damping, (2, 2), per velocity over omega_h times the radial clearance."""
 
     def turned(self, attitude: float) -> "LinearFilm":
         """Return the same values in axes x, y; the line of centres is ahead of x by the attitude [rad]."""
@@ -59,7 +61,7 @@ def linear_film(film: RingSolution) -> LinearFilm:
 
 
 def _response(film: RingSolution) -> Callable[[Array], tuple[Array, Array]]:
-    """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
+    """Return a function: the changes of pressure and void that compensate a loss of oil at the nodes."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0
     slopes, is_full = ColumnScaledSum.of(network.A, network.T).among(free), full[free]

@@ -1,10 +1,10 @@
 """Static journal bearing with mass-conserving cavities, grooves and supply pressure.
 
-Boundary conditions: ambient pressure at the ends, supply pressure in the grooves, which are full; elsewhere
+Boundary conditions: ambient pressure at the ends, supply pressure in the grooves, which are full. Elsewhere
 the film ruptures and re-forms as mass conservation requires (`cavitation`). Pressures are relative to the
-cavity pressure, P = p psi²/(eta omega_h). The method is of first order at the re-formation: with 128 × 16
-intervals the errors are about 0.1 % in So and 3 % in side flow; the flow from pockets that end inside the
-width converges more slowly, with errors of 10 % and more. The film turns in the positive sense.
+cavity pressure, P = p psi²/(eta omega_h). The method is first-order accurate at re-formation: with 128 × 16
+intervals the errors are about 0.1 % in So and 3 % in side flow. The flow from pockets that end inside the
+width converges more slowly, with errors of 10 % and more. The journal rotates in the positive sense.
 """
 
 from dataclasses import dataclass
@@ -24,12 +24,12 @@ _COARSEST = 16, 6
 
 @dataclass(frozen=True)
 class RingSolution:
-    """A solved film on its nodes."""
+    """A solved film with the values at its nodes."""
 
     ring: Ring
-    """Where the nodes are."""
+    """The positions of the nodes."""
     network: Network
-    """Their balances of flow."""
+    """The flow balances of the nodes."""
     solution: Cavitation
     """Pressure and void."""
     fed: Mask
@@ -38,7 +38,7 @@ class RingSolution:
 
 @dataclass(frozen=True)
 class CavitatingFilm:
-    """A solved film; values dimensionless as in `film_measures.Film`."""
+    """The results of a solved film, dimensionless as in `film_measures.Film`."""
 
     So: float
     """Sommerfeld number F psi²/(B D eta omega_h)."""
@@ -47,13 +47,13 @@ class CavitatingFilm:
     P_max: float
     """Largest pressure above that of the cavity."""
     friction: float
-    """Friction on the journal F_f psi/(B D eta omega), shear by the oil there is."""
+    """Friction on the journal F_f psi/(B D eta omega), with shear of the existing oil only."""
     side_flow: float
-    """Oil that leaves at both ends, less what enters, Q/(R³ psi omega_h)."""
+    """Net oil flow out of both ends, Q/(R³ psi omega_h)."""
     supply_flow: float
     """Oil that the grooves feed, Q/(R³ psi omega_h)."""
     imbalance: float
-    """Supply less side flow, over the flow that the journal carries round."""
+    """Supply minus side flow, over the flow that the journal transports."""
     phi: Array
     """(n + 1,) angles of the nodes from the narrowest gap; the last is the first [rad]."""
     zeta: Array
@@ -61,7 +61,7 @@ class CavitatingFilm:
     P: Array
     """(n + 1, m + 1) pressure above that of the cavity."""
     void: Array
-    """(n + 1, m + 1) share of the gap without oil."""
+    """(n + 1, m + 1) fraction of the gap without oil."""
 
 
 def solved_ring(
@@ -73,7 +73,7 @@ def solved_ring(
     across: int = 16,
     near: RingSolution | None = None,
 ) -> RingSolution:
-    """Solve the static film with cavities, from a film nearby or from coarse meshes to the requested one.
+    """Solve the static film with cavities, starting from a nearby film or from coarser meshes.
 
     Parameters
     ----------
@@ -82,15 +82,15 @@ def solved_ring(
     ratio
         Width over diameter B/D [-].
     grooves
-        Where oil is fed.
+        The grooves that feed oil.
     ambient
         Pressure at the ends above that of the cavity, 0 or more [-].
     around
-        Intervals around.
+        Number of intervals in the circumferential direction.
     across
-        Intervals across half the width.
+        Number of intervals over half the width.
     near
-        A solved film of almost the same place: the start, which saves the coarse meshes.
+        A solved film at almost the same position, used as the initial guess in place of coarser meshes.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def solved_ring(
 
 
 def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
-    """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
+    """Interpolate pressure and void linearly in each direction to the nodes of a finer mesh."""
     ring = solved.ring
     around, across = _between(ring.phi, finer.phi[:-1]), _between(ring.zeta, finer.zeta)
 
@@ -127,20 +127,20 @@ def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
 
 
 def _between(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
-    """Return the node before each place, and the fraction of the interval up to the place."""
+    """Return the index of the node before each place, and the fraction of the interval up to the place."""
     before = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, nodes.size - 2)
     return before, np.clip((places - nodes[before]) / np.diff(nodes)[before], 0.0, 1.0)
 
 
 def force(ring: Ring, P: Array) -> Array:
-    """Return the force along and ahead of the line of centres of a pressure at the nodes, as So, (2,) [-]."""
+    """Return the force of a nodal pressure along and ahead of the line of centres, as So, (2,) [-]."""
     weight = dual_widths(ring.phi)
     axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
 
 
 def measured(solved: RingSolution) -> CavitatingFilm:
-    """Integrate load, friction and flow."""
+    """Return the results of a solved film by integrating load, friction and flow."""
     ring, solution, fed = solved.ring, solved.solution, solved.fed
     P, void = ring.closed(solution.P), ring.closed(solution.void)
     along, ahead = force(ring, solution.P)

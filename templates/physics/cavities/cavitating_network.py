@@ -21,21 +21,21 @@ Numbers = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Groove:
-    """An axial groove or pocket, full at its pressure; a width of 0 makes a line."""
+    """An axial groove or pocket, full at its own pressure; a width of 0 makes it a line."""
 
     centre: float
-    """From the narrowest gap in the sense of rotation [rad]."""
+    """Angle from the narrowest gap in the sense of rotation [rad]."""
     width: float
-    """Extent around [rad]."""
+    """Circumferential extent [rad]."""
     length: float = 1.0
-    """Extent across over the bearing's width, 0 … 1 [-]."""
+    """Axial extent over the bearing's width, 0 … 1 [-]."""
     P: float = 0.0
     """Supply pressure above that of the cavity [-]."""
 
 
 @dataclass(frozen=True)
 class Ring:
-    """Where the nodes are: those around × those across, the axial index fastest; phi ends where it starts."""
+    """The positions of the nodes: circumferential × axial, axial index fastest; phi ends where it starts."""
 
     eps: float
     """Relative eccentricity [-]."""
@@ -47,18 +47,18 @@ class Ring:
     """(m + 1,) axial places, 0 (middle) … 1 (end)."""
 
     def closed(self, values: Array) -> Array:
-        """Return the node values as an array around × across whose last row repeats the first."""
+        """Return the node values as a circumferential × axial array whose last row repeats the first."""
         rows = values.reshape(self.phi.size - 1, self.zeta.size, *values.shape[1:])
         return np.concatenate([rows, rows[:1]])
 
     def cells(self) -> Array:
-        """Return (N,) areas dphi dzeta of the cells around the nodes."""
+        """Return the (N,) areas dphi dzeta of the cells around the nodes."""
         around = dual_widths(self.phi)
         return np.outer(np.append(around[0] + around[-1], around[1:-1]), dual_widths(self.zeta)).ravel()
 
 
 def grooved_ring(eps: float, ratio: float, grooves: list[Groove], n: int, m: int) -> Ring:
-    """Return a graded mesh whose nearest nodes are moved to the edges of the grooves."""
+    """Return a graded mesh in which the nodes nearest to the groove edges are moved onto them."""
     mesh = ring_mesh(eps, ratio, n, m)
     edges = [groove.centre + side * groove.width / 2 for groove in grooves for side in (-1, 1)]
     phi = _snapped(mesh.phi, _wrapped(np.array(edges)))
@@ -66,12 +66,12 @@ def grooved_ring(eps: float, ratio: float, grooves: list[Groove], n: int, m: int
 
 
 def _wrapped(angle: Array) -> Array:
-    """Return the same angle in [−pi, pi)."""
+    """Return the angle wrapped into [−pi, pi)."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 def _snapped(nodes: Array, places: Array) -> Array:
-    """Move the inner node nearest to each place there."""
+    """Return the nodes with the inner node nearest to each place moved onto it."""
     nodes = nodes.copy()
     for place in places[(places > nodes[0]) & (places < nodes[-1])]:
         nodes[1 + np.abs(nodes[1:-1] - place).argmin()] = place
@@ -79,13 +79,13 @@ def _snapped(nodes: Array, places: Array) -> Array:
 
 
 def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
-    """Return nodes of a groove; a groove narrower than the mesh still has the node that was moved to it."""
+    """Return a mask of the nodes in a groove; a very narrow groove still contains the node moved onto it."""
     around = np.abs(_wrapped(phi - groove.centre)) <= groove.width / 2 + 1e-9
     return around[:, None] & (zeta <= groove.length + 1e-9)
 
 
 def fed_network(ring: Ring, grooves: list[Groove], ambient: float) -> tuple[Network, Mask]:
-    """Return the balances of flow, and which nodes (around × across) are fed by grooves."""
+    """Return the flow balances, and a mask of the nodes (circumferential × axial) that grooves feed."""
     phi, middle = ring.phi, midpoints(ring.phi)
     H, H_mid = gap(phi, ring.eps), gap(middle, ring.eps)
     A, T = _flows(ring, H_mid**3, H**3, H_mid)
@@ -100,15 +100,15 @@ def fed_network(ring: Ring, grooves: list[Groove], ambient: float) -> tuple[Netw
 
 
 def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_array, csc_array]:
-    """The derivatives of A and T of the network for a change of the gap at (n + 1) and between (n) nodes."""
+    """Return the derivatives of A and T for a change of the gap at (n + 1) and between (n) nodes."""
     H, H_mid = gap(ring.phi, ring.eps), gap(midpoints(ring.phi), ring.eps)
     return _flows(ring, 3 * H_mid**2 * change_mid, 3 * H**2 * change, change_mid)
 
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
-    """Return the outflow of nodes by pressure and shear, for H³ between and at nodes and H between.
+    """Return the outflow of the nodes by pressure and by shear, for H³ between and at nodes and H between.
 
-    Both have one pattern, so that sums of them need no other.
+    Both matrices have the same sparsity pattern, so their sums need no new one.
     """
     n, m, dual = ring.phi.size - 1, ring.zeta.size, dual_widths(ring.zeta)
     cell = cube * dual_widths(ring.phi) / ring.ratio**2
@@ -123,19 +123,19 @@ def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_
 
 @dataclass(frozen=True)
 class _Pattern:
-    """Where the matrices of a ring of nodes have values, column by column, and where each entry belongs."""
+    """The sparsity pattern of matrices on a ring of nodes, and the position of each entry in it."""
 
     row: NDArray[np.int32]
-    """(places,) the row of each."""
+    """(places,) the row of each position."""
     starts: NDArray[np.int32]
-    """(N + 1,) where columns start."""
+    """(N + 1,) start of each column."""
     pressure: Numbers
-    """(entries,) the place of each entry by pressure: see `_flows`."""
+    """(entries,) the position of each pressure entry: see `_flows`."""
     shear: Numbers
-    """(entries,) likewise by shear."""
+    """(entries,) the position of each shear entry."""
 
     def filled(self, places: Numbers, values: list[Array]) -> csc_array:
-        """Return the matrix of entries; those at one place add."""
+        """Return the matrix of entries; entries at the same position are added."""
         data = np.bincount(places, np.concatenate(values), self.row.size)
         count = self.starts.size - 1
         return csc_array((data, self.row, self.starts), shape=(count, count))
@@ -143,12 +143,12 @@ class _Pattern:
 
 @lru_cache(maxsize=16)
 def _pattern(n: int, m: int) -> _Pattern:
-    """Return the sparsity pattern of n nodes around and m across."""
+    """Return the sparsity pattern for n circumferential and m axial nodes."""
     node = np.arange(n * m).reshape(n, m)
     ahead = np.roll(node, -1, axis=0)
     pressure = [*_exchanged(node, ahead), *_exchanged(node[:, :-1], node[:, 1:])]
     at = [_places(entries, n * m) for entries in (pressure, [(node, node), (ahead, node)])]
-    places = np.unique(at[0])  # shear has none that pressure has not
+    places = np.unique(at[0])  # the shear pattern is a subset of the pressure pattern
     column, row = np.divmod(places, n * m)
     starts = np.searchsorted(column, np.arange(n * m + 1)).astype(np.int32)
     return _Pattern(row.astype(np.int32), starts, *(np.searchsorted(places, one) for one in at))
@@ -160,5 +160,5 @@ def _exchanged(one: Numbers, other: Numbers) -> list[tuple[Numbers, Numbers]]:
 
 
 def _places(entries: list[tuple[Numbers, Numbers]], count: int) -> Numbers:
-    """Return the places of entries in a square matrix that is written column by column."""
+    """Return the column-major positions of entries in a square matrix."""
     return np.concatenate([(column * count + row).ravel() for row, column in entries])

@@ -4,10 +4,11 @@ r"""Mass-conserving film rupture and re-formation (Jakobsson, Floberg, Olsson; E
     \nabla\cdot(H^3\nabla P) = 6\,\partial_x\left[(1-\lambda) H\right],\quad
     P \ge 0,\ \lambda \ge 0,\ P\lambda = 0
 
-P is the pressure above the cavity pressure, lambda the void fraction. Shear transports the oil, discretised
-upwind. Solved by the Fischer–Burmeister–Newton–Schur method: the complementarity becomes the equation P +
-lambda = sqrt(P² + lambda²), Newton's method solves for both at once. At every node the unknown on which this
-equation depends more is eliminated, which leaves one sparse system.
+P is the pressure above the cavity pressure, lambda the void fraction. The transport of oil by shear is
+discretised upwind. The equations are solved by the Fischer–Burmeister–Newton–Schur method: the
+complementarity condition becomes the equation P + lambda = sqrt(P² + lambda²), and Newton's method solves for
+both unknowns at once. At every node the unknown on which this equation depends more strongly is eliminated,
+which leaves one sparse system.
 
 References
 ----------
@@ -28,27 +29,30 @@ from templates.physics.cavities.scaled_sum import ColumnScaledSum
 _MOST_STEPS = 200
 _ACCURACY = 1e-11
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)
 class Network:
-    """Balance of flow at nodes: A P + T fill = 0 where the pressure is unknown."""
+    """The flow balance at nodes: A P + T fill = 0 where the pressure is unknown."""
 
     A: csc_array
-    """(N, N) what a node loses by pressure, per pressure."""
+    """(N, N) outflow of a node due to pressure, per unit of pressure."""
     T: csc_array
-    """(N, N) what a node loses by shear, per fill of the node from which it comes."""
+    """(N, N) outflow of a node due to shear, per fill of the upstream node."""
     fixed: Mask
     """(N,) nodes at a given pressure, which are full."""
     P_fixed: Array
-    """(N,) that pressure; of no account elsewhere."""
+    """(N,) the given pressures; ignored at the other nodes."""
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
-        """Nodes whose pressure is unknown, from the end of the longest run of fixed ones around the ring.
+        """Return the indices of nodes with unknown pressure, from the end of the longest run of fixed ones.
 
-        Where a groove is as long as the bearing is wide, neighbours are then near each other.
+        If a groove is as long as the bearing is wide, neighbouring nodes are then near each other in this
+        order.
         """
         count = self.fixed.size
         around = np.arange(2 * count)
@@ -69,22 +73,22 @@ class Cavitation:
     P: Array
     """(N,) pressure above that of the cavity."""
     void: Array
-    """(N,) share of the gap without oil."""
+    """(N,) fraction of the gap without oil."""
     steps: int
     """Newton steps."""
     imbalance: float
-    """Largest loss at a node whose balance should hold, over the largest flow between nodes."""
+    """Largest residual of a node's flow balance, over the largest flow between nodes."""
 
 
 def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Cavitation:
-    """Solve for pressure and void.
+    """Return the pressure and void of a film with mass-conserving cavities.
 
     Parameters
     ----------
     network
-        Balances of flow.
+        The flow balances.
     start
-        Pressure and void of a nearby film; a re-formation front moves about one node a step.
+        Pressure and void of a nearby film; a re-formation front moves about one node per step.
 
     Raises
     ------
@@ -112,8 +116,8 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
 def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array, fischer: Array) -> Array:
     """Return the changes of pressure and void times their scale, (2, N).
 
-    From loss + A dP − T dvoid = 0 and the changed complementarity.
-    Where the film is full dvoid is eliminated, in the cavity dP: the larger slope divides.
+    They solve loss + A dP − T dvoid = 0 together with the linearised complementarity condition. In the full
+    film dvoid is eliminated, in the cavity dP, so that the larger of the two slopes is the divisor.
     """
     full = pair[0] >= pair[1]
     dependence = 1 - pair / np.maximum(np.hypot(*pair), np.finfo(float).tiny)

@@ -1,9 +1,9 @@
 """Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude.
 
-A line at the widest gap feeds the film, or grooves that stand still relative to the load. The search solves
-films of `cavitating_film` on 64 × 8 intervals; the result is extrapolated from twice as many intervals, and
-the film's stiffness corrects the remaining difference of load. There is no answer if the supply pressure
-alone lifts more than the load, or if the search does not converge within 20 films.
+The film is fed by a line at the widest gap, or by grooves that are stationary relative to the load. The
+search solves films of `cavitating_film` on 64 × 8 intervals. The result is extrapolated with a mesh of twice
+as many intervals, and the film's stiffness corrects the remaining difference in load. There is no result if
+the supply pressure alone supports more than the load, or if the search does not converge within 20 films.
 """
 
 from contextlib import suppress
@@ -21,29 +21,31 @@ from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 _COARSE, _FINE = (64, 8), (128, 16)
 _ACCURACY = 1e-3
-"""Share of the load at which the search ends; the rest is linear."""
+"""Residual over the load at which the search ends; the rest is corrected linearly."""
 _SHORTEST = 1e-4
-"""Step of y, over its size if below 1, at which it ends likewise: where pressure outweighs the load [-]."""
+"""Step of y, relative to |y| if this is below 1, at which the search also ends: if pressure outweighs the
+load [-].
+"""
 _HUNTED = 0.03
-"""The same where the force has a step [-]."""
+"""The same limit if the force has a discontinuity [-]."""
 _STEPS = 20
 _SMALLEST = 1e-3
-"""Eccentricity below which a film without supply pressure is taken in proportion [-]."""
+"""Eccentricity below which a film without supply pressure is scaled linearly [-]."""
 _LONGEST = 1.0
-"""Longest step of atanh(eps); halved whenever the search turns back [-]."""
+"""Longest step of atanh(eps); halved whenever the search reverses [-]."""
 
 
 @dataclass(frozen=True)
 class Feed:
-    """Grooves that feed a bearing; without grooves a line at the widest gap."""
+    """The grooves that feed a bearing; if there are none, a line at the widest gap."""
 
     pressure: float = 0.0
     """Supply pressure above ambient P = p psi²/(eta omega_h) [-]."""
     grooves: tuple[tuple[float, float], ...] = ()
-    """Angle of the centre from the load in the sense of rotation, and width around, of each [rad]."""
+    """Angle of each centre from the load in the sense of rotation, and circumferential width [rad]."""
 
     def placed(self, attitude: float) -> list[Groove]:
-        """Return the grooves as the film sees them, from the narrowest gap."""
+        """Return the grooves with angles measured from the narrowest gap."""
         if not self.grooves:
             return [Groove(np.pi, 0.0, P=self.pressure)]
         return [Groove(angle - attitude, width, P=self.pressure) for angle, width in self.grooves]
@@ -51,14 +53,14 @@ class Feed:
 
 @dataclass(frozen=True)
 class FedFilm:
-    """A film whose load is nearly the one wanted; dimensionless as in `cavitating_film`."""
+    """A film that carries almost exactly the required load; dimensionless as in `cavitating_film`."""
 
     eps: float
-    """Eccentricity at the load wanted."""
+    """Eccentricity at the required load."""
     solved_eps: float
-    """Eccentricity of the film whose measures follow."""
+    """Eccentricity of the film that was solved for the other results."""
     attitude: float
-    """At the load wanted [rad]."""
+    """Attitude at the required load [rad]."""
     P_max: float
     peak: float
     shear: float
@@ -67,9 +69,10 @@ class FedFilm:
 
 @dataclass(frozen=True)
 class Place:
-    """Where the journal is: a vector y along and ahead of the load, as long as atanh(eps).
+    """The position of the journal as a vector y along and ahead of the load, of length atanh(eps).
 
-    So no step of y leaves the bearing, and near its wall a step of 1 is one of the load's size.
+    With this unknown no step leaves the bearing, and near the wall a step of 1 changes the force by an amount
+    comparable to the load.
     """
 
     y: Array
@@ -85,7 +88,7 @@ class Place:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def moved(self, step: Array) -> "Place":
-        """Return the place after a step of y, kept inside the eccentricities that films are solved for."""
+        """Return the position after a step of y, within the eccentricities that films can be solved for."""
         y = self.y + step
         size = max(float(np.hypot(*y)), 1e-300)
         return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))
@@ -93,16 +96,16 @@ class Place:
 
 @dataclass(frozen=True)
 class Lack:
-    """What a film lacks to bear the load."""
+    """The difference between a film's force and the load."""
 
     share: float
-    """Over the load; infinite without one [-]."""
+    """Missing force over the load; infinite without a film [-]."""
     step: Array
-    """Change of y that would make up for it, as far as it is linear."""
+    """Change of y that corrects it linearly."""
 
 
 def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
-    """Return the stiffness and damping (2, 2) in axes of the load, in psi²/(B D eta omega_h).
+    """Return stiffness and damping (2, 2) in the axes of the load, in units of psi²/(B D eta omega_h).
 
     Parameters
     ----------
@@ -111,7 +114,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
     ratio
         Width over diameter B/D [-].
     attitude
-        Angle from the load to the narrowest gap; without grooves the film has its own [rad].
+        Angle from the load to the narrowest gap; without grooves the film determines it [rad].
     feed
         Grooves and supply pressure.
 
@@ -129,7 +132,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
 
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
-    """Return the film that carries So; None if there is none or the search fails.
+    """Return the film that carries a Sommerfeld number; None if there is none or the search fails.
 
     Parameters
     ----------
@@ -145,29 +148,28 @@ def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     try:
         balance = search.balance()
         film = None if balance is None else search.extrapolated(*balance)
-    except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
+    except (ArithmeticError, ValueError, RuntimeError):  # the last two indicate a singular matrix
         return None
     return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
 
 
 @dataclass(frozen=True)
 class Search:
-    """The search for the place at which a film bears a load."""
+    """The search for the position at which a film carries a load."""
 
     load: float
     """Sommerfeld number [-]."""
     ratio: float
     """Width over diameter B/D [-]."""
     feed: Feed
-    """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
+    """Stationary grooves, or none: the supply line then rotates with the journal."""
 
     def balance(self) -> tuple[Place, RingSolution] | None:
-        """Return the place and its film on the coarse mesh, by Newton's method.
+        """Return the position and its film on the coarse mesh, by Newton's method.
 
-        Steps are halved when it turns back.
-
-        The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place
-        nearest to rest is taken.
+        Steps are halved when the search changes direction. The mesh follows the grooves, so the force has
+        discontinuities; if the search oscillates about one, the position with the smallest residual is
+        returned.
         """
         place, longest, before = self.start(), _LONGEST, np.zeros(2)
         best, nearest, ring = None, _HUNTED, None
@@ -188,14 +190,14 @@ class Search:
         return best
 
     def start(self) -> Place:
-        """Return the position of the journal by the film map."""
+        """Return the initial position of the journal, from the film map."""
         eps = mapped_eccentricity(np.array(self.load), np.array(self.ratio))
         eps = np.where(np.isnan(eps), ECCENTRICITY_LIMIT, np.maximum(eps, _SMALLEST))
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
     def solved(self, place: Place, mesh: tuple[int, int], near: RingSolution | None) -> RingSolution:
-        """Return the film at a place; the search starts from a film nearby if there is one."""
+        """Return the film at a position; the solution starts from a nearby film if there is one."""
         grooves = self.feed.placed(place.attitude)
         if near is not None:
             with suppress(ArithmeticError):
@@ -203,7 +205,7 @@ class Search:
         return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh)
 
     def lack(self, place: Place, film: LinearFilm) -> Lack:
-        """Return the missing force of the film there; `film` is in axes of the line of centres."""
+        """Return the difference of force and load; `film` is in axes of the line of centres."""
         step = self._step_to_grooves if self.feed.grooves else self._step_with_line
         missing, displacement = step(place, film)
         share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf
@@ -213,22 +215,23 @@ class Search:
         return Lack(share, along / (1 - place.eps**2) * radial + ahead * size / place.eps * turned)
 
     def _step_to_grooves(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """Return the force that is missing, and the displacement for it, in axes of the line of centres."""
+        """Return the missing force and the displacement that supplies it, in axes of the line of centres."""
         load = self.load * np.array([np.cos(place.attitude), -np.sin(place.attitude)])
         missing: Array = load - film.force
         return missing, np.asarray(np.linalg.solve(film.K, missing))
 
     def _step_with_line(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """Return the force along the line of centres alone, since the film turns as a whole."""
+        """Return the missing force and the step along the line of centres; the film rotates as a whole."""
         borne = float(np.hypot(*film.force))
         missing = (self.load - borne) * film.force / borne
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
         return missing, np.array([max(along, -0.9 * place.eps), 0.0])
 
     def extrapolated(self, place: Place, ring: RingSolution) -> FedFilm:
-        """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
+        """Return the film by Richardson extrapolation from the coarse mesh, corrected to the load.
 
-        Load and peak converge with order 2, shear and flow, which see the front, with 1.
+        Load and peak pressure converge with order 2; shear and flow depend on the re-formation front and
+        converge with order 1.
         """
         finer = self.solved(place, _FINE, ring)
         coarse, fine, linear = measured(ring), measured(finer), linear_film(finer)
@@ -248,7 +251,7 @@ class Search:
 
 
 def _peak(film: CavitatingFilm) -> float:
-    """Return the angle of the largest pressure at mid-width [rad], by a parabola through three nodes."""
+    """Return the angle of the largest pressure at mid-width [rad], from a parabola through three nodes."""
     P = film.P[:, 0]
     k = min(max(int(P.argmax()), 1), P.size - 2)
     x = film.phi[k - 1 : k + 2] - film.phi[k]

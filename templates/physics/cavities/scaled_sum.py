@@ -1,4 +1,4 @@
-"""Sums of two sparse matrices with scaled columns; the sparsity pattern is computed once."""
+"""Sums of two sparse matrices with scaled columns; the sparsity pattern is computed only once."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from scipy.sparse.linalg import splu
 from templates.core.arrays import Array
 
 _WIDEST = 40
-"""Bandwidth up to which a banded LU is quicker than a sparse one: four times at 8 and at 16."""
+"""Bandwidth up to which a banded LU is faster than a sparse one: four times at 8 and at 16."""
 
 _SYMMETRIC = {"SymmetricMode": True}
-"""The pattern nearly is: its own ordering is cheaper and fills less than that of its square."""
+"""Options for a nearly symmetric pattern, for which its own ordering is cheaper and has less fill-in."""
 
 
 @dataclass(frozen=True)
 class ColumnScaledSum:
-    """Two matrices on the union of their patterns and the diagonal.
+    """Two matrices on the union of their sparsity patterns and the diagonal.
 
-    SciPy makes a new pattern for every product with a diagonal and for every sum. In Newton's method for a
-    film these cost more than the factorisation itself.
+    SciPy computes a new pattern for every product with a diagonal matrix and for every sum. In Newton's
+    method for a film this costs more than the factorisation itself.
     """
 
     pattern: csc_array
-    """(N, N) the union; its values are those of the last sum."""
+    """(N, N) the union of both patterns; its values are those of the last sum."""
     column: NDArray[np.intp]
-    """(non-zeros,) the column of each."""
+    """(non-zeros,) the column of each entry."""
     first: Array
     """(non-zeros,) values of the first matrix."""
     second: Array
     """(non-zeros,) values of the second."""
     diagonal: NDArray[np.intp]
-    """(N,) where the diagonal is among them."""
+    """(N,) indices of the diagonal entries."""
 
     @classmethod
     def of(cls, first: csc_array, second: csc_array) -> ColumnScaledSum:
         """Return the scaled sum of two square matrices of the same size.
 
-        One pattern with the whole diagonal is cheapest.
+        It is cheapest if both have one pattern that includes the whole diagonal.
         """
         count = first.shape[0]
         column = np.repeat(np.arange(count), np.diff(first.indptr))
@@ -63,9 +63,9 @@ class ColumnScaledSum:
     def at(
         cls, row: NDArray[np.integer], column: NDArray[np.integer], values: Array, count: int
     ) -> ColumnScaledSum:
-        """Return both by their places, column by column, the whole diagonal among them.
+        """Return the scaled sum from the row, column and values (2, entries) of both matrices.
 
-        Values (2, places).
+        The entries are in column-major order and include the whole diagonal.
         """
         starts = np.zeros(count + 1, np.int32)
         np.cumsum(np.bincount(column, minlength=count), out=starts[1:])
@@ -73,7 +73,7 @@ class ColumnScaledSum:
         return cls(pattern, np.asarray(column, np.intp), values[0], values[1], np.flatnonzero(row == column))
 
     def among(self, unknowns: NDArray[np.intp]) -> ColumnScaledSum:
-        """Return the rows and columns of some unknowns alone, in their order."""
+        """Return the rows and columns of the given unknowns only, in their order."""
         number = np.full(self.pattern.shape[0], -1)
         number[unknowns] = np.arange(unknowns.size)
         row, column = number[self.pattern.indices], number[self.column]
@@ -83,7 +83,7 @@ class ColumnScaledSum:
         return self.at(row[kept], column[kept], values, unknowns.size)
 
     def scaled(self, by_first: Array, by_second: Array, diagonal: Array | float = 0.0) -> csc_array:
-        """Return the sum with columns times factors, and a diagonal added; valid until the next call."""
+        """Return the sum with scaled columns and an added diagonal; valid until the next call."""
         values = self.pattern.data
         np.multiply(self.first, by_first[self.column], out=values)
         values += self.second * by_second[self.column]
@@ -91,13 +91,13 @@ class ColumnScaledSum:
         return self.pattern
 
     def times(self, by_first: Array, by_second: Array) -> Array:
-        """Return the first matrix times a vector and the second times another, added."""
+        """Return the sum of the first matrix times one vector and the second matrix times another."""
         return np.asarray(self.scaled(by_first, by_second) @ np.ones(by_first.size))
 
     def factorised(self, by_first: Array, by_second: Array, diagonal: Array) -> Callable[[Array], Array]:
-        """Return a function that solves for the scaled sum.
+        """Return a function that solves the scaled sum for a right-hand side.
 
-        By a banded LU where all values are near the diagonal.
+        A banded LU factorisation is used if all values are near the diagonal.
 
         Raises
         ------
@@ -108,7 +108,7 @@ class ColumnScaledSum:
         if self.width > _WIDEST:
             return splu(matrix, "MMD_AT_PLUS_A", relax=4, panel_size=1, options=_SYMMETRIC).solve
         width = self.width
-        bands = np.zeros((3 * width + 1, diagonal.size), order="F")  # a third for what pivots fill
+        bands = np.zeros((3 * width + 1, diagonal.size), order="F")  # one third for the fill-in of pivoting
         bands[2 * width + matrix.indices - self.column, self.column] = matrix.data
         factors, pivots, failed = dgbtrf(bands, width, width, overwrite_ab=1)
         if failed:
@@ -121,7 +121,7 @@ class ColumnScaledSum:
         return int(np.abs(self.pattern.indices - self.column).max(initial=0))
 
     def diagonals(self) -> Array:
-        """Return the diagonal of each, (2, N)."""
+        """Return the diagonals of both matrices, (2, N)."""
         return np.stack([self.first[self.diagonal], self.second[self.diagonal]])
 
 
@@ -134,7 +134,7 @@ def _has_pattern_of(second: csc_array, first: csc_array) -> bool:
 
 
 def _places(matrix: csc_array) -> NDArray[np.intp]:
-    """Return the index of each stored value in the matrix, written column by column."""
+    """Return the column-major index of each stored value in the matrix."""
     matrix.sum_duplicates()
     column = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
     return np.asarray(column * matrix.shape[0] + matrix.indices, np.intp)

@@ -1,22 +1,23 @@
-"""Static position of a journal in a bore of any shape, tilted or not, from its load.
+"""Static position of a journal in a bore of any shape, aligned or tilted, from its load.
 
-Newton's method searches on a fixed mesh. Then the mesh is graded to the position found, until both agree, and
-refined to 32, 64 and 128 intervals around. No step reduces the gap by more than 70 % anywhere, and a step
-that moves the force away from the load is rejected. The last two meshes give Richardson's extrapolation, the
-last three an estimate of the error.
+Newton's method first searches on a fixed mesh. The mesh is then graded to the position found until both
+agree, and refined to 32, 64 and 128 circumferential intervals. No step may reduce the gap by more than 70 %
+anywhere, and a step that moves the force away from the load is rejected. The last two meshes give
+Richardson's extrapolation, the last three an error estimate.
 
-A mesh of a lobed or grooved bore that is graded to one lobe exerts a spurious force on a centred journal.
-Under a light load that force matters, and the meshes are not yet in the asymptotic range. So if the last
-refinement moves the journal, or changes its least gap, by more than `SETTLED`, a mesh of 256 intervals
+In a lobed or grooved bore, a mesh that is graded to one lobe exerts a spurious force on a centred journal.
+Under a light load this force matters, and the meshes are not yet in the asymptotic range. Therefore, if the
+last refinement moves the journal or changes its least gap by more than `SETTLED`, a mesh of 256 intervals
 follows. If the changes still do not decrease with the square of the mesh size, the result of the finest mesh
 is returned without extrapolation.
 
-Oil enters at the grooves of `Feed`, which stand still relative to the load. Without grooves it enters along
-the joints of a lobed bore, or in a plain bore along a line opposite the displacement of the journal's centre.
+Oil enters at the grooves of `Feed`, which are stationary relative to the load. Without grooves it enters
+along the joints of a lobed bore, or in a plain bore along a line opposite the displacement of the journal's
+centre.
 
-The equilibrium may lie on any side: supply pressure can lift the journal above the bearing's centre. So the
-search begins at the position of the plain film, then near the centre, then on the other sides. An equilibrium
-that does not resist slow displacement, det K ≤ 0, is rejected.
+The equilibrium may lie on any side: supply pressure can lift the journal above the bearing's centre. The
+search therefore starts at the position in a plain bearing, then near the centre, then on the other sides. An
+equilibrium that does not resist slow displacement, det K ≤ 0, is rejected.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -35,41 +36,43 @@ from templates.physics.films.film_shape import Bore, Lie, narrowest
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 MESHES: Sequence[tuple[int, int]] = ((32, 6), (64, 8), (128, 16))
-"""Intervals around, and across half the width."""
+"""Numbers of intervals around the circumference and over half the width."""
 FINER = 256, 32
-"""Those of the mesh that follows where the others have not settled."""
+"""The mesh that follows if the others have not converged."""
 SETTLED = 0.01
-"""Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
+"""Largest relative change of displacement and least gap by the last refinement if converged [-]."""
 SAFETY = 1.25
-"""What a stated error is over the change by refinement, after Roache 1994 [-]."""
+"""Safety factor of a stated error over the change by refinement, after Roache 1994 [-]."""
 EXTRAPOLATED = 1.5
-"""What is stated more of film, place and pressure where they are extrapolated [-]."""
+"""Factor on the error of film, position and pressure if they are extrapolated [-]."""
 OFF_ORDER = 0.5
-"""Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
+"""Largest deviation of a change from a quarter of the previous one, over its size, in the asymptotic range.
+"""
 LEAST_GAP = 1e-6
-"""Smallest gap at which a film is looked for [-]."""
+"""Smallest gap at which a film is sought [-]."""
 SMALLEST = 1e-3
-"""Eccentricity of the plain film below which a load is taken as this one's, in proportion [-]."""
+"""Eccentricity of the plain film below which the result is scaled linearly with the load [-]."""
 _SUDDEN = 6
-"""Limit on what the step before adds to the last: a mesh that misses a lobe tells nothing of finer ones."""
+"""Limit on the contribution of the previous change: a mesh that misses a lobe says nothing about finer ones.
+"""
 _STEPS = 40
 _TURNS = 8
-"""Limit on how often the mesh is graded again before the place is taken as it is."""
+"""Largest number of regradings of the mesh."""
 _ACCURACY = 1e-7
 """Step over the least gap at which a search on one mesh ends."""
 _AGREED = 1e-5
-"""Turn of the line of supply at which place and mesh agree [rad]."""
+"""Rotation of the supply line at which position and mesh agree [rad]."""
 _NEAR_ENOUGH = 1e-2
-"""Change of the least gap, relative, at which they agree; the grading asks for no more."""
+"""Relative change of the least gap at which position and mesh agree."""
 
 
 class NoBalance(ArithmeticError):
-    """No place was found at which the film bears the load."""
+    """There is no position at which the film carries the load, or the search did not find it."""
 
 
 @dataclass(frozen=True)
 class BearingCase:
-    """A bearing whose journal's place is wanted."""
+    """A bearing with its load, for which the journal's position is sought."""
 
     So: float
     """Sommerfeld number of the smallest clearance, 0 or more [-]."""
@@ -77,13 +80,14 @@ class BearingCase:
     """Width over diameter B/D [-]."""
     bore: Bore
     tilt: Array
-    """(2,) what the journal's end zeta = 1 is displaced beyond its middle, over the radial clearance [-]."""
+    """(2,) displacement of the journal's end zeta = 1 relative to its middle, over the radial clearance [-].
+    """
     feed: Feed
     conserving: bool
     """Whether cavities conserve mass."""
 
     def pockets(self, attitude: float) -> list[Pocket]:
-        """Return the oil inlets if the journal's middle is displaced in a direction."""
+        """Return the oil inlets for a journal whose centre is displaced in a direction."""
         if self.feed.grooves:
             return [Pocket(angle, width, self.feed.pressure) for angle, width in self.feed.grooves]
         if self.bore.is_lobed:
@@ -92,7 +96,7 @@ class BearingCase:
 
     @property
     def line_turns(self) -> bool:
-        """Return whether the line of supply turns with the journal."""
+        """Return whether the supply line rotates with the journal's displacement."""
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
@@ -102,7 +106,7 @@ class BearingCase:
 
 @dataclass(frozen=True)
 class MeshEquilibrium:
-    """The film that bears a load on one mesh."""
+    """The film that carries a load on one mesh."""
 
     film: ShapedFilm
     lie: Lie
@@ -112,63 +116,63 @@ class MeshEquilibrium:
 
 @dataclass(frozen=True)
 class Balance:
-    """The film that bears a load, on the last meshes, coarse to fine."""
+    """The films that carry a load on the last meshes, from coarse to fine."""
 
     before: MeshEquilibrium | None
-    """None where only two meshes bear it."""
+    """The coarsest of three meshes; None if only two have a solution."""
     coarse: MeshEquilibrium
     fine: MeshEquilibrium
 
     @property
     def is_settled(self) -> bool:
-        """Return whether three meshes carry the load and the last step changes little."""
+        """Return whether three meshes carry the load and the last refinement changes little."""
         step, _ = self._steps
         moved = float(np.hypot(*step)) <= SETTLED * self.fine.lie.eps
         return self.before is not None and moved and abs(self.fine.gap / self.coarse.gap - 1) <= SETTLED
 
     @property
     def is_asymptotic(self) -> bool:
-        """Return whether the steps of refinement fall as the square of the mesh, or the last is small."""
+        """Return whether the changes fall with the square of the mesh size, or the last one is small."""
         step, previous = self._steps
         off = float(np.hypot(*(step - previous / 4)))
         return self.is_settled or (self.before is not None and off <= OFF_ORDER * float(np.hypot(*step)))
 
     @property
     def place_error(self) -> float:
-        """Return the error of the journal's position over its displacement [-]."""
+        """Return the estimated error of the journal's position, relative to its displacement [-]."""
         step, previous = (float(np.hypot(*step)) for step in self._steps)
         moved = max(step, min(previous / 4, _SUDDEN * step))
         return self._trust * SAFETY * moved / max(self.fine.lie.eps, 1e-300)
 
     @property
     def gap_error(self) -> float:
-        """Return how far the least gap may be off, relative [-]."""
+        """Return the estimated relative error of the least gap [-]."""
         return self._trust * self._error(lambda refined: refined.gap, 2)
 
     @property
     def pressure_error(self) -> float:
-        """Return how far the largest pressure may be off, relative [-]."""
+        """Return the estimated relative error of the largest pressure [-]."""
         return self._trust * self._error(lambda refined: refined.film.peak[0], 2)
 
     @property
     def flow_error(self) -> float:
-        """Return how far the side flow, which converges irregularly, may be off, relative [-]."""
+        """Return the estimated relative error of the side flow, which converges irregularly [-]."""
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
-        """The last step of refinement, or the one before, reduced by its order, if that is more; relative."""
+        """Return the relative change by the last refinement, or by the previous over its order if larger."""
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
 
     @property
     def _trust(self) -> float:
-        """Return the factor on the error of what is extrapolated by the order of the last steps [-]."""
+        """Return the factor by which extrapolation reduces the error; 1 outside the asymptotic range [-]."""
         return EXTRAPOLATED if self.is_asymptotic else 1.0
 
     @property
     def _steps(self) -> tuple[Array, Array]:
-        """Return the last displacement by refinement, and the one before it."""
+        """Return the displacement by the last refinement, and by the one before it."""
         e = self.coarse.lie.e
         return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
@@ -179,27 +183,31 @@ def balance(loaded: BearingCase) -> Balance:
     Raises
     ------
     NoBalance
-        If no search ends at a stable place.
+        If no search finds a stable position.
     """
     failure: Exception | None = None
     for meshes, start in product(_ladders(loaded), _starts(loaded)):
         try:
             return _refined(loaded, start, meshes)
-        except (ArithmeticError, RuntimeError, np.linalg.LinAlgError) as reason:  # the last: singular
+        except (
+            ArithmeticError,
+            RuntimeError,
+            np.linalg.LinAlgError,
+        ) as reason:  # the last indicates a singular matrix
             failure = reason
     raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
 def _ladders(loaded: BearingCase) -> list[Sequence[tuple[int, int]]]:
-    """Return meshes to refine over.
+    """Return the sequences of meshes for the refinement.
 
-    In a bore of lobes also without the coarsest, which may miss some of them.
+    For a lobed bore there is also one without the coarsest mesh, which may not resolve some lobes.
     """
     return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
 
 
 def _starts(loaded: BearingCase) -> Iterator[Array]:
-    """Yield the displacements from which to search."""
+    """Yield the displacements at which to start a search."""
     eps = float(np.nan_to_num(mapped_eccentricity(np.array(loaded.So), np.array(loaded.ratio)), nan=0.999))
     eps = min(max(eps, SMALLEST), ECCENTRICITY_LIMIT)
     attitude = float(mapped_film(np.array(eps), np.array(loaded.ratio))["attitude"])
@@ -213,7 +221,7 @@ def _starts(loaded: BearingCase) -> Iterator[Array]:
 
 
 def _inside(loaded: BearingCase, e: Array) -> Array:
-    """Return the displacement, shortened until the journal is free everywhere."""
+    """Return the displacement, shortened until the journal touches the bore nowhere."""
     for _ in range(60):
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
             return e
@@ -222,7 +230,7 @@ def _inside(loaded: BearingCase, e: Array) -> Array:
 
 
 def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
-    """Return the balance on the meshes, each begun at that of the coarser one, and on `FINER` if needed."""
+    """Return the balance on successive meshes, each started from the last, and on `FINER` if needed."""
     films: list[MeshEquilibrium] = []
     for mesh in meshes:
         films.append(
@@ -241,7 +249,7 @@ def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -
 def stable_film(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> MeshEquilibrium:
-    """Return the balance on one mesh, which resists slow displacement."""
+    """Return the equilibrium on one mesh; it must resist slow displacement."""
     film, lie = _agreed(loaded, e, mesh, near)
     if np.linalg.det(film.linear[0]) <= 0:
         raise NoBalance("the equilibrium position found is not stable")
@@ -251,7 +259,7 @@ def stable_film(
 def _agreed(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
-    """Return the balance on a mesh that is graded to it, with the line of supply opposite."""
+    """Return the equilibrium on a mesh that is graded to it, with the supply line opposite to it."""
     line = loaded.lie(e).attitude
     for turn in range(_TURNS):
         before = narrowest(loaded.bore, loaded.lie(e))[0]
@@ -270,7 +278,7 @@ def _agreed(
 def _searched(
     loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Array]:
-    """Return Newton's method on one mesh."""
+    """Return the equilibrium on one mesh by Newton's method."""
     film = _solved(loaded, e, nodes, pockets, near)
     wanted = np.array([loaded.So, 0.0])
     for _ in range(_STEPS):
@@ -291,7 +299,7 @@ def _searched(
 def _nearer(
     loaded: BearingCase, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
 ) -> tuple[ShapedFilm, Array]:
-    """Return the film after a step, which is halved until the force is nearer to the load than before."""
+    """Return the film after a step, which is halved until the force is closer to the load than before."""
     wanted = np.array([loaded.So, 0.0])
     distance = float(np.hypot(*(wanted - film.force)))
     for _ in range(12):
@@ -308,7 +316,7 @@ def _nearer(
 def _solved(
     loaded: BearingCase, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> ShapedFilm:
-    """Return the film at a displacement; the search starts from a film nearby if there is one."""
+    """Return the film at a displacement; the solution starts from a nearby film if there is one."""
     start = None if near is None else _carried(near, nodes)
     lie = loaded.lie(e)
     try:
@@ -318,7 +326,7 @@ def _solved(
 
 
 def _carried(film: ShapedFilm, nodes: Nodes) -> tuple[Array, Array]:
-    """Return the pressure and void of a film at other nodes, linearly along each direction."""
+    """Return the pressure and void of a film at other nodes, interpolated linearly in each direction."""
     if film.nodes is nodes:
         return film.solution.P.copy(), film.solution.void.copy()
     own = film.nodes

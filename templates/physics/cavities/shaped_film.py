@@ -1,8 +1,8 @@
 """A film with a given gap, solved with either rupture condition: force, couple, stiffness and damping.
 
-With `swift_stieber` the film ruptures where pressure and its gradient vanish and re-forms wherever motion
-brings oil; with `conserving` it ruptures and re-forms as mass conservation requires (`cavitation`).
-Everything is dimensionless as in `cavitating_film`; axes x along the load, y ahead of it in the sense of
+With `swift_stieber` the film ruptures where pressure and pressure gradient vanish, and re-forms wherever
+motion brings oil. With `conserving` it ruptures and re-forms as mass conservation requires (`cavitation`).
+Everything is dimensionless as in `cavitating_film`; axes: x along the load, y ahead of it in the sense of
 rotation.
 """
 
@@ -31,7 +31,9 @@ from templates.physics.films.film_shape import Bore, Lie, directions
 
 _MOST_STEPS = 200
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)
@@ -49,17 +51,17 @@ class ShapedFilm:
 
     @cached_property
     def P(self) -> Array:
-        """(n, m + 1) pressure above ambient."""
+        """Return the (n, m + 1) pressure above ambient."""
         return self.solution.P.reshape(self.nodes.shape)
 
     @cached_property
     def void(self) -> Array:
-        """(n, m + 1) share of the gap without oil; 0 where the rupture knows none."""
+        """Return the (n, m + 1) fraction of the gap without oil; 0 with Swift–Stieber rupture."""
         return self.solution.void.reshape(self.nodes.shape)
 
     @cached_property
     def force(self) -> Array:
-        """(2,) force along and ahead of the load, in the units of So."""
+        """Return the (2,) force along and ahead of the load, in units of So."""
         return self.borne(self.P)
 
     def borne(self, P: Array) -> Array:
@@ -68,9 +70,10 @@ class ShapedFilm:
 
     @cached_property
     def couple(self) -> Array:
-        """(2,) moment about the middle in the planes of x and y with the axis, over So's force times B/2.
+        """Return the moment in the planes of x and y with the axis, (2,), over So's force times B/2.
 
-        Positive where the film pushes the end zeta = 1 against x or y: against a positive tilt.
+        It is taken about the middle, and positive where the film pushes the end zeta = 1 against x or y, that
+        is, against a positive tilt.
         """
         if self.nodes.is_half:
             return np.zeros(2)
@@ -78,7 +81,7 @@ class ShapedFilm:
 
     @cached_property
     def shear(self) -> float:
-        """Return the shear force on the journal; over the full circle, or by the oil there is."""
+        """Return the shear force on the journal over the full circle; in cavities only the oil is sheared."""
         fill = 1 - self.void
         return float((fill / self.H.nodes * self.nodes.weight).sum())
 
@@ -93,7 +96,7 @@ class ShapedFilm:
 
     @cached_property
     def side_flow(self) -> float:
-        """Return oil that leaves at both ends, but not straight from a pocket, Q/(R³ psi omega_h)."""
+        """Return the oil flow out of both ends, without that straight from a pocket, Q/(R³ psi omega_h)."""
         loss = self.network.loss(self.solution.P, self.solution.void).reshape(self.nodes.shape)
         ends = [-1] if self.nodes.is_half else [0, -1]
         out = -sum(loss[:, end][~self.fed[:, end]].sum() for end in ends)
@@ -101,7 +104,7 @@ class ShapedFilm:
 
     @cached_property
     def peak(self) -> tuple[float, float]:
-        """Return the largest pressure, and its angle from the load [rad], by a parabola around the circle."""
+        """Return the largest pressure and its angle from the load [rad], by a circumferential parabola."""
         i, j = np.unravel_index(self.P.argmax(), self.P.shape)
         n = self.nodes.shape[0]
         phi, column = self.nodes.phi[:-1], self.P[:, j]
@@ -114,7 +117,7 @@ class ShapedFilm:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Stiffness and damping in the units of So by displacement over c and velocity over c omega_h."""
+        """Return stiffness and damping in units of So per displacement/c and per velocity/(c omega_h)."""
         P, fill = self.solution.P, 1 - self.solution.void
         cells = 12 * np.outer(self.nodes.around, self.nodes.across)
         respond = self._response()
@@ -128,7 +131,7 @@ class ShapedFilm:
         return K, B
 
     def _response(self) -> Callable[[Array], tuple[Array, Array]]:
-        """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
+        """Return a function that computes the changes of pressure and void that compensate a loss of oil."""
         free = ~self.network.fixed
         full = self.solution.void == 0 if self.conserving else self.solution.P > 0
         kept = free if self.conserving else free & full
@@ -154,16 +157,16 @@ def shaped_film(
     conserving: bool,
     start: tuple[Array, Array] | None = None,
 ) -> ShapedFilm:
-    """Solve the film at a place of the journal.
+    """Return the film at a position of the journal.
 
     Parameters
     ----------
     nodes
         The mesh.
     bore, lie
-        Shape of the bore, and where the journal lies: nowhere may it touch.
+        Shape of the bore, and position of the journal, which must not touch the bore anywhere.
     pockets
-        Where oil is fed.
+        The pockets that feed oil.
     conserving
         Whether cavities conserve mass.
     start
@@ -172,7 +175,7 @@ def shaped_film(
     Raises
     ------
     ArithmeticError
-        If the extent of film or cavities does not settle, or pockets leave no node between them.
+        If the extent of film or cavities does not converge, or pockets leave no node between them.
     RuntimeError
         If a matrix is singular.
     """
@@ -186,12 +189,12 @@ def shaped_film(
 
 
 def ruptured(balances: Network, start: tuple[Array, Array] | None = None) -> Cavitation:
-    """Return the pressure with rupture after Swift and Stieber, by the active set of `complementarity`.
+    """Return the pressure with Swift–Stieber rupture, by the active-set method of `complementarity`.
 
     Raises
     ------
     ArithmeticError
-        If the set is not final after 200 steps.
+        If the active set still changes after 200 steps.
     """
     free = ~balances.fixed
     P = np.where(free, 0.0, balances.P_fixed)

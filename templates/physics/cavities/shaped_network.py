@@ -1,7 +1,7 @@
-"""Flow balances of a film with a given gap, on a ring of nodes, and their derivatives by the gap.
+"""Flow balances of a film with a given gap on a ring of nodes, and their derivatives by the gap.
 
-As in `cavitating_network`, but the gap may also vary axially: a tilted journal needs the whole width, a bore
-with lobes or a bell mouth half of it. Angles are measured from the load.
+This is like `cavitating_network`, but the gap may also vary axially. A tilted journal needs the whole width,
+a bore with lobes or a bell mouth only half of it. Angles are measured from the load.
 """
 
 from dataclasses import dataclass
@@ -22,19 +22,19 @@ FULL_TURN = 2 * np.pi
 
 @dataclass(frozen=True)
 class Pocket:
-    """An axial groove over the whole width, full at its pressure; a width of 0 makes a line."""
+    """An axial groove over the whole width, full at its own pressure; a width of 0 makes it a line."""
 
     centre: float
-    """From the load in the sense of rotation [rad]."""
+    """Angle from the load in the sense of rotation [rad]."""
     width: float
-    """Extent around [rad]."""
+    """Circumferential extent [rad]."""
     P: float
     """Supply pressure above that of the cavity [-]."""
 
 
 @dataclass(frozen=True)
 class Nodes:
-    """Where the nodes are: those around × those across, the axial index fastest; phi ends where it starts."""
+    """The positions of the nodes: circumferential × axial, axial index fastest; phi ends where it starts."""
 
     ratio: float
     """Width over diameter B/D [-]."""
@@ -45,7 +45,7 @@ class Nodes:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Number of nodes around and across."""
+        """Return the number of circumferential and axial nodes."""
         return self.phi.size - 1, self.zeta.size
 
     @property
@@ -55,23 +55,23 @@ class Nodes:
 
     @cached_property
     def around(self) -> Array:
-        """Return (n,) widths of the cells around the nodes [rad]."""
+        """Return the (n,) circumferential widths of the cells around the nodes [rad]."""
         widths = dual_widths(self.phi)
         return np.append(widths[0] + widths[-1], widths[1:-1])
 
     @cached_property
     def across(self) -> Array:
-        """(m + 1,) lengths of the cells across [-]."""
+        """Return the (m + 1,) axial lengths of the cells [-]."""
         return dual_widths(self.zeta)
 
     @cached_property
     def weight(self) -> Array:
-        """(n, m + 1) areas of the cells over four, doubled where they stand for both halves."""
+        """Return the (n, m + 1) cell areas over four, doubled if they represent both halves."""
         return np.outer(self.around, self.across) / (2 if self.is_half else 4)
 
     @cached_property
     def steps(self) -> tuple[csr_array, csr_array]:
-        """Return differences between neighbours around and across, (edges, nodes) each."""
+        """Return the circumferential and axial difference matrices between neighbours, (edges, nodes)."""
         n, m = self.shape
         turn = csr_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
         axial = eye_array(m - 1, m, k=1) - eye_array(m - 1, m)
@@ -80,20 +80,20 @@ class Nodes:
 
 @dataclass(frozen=True)
 class Gaps:
-    """A gap, or its change, where the balances need it."""
+    """A gap, or its change, at the positions where the balances need it."""
 
     nodes: Array
     """(n, m + 1) at the nodes."""
     around: Array
-    """(n, m + 1) midway between neighbours around."""
+    """(n, m + 1) midway between circumferential neighbours."""
     across: Array
-    """(n, m) midway between neighbours across."""
+    """(n, m) midway between axial neighbours."""
 
 
 def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: int, m: int) -> Nodes:
-    """Return a mesh graded to the thin film, with nodes at pocket edges, joints and mouths.
+    """Return a mesh graded to the thin film, with nodes at pocket edges, lobe joints and bell mouths.
 
-    It is that of the plain bearing whose film is as thin and as long: that of a lobe's radius.
+    It is the mesh of a plain bearing with the same least film and the lobe's radius.
     """
     least, place = narrowest(bore, lie)
     radius = 1 + (bore.excess if bore.is_lobed else 0.0)
@@ -108,7 +108,7 @@ def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: i
 
 
 def _moved_to(nodes: Array, places: Array) -> Array:
-    """Return the nodes with the inner one that is nearest to each place moved there; none is moved twice."""
+    """Return the nodes with the inner node nearest to each place moved onto it; no node is moved twice."""
     nodes, held = nodes.copy(), np.zeros(nodes.size, bool)
     for place in np.unique(places[(places > nodes[0]) & (places < nodes[-1])]):
         k = 1 + int(np.abs(nodes[1:-1] - place).argmin())
@@ -118,9 +118,10 @@ def _moved_to(nodes: Array, places: Array) -> Array:
 
 
 def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
-    """Return the gap where the balances need it.
+    """Return the gap at the positions where the balances need it.
 
-    Where lobes meet it may jump: there that of the node is the mean of 1/H over the half cells of both sides.
+    The gap may jump where lobes meet: the gap of that node is the mean of 1/H over the half cells on both
+    sides.
     """
     phi, zeta = nodes.phi[:-1], nodes.zeta
     ahead = np.diff(nodes.phi)[:, None]
@@ -146,25 +147,25 @@ def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
 
 
 def pressed(nodes: Nodes, H: Gaps) -> csc_array:
-    """Return the outflow of nodes due to pressure, per unit of pressure."""
+    """Return the outflow of the nodes due to pressure, per unit of pressure."""
     return _conducted(nodes, H.around**3, H.across**3)
 
 
 def sheared(nodes: Nodes, H: Gaps) -> csc_array:
-    """Return the outflow of nodes by shear, per fill of the upstream node."""
+    """Return the outflow of the nodes due to shear, per fill of the upstream node."""
     n, m = nodes.shape
     flow = diags_array((6 * H.around * nodes.across).ravel())
     return csc_array(-nodes.steps[0].T @ flow @ eye_array(n * m))
 
 
 def perturbed(nodes: Nodes, H: Gaps, change: Gaps) -> tuple[csc_array, csc_array]:
-    """Return the derivatives of both in the direction of a change of the gap."""
+    """Return the derivatives of both matrices in the direction of a change of the gap."""
     A = _conducted(nodes, 3 * H.around**2 * change.around, 3 * H.across**2 * change.across)
     return A, sheared(nodes, change)
 
 
 def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
-    """Return the matrix of conductances made from H³, or from its change, between neighbours."""
+    """Return the matrix of conductances between neighbours, from H³ or from its change."""
     turn, axial = nodes.steps
     by_turn = around * nodes.across / np.diff(nodes.phi)[:, None]
     by_axis = across * nodes.around[:, None] / np.diff(nodes.zeta) / nodes.ratio**2
@@ -174,9 +175,9 @@ def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
 
 
 def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
-    """Return the fixed pressures P [-], −1 for none, and nodes that pockets feed, (n, m + 1).
+    """Return the fixed pressures P [-] (−1 where free) and a mask of the nodes that pockets feed, (n, m + 1).
 
-    Ambient at the ends.
+    The ends are at ambient pressure.
     """
     P = np.full(nodes.shape, -1.0)
     P[:, -1] = 0.0
@@ -191,5 +192,5 @@ def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
 
 
 def network(nodes: Nodes, H: Gaps, P_fixed: Array) -> Network:
-    """Return the balances of flow."""
+    """Return the flow balances."""
     return Network(pressed(nodes, H), sheared(nodes, H), (P_fixed >= 0).ravel(), P_fixed.ravel())

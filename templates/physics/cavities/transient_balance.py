@@ -15,7 +15,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Journal:
-    """Mesh and bearing; axial nodes from the middle, the end itself, at ambient pressure, left out."""
+    """Mesh and bearing; axial nodes run from the middle and exclude the end, which is at ambient pressure."""
 
     ratio: float
     """Width over diameter B/D [-]."""
@@ -35,28 +35,30 @@ class Journal:
 
 
 def transient_mesh(ratio: float, around: int, across: int) -> Journal:
-    """Return a uniform ring of nodes, graded towards the end of a wide bearing."""
+    """Return a uniform ring of nodes, axially graded towards the end of a wide bearing."""
     zeta, _ = graded_across(min(1.0, 0.3 / ratio), across)
     return Journal(ratio, np.arange(around) * 2 * np.pi / around, zeta)
 
 
 @dataclass(frozen=True)
 class Balance:
-    """Flows between the nodes for one place of the journal: loss = A P + T fill + before."""
+    """Flows between the nodes at one position of the journal: loss = A P + T fill + before."""
 
     round: Array
-    """(n,) H³/dphi towards the next node around, per unit zeta."""
+    """(n,) H³/dphi towards the next circumferential node, per unit zeta."""
     across: Array
-    """(n, m) conductance towards the next node across."""
+    """(n, m) conductance towards the next axial node."""
     carried: Array
-    """(n,) shear flow to the next node around from the one before if positive, else from that, 12 w H."""
+    """(n,) shear flow 12 w H to the next circumferential node; upwind from this node if positive, else from
+    the next.
+    """
     stored: Array
-    """(n,) what a full node stores in a step, per unit zeta."""
+    """(n,) oil that a full node stores in a step, per unit zeta."""
     width: Array
     """(m,) axial widths of the cells."""
 
     def by_pressure(self, P: Array) -> Array:
-        """Return a P, (n, m)."""
+        """Return A P, (n, m)."""
         flow = self.round[:, None] * self.width * (P - np.roll(P, -1, axis=0))
         axial = self.across * (P - np.pad(P[:, 1:], ((0, 0), (0, 1))))
         return np.asarray(flow - np.roll(flow, 1, axis=0) + axial - np.pad(axial[:, :-1], ((0, 0), (1, 0))))
@@ -75,7 +77,7 @@ class Balance:
         return A, (after - np.roll(ahead, 1) + self.stored)[:, None] * self.width
 
     def solve(self, alpha: Array, beta: Array, columns: Array, feed: int) -> Array:
-        """Solve (A alpha + T beta) k = columns with k = 0 at the node where oil is fed, like columns."""
+        """Solve (A alpha + T beta) k = columns, with k = 0 at the feed node; k has the shape of columns."""
         n, m = alpha.shape
         rows = _ring_order(n)[:, None] * m + np.arange(m)
         bands = np.zeros((4 * m + 1, n * m))
@@ -89,7 +91,7 @@ class Balance:
         return np.moveaxis(solution[rows], -1, 0)
 
     def _couplings(self, alpha: Array, beta: Array, rows: Index) -> list[tuple[Index, Index, Array]]:
-        """Return row, column and value of the entries of A alpha + T beta: itself, around, and across."""
+        """Return row, column and value of the entries of A alpha + T beta: diagonal, then neighbours."""
         A, T = self.diagonals()
         after, ahead = np.maximum(self.carried, 0)[:, None], np.minimum(self.carried, 0)[:, None]
         conductance, following = self.round[:, None] * self.width, np.roll(rows, -1, axis=0)
@@ -106,7 +108,7 @@ class Balance:
 
 
 def balance(journal: Journal, eps: Array, w: float, rate: float) -> Balance:
-    """Set up the flows; rate is the first coefficient of the differences in time [1/rad]."""
+    """Return the flow balances; `rate` is the first coefficient of the time differences [1/rad]."""
     n, step = journal.phi.size, 2 * np.pi / journal.phi.size
     H, H_mid = journal.gap(eps, journal.phi), journal.gap(eps, journal.phi + step / 2)
     across = np.repeat((H**3 * step / journal.ratio**2)[:, None], journal.zeta.size - 1, axis=1)
@@ -120,6 +122,9 @@ def balance(journal: Journal, eps: Array, w: float, rate: float) -> Balance:
 
 
 def _ring_order(n: int) -> Index:
-    """Return the ranks of the rows around so that neighbours are at most two apart: 0, 1, 3, …, 4, 2."""
+    """Return the ranks of the circumferential rows in the order 0, 1, 3, …, 4, 2.
+
+    In this order neighbouring rows are at most two apart.
+    """
     there = np.arange(n)
     return np.where(there <= n // 2, np.maximum(2 * there - 1, 0), 2 * (n - there))

@@ -1,4 +1,4 @@
-r"""The film of a moving journal with mass-conserving cavities, one step of time at a time.
+r"""The film of a moving journal with mass-conserving cavities, advanced one time step at a time.
 
 .. math::
     \nabla\cdot(H^3\nabla P) = 12\,\partial_\theta(\alpha H) + 12 w\,\partial_\varphi(\alpha H),\quad
@@ -7,10 +7,10 @@ r"""The film of a moving journal with mass-conserving cavities, one step of time
 alpha is the filled fraction of the gap, P = p psi²/(eta Omega) the pressure above the cavity pressure, which
 is ambient. Angles phi are fixed in the frame of the load, in which the gap rotates at w. The journal has no
 mass: at every step its position is solved for together with pressure and fill so that the film carries the
-load. Newton's method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more
-unknowns. Finite volumes on half the width, backward differences of second order in time, upwind in the
-cavities. Oil enters at ambient pressure along the line of the widest gap, as in `cavitating_film` without
-grooves.
+load. Newton's method solves the complementarity condition (Fischer, Burmeister) as in `cavitation`, with two
+more unknowns. The discretisation uses finite volumes on half the width, second-order backward differences in
+time, and upwind transport in the cavities. Oil enters at ambient pressure along the line of the widest gap,
+as in `cavitating_film` without grooves.
 
 References
 ----------
@@ -29,21 +29,21 @@ from templates.physics.films.film_equations import dual_widths
 _MOST_STEPS = 60
 _ACCURACY = 1e-8
 _THINNER = 0.3
-"""A Newton step leaves this share of the gap."""
+"""Fraction of the gap that a Newton step must leave."""
 _NUDGE = 1e-7
-"""Change of the eccentricity, over the gap, by which its influence is measured."""
+"""Change of the eccentricity, relative to the gap, for the difference quotient."""
 
 
 @dataclass(frozen=True)
 class State:
-    """Film and journal at one time."""
+    """Film and journal at one instant."""
 
     eps: Array
     """(2,) relative eccentricity in the frame of the load."""
     P: Array
     """(n, m) pressure."""
     void: Array
-    """(n, m) share of the gap without oil."""
+    """(n, m) fraction of the gap without oil."""
     content: Array
     """(n, m) oil in the gap, fill times H."""
 
@@ -51,14 +51,14 @@ class State:
 def stepped(
     journal: Journal, start: State, load: Array, w: float, rate: float, before: Array
 ) -> State | None:
-    """Return the film and journal at the next time, or None where Newton's method does not find them.
+    """Return the film and journal at the next instant; None if Newton's method does not converge.
 
     Parameters
     ----------
     journal
         Mesh and bearing.
     start
-        a guess.
+        The initial guess.
     load
         (2,) S along the axes of the frame.
     w
@@ -68,7 +68,9 @@ def stepped(
     """
     eps, P, void = start.eps, start.P.copy(), start.void.copy()
     stored = 12 * before * 2 * np.pi / journal.phi.size * dual_widths(journal.zeta)[:-1]
-    feed = int(journal.gap(eps, journal.phi).argmax())  # where it was: to move it within a step may not end
+    feed = int(
+        journal.gap(eps, journal.phi).argmax()
+    )  # kept during a step: moving it could prevent convergence
     P[feed] = void[feed] = 0
     for _ in range(_MOST_STEPS):
         flows = balance(journal, eps, w, rate)
@@ -95,7 +97,7 @@ def _newton(
     journal: Journal, flows: Balance, eps: Array, P: Array, void: Array, stored: Array, feed: int,
     load: Array, motion: tuple[float, float],
 ) -> tuple[Array, Array, Array, float]:  # fmt: skip
-    """Return the changes of pressure, void and eccentricity, and how far the equations are from being met."""
+    """Return the changes of pressure, void and eccentricity, and the residual of the equations."""
     loss = _loss(flows, P, void, stored)
     scale = flows.diagonals()
     pair = np.array([scale[0] * P, scale[1] * void])
@@ -137,7 +139,7 @@ def _by_eps(
     loss: Array,
     motion: tuple[float, float],
 ) -> list[Array]:
-    """Return the derivative of the loss by the eccentricity along each axis."""
+    """Return the derivative of the loss by each component of the eccentricity."""
     nudge = _NUDGE * (1 - np.hypot(*eps))
     moved = (balance(journal, eps + nudge * axis, *motion) for axis in np.eye(2))
     return [(_loss(flows, P, void, stored) - loss) / nudge for flows in moved]

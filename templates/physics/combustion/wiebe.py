@@ -1,8 +1,8 @@
-r"""Single-zone combustion with Wiebe's burnt fraction: pressure over a four-stroke cycle, adiabatic walls.
+"""Single-zone combustion with Wiebe's burnt fraction: pressure over a four-stroke cycle, adiabatic walls.
 
-With one ratio of specific heats the first law integrates: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ from the
-closing of the inlet, so the pressure needs only a quadrature, not a differential equation. Angles are
-measured from the start of suction; the cylinder fires at 360°.
+With a constant ratio of specific heats the first law can be integrated: p V^γ = p₁V₁^γ + (γ − 1) ∫ V^(γ−1) dQ
+from inlet closing. The pressure therefore needs only a quadrature, not the solution of a differential
+equation. Angles are measured from the start of the intake stroke; the cylinder fires at 360°.
 
 References
 ----------
@@ -23,8 +23,12 @@ from templates.core.language.declare import on_paper, units
 from templates.physics.engine.slider_crank import Motion
 
 FIRING = 2 * np.pi
-_PANELS = 240  # of the combustion, and of each part of the work
-_DEGREES, _CLOSER, _AROUND = 720, 5, 41  # angles of the first search for the peak, searches, angles of others
+_PANELS = 240  # number of panels for combustion and for each part of the work
+_DEGREES, _CLOSER, _AROUND = (
+    720,
+    5,
+    41,
+)  # number of angles of the first peak search; further searches; their number of angles
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -43,7 +47,7 @@ class HeatRelease:
     m: Array
 
     def share(self, theta: Array) -> Array:
-        """Return the burnt share [1] at crank angles [rad], (…, K)."""
+        """Return the burnt fraction [1] at crank angles [rad], (…, K)."""
         y = np.clip((theta - _column(self.start)) / _column(self.duration), 0, 1)
         return -np.expm1(-_column(self.a) * y ** (_column(self.m) + 1))
 
@@ -76,7 +80,7 @@ class ClosedCylinder:
 
     @cached_property
     def gained(self) -> Array:
-        """∫ (V/V_c)^(γ−1) dx at the ends of the combustion's panels in √y, (…, panels + 1), by Gauss."""
+        """Return ∫ (V/V_c)^(γ−1) dx at the ends of combustion panels in √y, (…, panels + 1), by Gauss."""
         ends = np.linspace(0, 1, _PANELS + 1)
         u = (ends[:-1, None] + ends[1:, None]) / 2 + _NODES / (2 * _PANELS)
         density = self._density(u.ravel())
@@ -84,7 +88,7 @@ class ClosedCylinder:
         return np.concatenate([0 * parts[..., :1], np.cumsum(parts, axis=-1)], axis=-1)
 
     def _density(self, u: Array) -> Array:
-        """Return (V/V_c)^(γ−1) dx/du at roots u = √y of the share of the duration, (…, K)."""
+        """Return (V/V_c)^(γ−1) dx/du at u = √y, the root of the fraction of the duration, (…, K)."""
         b, y = self.burning, u * u
         theta = _column(b.start) + _column(b.duration) * y
         compressed = (self.volume(theta) / _column(self.dead)) ** (_column(self.gamma) - 1)
@@ -107,7 +111,7 @@ class ClosedCylinder:
         return state * (self.volume(theta) / _column(self.dead)) ** -gamma
 
     def work(self) -> Array:
-        """∫ p dV from closing to opening [J], by Gauss, apart before, during and after the combustion."""
+        """Return ∫ p dV from closing to opening [J], by Gauss before, during and after combustion."""
         b = self.burning
         marks = [self.closes, b.start, b.start + b.duration, self.opens]
         s = ((np.arange(_PANELS)[:, None] + (1 + _NODES) / 2) / _PANELS).ravel()
@@ -121,7 +125,7 @@ class ClosedCylinder:
 
 
 def _hermite(t: Array, ends: list[Array], slopes: list[Array]) -> Array:
-    """Return the cubic between two values with their slopes, at t from 0 to 1."""
+    """Return the cubic Hermite interpolation between two values with their slopes, at t from 0 to 1."""
     rest = 1 - t
     value = ends[0] * (1 + 2 * t) * rest**2 + ends[1] * (3 - 2 * t) * t**2
     return value + slopes[0] * t * rest**2 - slopes[1] * rest * t**2
@@ -154,7 +158,7 @@ def cycle_pressure(cylinder: ClosedCylinder, theta: Array, p_s: Array, p_e: Arra
 
 @units(None, "rad", returns="1")
 def burnt_share(cylinder: ClosedCylinder, theta: Array) -> Array:
-    """Return the burnt share over the cycle [1], (…, K); 0 in the next suction."""
+    """Return the burnt fraction over the cycle [1], (…, K); 0 from the next intake stroke on."""
     return cylinder.burning.share(theta)
 
 
@@ -167,14 +171,14 @@ def closed_work(cylinder: ClosedCylinder) -> Array:
 
 @units(None, returns="J")
 def released_heat(cylinder: ClosedCylinder) -> Array:
-    """Return the heat that is burnt until the end of the duration [J]."""
+    """Return the heat released up to the end of combustion [J]."""
     b = cylinder.burning
     return b.heat * -np.expm1(-b.a)
 
 
 @units(None, returns="J")
 def energy_change(cylinder: ClosedCylinder) -> Array:
-    """Return the inner energy at the opening less that at the closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
+    """Return internal energy at exhaust opening minus that at inlet closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
     energy = [
         cylinder.pressure(_column(at)) * cylinder.volume(_column(at))
         for at in (cylinder.closes, cylinder.opens)
@@ -191,9 +195,10 @@ class Peak:
 
 
 def highest(cylinder: ClosedCylinder, p_s: Array, p_e: Array) -> Peak:
-    """Return the largest pressure of the cycle, whatever the angles at which the curve is returned.
+    """Return the largest pressure of the cycle, independent of the angles at which the curve is returned.
 
-    It is sought at each degree and at the ends of the combustion, then nearer and nearer to the best of them.
+    It is searched for at each degree and at the ends of combustion, then ever more closely around the best
+    angle.
     """
     b = cylinder.burning
     shape = np.broadcast_shapes(*map(np.shape, (b.start, b.duration, cylinder.closes, p_s, p_e, b.heat)))
@@ -220,21 +225,21 @@ def peak(highest: Peak) -> Array:
 @on_paper("where the pressure is largest")
 @units(None, returns="rad")
 def peak_angle(highest: Peak) -> Array:
-    """Return its crank angle [rad]."""
+    """Return the crank angle of the largest pressure [rad]."""
     return highest.angle
 
 
 @units("1", returns="rad")
 def four_stroke_angles(steps: Array) -> Array:
-    """Return the angles of a cycle of 720° [rad], (K,), without the last."""
+    """Return the angles of a cycle of 720° [rad], (K,), without the end point."""
     return np.linspace(0, 4 * np.pi, round(float(steps)), endpoint=False)
 
 
 @units("J", "J", "J", "J", returns="1", latex=r"\frac{{{0}-{1}-{2}}}{{{0}+{3}}}")
 def unbalanced_share(heat: Array, work: Array, change: Array, scale: Array) -> Array:
-    """Return the heat less work less change of inner energy, over heat and a scale of the charge [1].
+    """Return heat minus work minus change of internal energy, over heat and a scale of the charge [1].
 
-    0 below 1e-9.
+    Values below 1e-9 are returned as 0.
     """
     share = (heat - work - change) / (heat + scale)
     return np.where(np.abs(share) < 1e-9, 0.0, share)[()]

@@ -1,1 +1,1 @@
-"""Bearings of a whole crankshaft: their loads, statically determinate and on elastic supports."""
+"""Main bearings of a whole crankshaft: their loads, statically determinate and on elastic supports."""

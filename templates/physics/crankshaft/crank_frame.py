@@ -1,8 +1,8 @@
-r"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs and pins, six unknowns per node.
+"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs, pins; six freedoms per node.
 
-Measured against finite elements of a whole shaft of four throws (journal 55, pin 48, throw 42, web 18 × 80
-mm) on rigid mains, the reactions to a unit load on a pin differ by up to 0.014 of the load in the radial
-direction. In the tangential direction they differ by 0.37 with St Venant's torsion of the webs, and by 0.045
+The frame was compared with finite elements of a whole four-throw shaft (journal 55, pin 48, throw 42, web 18
+× 80 mm) on rigid mains. The reactions to a unit load on a pin differ by up to 0.014 of the load in the radial
+direction. In the tangential direction they differ by 0.37 with St Venant torsion of the webs, and by 0.045
 with eight times that torsional stiffness, for that throw.
 
 References
@@ -21,12 +21,14 @@ from templates.core.arrays import Array
 from templates.physics.crankshaft.crank_supports import Flexibility
 
 _SHEAR_ROUND, _SHEAR_FLAT = 0.886, 5 / 6
-_REGULAR = 1e-12  # reciprocal condition of a stiffness, scaled to a diagonal of 1, that leaves 4 digits
+_REGULAR = (
+    1e-12  # reciprocal condition of a stiffness, scaled to a diagonal of 1, that leaves 4 significant digits
+)
 
 
 @dataclass(frozen=True)
 class CrankSections:
-    """Sections of a shaft [m], elastic constants [Pa], [1], and how stiffly webs twist over St Venant."""
+    """Sections of a shaft [m], elastic constants [Pa], [1], and a factor on the webs' St Venant torsion."""
 
     journal: float
     pin: float
@@ -57,19 +59,19 @@ class Frame:
         return len(self.nodes) - 1
 
     def bar(self, i: int, j: int, diameter: float) -> None:
-        """Return a member of round section."""
+        """Return a member of circular section."""
         area, inertia = np.pi * diameter**2 / 4, np.pi * diameter**4 / 64
         self.members.append((i, j, area, inertia, inertia, 2 * inertia, _SHEAR_ROUND * area))
 
     def web(self, i: int, j: int) -> None:
-        """Return a flat member that runs across the shaft."""
+        """Return a flat member that extends across the shaft."""
         t, b = self.sections.web_thickness, self.sections.web_width
         thin, wide = min(t, b), max(t, b)
         twist = wide * thin**3 / 3 * (1 - 0.63 * thin / wide) * self.sections.web_torsion
         self.members.append((i, j, t * b, b * t**3 / 12, t * b**3 / 12, twist, _SHEAR_FLAT * t * b))
 
     def stiffness(self) -> Array:
-        """Return the stiffness of all nodes, six unknowns each."""
+        """Return the stiffness matrix of all nodes, six degrees of freedom each."""
         places, size = np.array(self.nodes), 6 * len(self.nodes)
         ends = np.array([member[:2] for member in self.members])
         section = np.array([member[2:] for member in self.members]).T
@@ -82,9 +84,10 @@ class Frame:
 
 
 def _beams(way: Array, E: float, G: float, section: Array) -> Array:
-    """Return the stiffness of beams along `way`, (B, 3), as (B, 12, 12).
+    """Return the stiffness matrices of beams along `way`, (B, 3), as (B, 12, 12).
 
-    `section`, (5, B): area, inertia against bending along the shaft and across, torsion constant, shear area.
+    `section`, (5, B): area, second moments of area for bending along and across the shaft, torsion constant,
+    shear area.
     """
     A, I_n, I_b, J, A_s = section
     L = np.linalg.norm(way, axis=1)
@@ -113,23 +116,23 @@ def _beams(way: Array, E: float, G: float, section: Array) -> Array:
 
 @dataclass(frozen=True)
 class Throw:
-    """A throw: its middle [m], and the place [m], pin vector [m] and number of each load on it, by place."""
+    """A throw: its middle [m], and place [m], pin vector [m] and number of each of its loads, by place."""
 
     middle: float
     loads: tuple[tuple[float, complex, int], ...]
 
 
 class CrankFrame:
-    """The frame of a whole shaft with the nodes at which its mains and loads stand.
+    """The frame of a whole shaft, and its nodes at the mains and loads.
 
     Parameters
     ----------
     sections
-        Of all journals, webs and pins.
+        Sections of all journals, webs and pins.
     mains
-        Places of the mains [m], ascending.
+        Positions of the mains [m], ascending.
     throws
-        In any order; each with the loads of the rods on it.
+        The throws in any order, each with the loads of its rods.
     """
 
     def __init__(self, sections: CrankSections, mains: Array, throws: list[Throw]) -> None:
@@ -146,7 +149,7 @@ class CrankFrame:
                 self.frame.bar(i, j, sections.journal)
 
     def _throw(self, throw: Throw) -> tuple[float, float]:
-        """Add webs and pin; the ends of the webs on the axis."""
+        """Add the webs and pin of a throw; the webs end on the shaft axis."""
         frame, s = self.frame, self.frame.sections
         ends = throw.middle - s.half, throw.middle + s.half
         first, last = (frame.node(0j, z) for z in ends)
@@ -172,9 +175,9 @@ class CrankFrame:
         return ends
 
     def flexibility(self, count: int, webs: Array) -> Flexibility:
-        """Displacements of the mains under forces on themselves, on `count` rods and on the webs [m].
+        """Return the displacements of the mains under forces on themselves, `count` rods and the webs [m].
 
-        NaN where sections differ so much that rounding decides.
+        The result is NaN if the sections differ so much that rounding dominates.
         """
         size = 6 * len(self.frame.nodes)
         drive = self.axis[-1][1]
@@ -197,7 +200,7 @@ class CrankFrame:
         return Flexibility(moved[:rows, :rows], moved[:rows, rows:])
 
     def _shares(self, place: float) -> tuple[tuple[int, float], tuple[int, float]]:
-        """Return a load at a place on the axis as loads on the two nodes next to it, by the lever."""
+        """Return a load on the axis as loads on its two neighbouring nodes, by the lever rule."""
         places = np.array([z for z, _ in self.axis])
         left = int(np.clip(np.searchsorted(places, place) - 1, 0, places.size - 2))
         share = (place - places[left]) / (places[left + 1] - places[left])
@@ -205,7 +208,7 @@ class CrankFrame:
 
 
 def _is_regular(stiff: Array) -> bool:
-    """Return whether a stiffness, symmetric and positive, is solved to four digits or better."""
+    """Return whether a symmetric positive stiffness matrix can be solved to four digits or better."""
     scale = 1 / np.sqrt(stiff.diagonal())
     scaled = stiff * np.outer(scale, scale)
     factor, fault = dpotrf(scaled)

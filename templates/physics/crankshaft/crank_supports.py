@@ -1,9 +1,10 @@
-r"""Main bearings of an elastic crankshaft on elastic supports: the force method (three-moment equations).
+"""Main bearings of an elastic crankshaft on elastic supports: the force method (three-moment equations).
 
 The reactions are R = R0 + N λ. R0 balances the loads by the lever rule; each column of N is a self-balanced
 set of reactions, one for each main between the two outermost, in x and in y. The displacements of the
-supports, −R/k, and those of the shaft, C R + C_l F + a rigid motion, agree: Nᵀ((C + 1/k)(R0 + N λ) + C_l F) =
-0. So force and moment balance to rounding at any stiffness, from soft supports (a rigid shaft) to rigid ones.
+supports, −R/k, and those of the shaft, C R + C_l F plus a rigid-body motion, agree: Nᵀ((C + 1/k)(R0 + N λ) +
+C_l F) = 0. Force and moment therefore balance to rounding error at any stiffness, from soft supports (a rigid
+shaft) to rigid ones.
 
 All quantities are in axes that rotate with the shaft, in which its flexibility is constant; supports are
 equal in x and y.
@@ -21,10 +22,10 @@ from templates.physics.crankshaft.main_bearings import lever_shares
 
 @dataclass(frozen=True)
 class Flexibility:
-    """Displacements of the mains [m/N] to unit forces on mains, (2 n, 2 n), and loads, (2 n, 2 L).
+    """Displacements of the mains [m/N] for unit forces on mains, (2 n, 2 n), and at the loads, (2 n, 2 L).
 
-    The first and the last main are held; torque and thrust are held at the drive end. Order x, y of each
-    place.
+    The first and last main are fixed; torque and thrust are taken at the drive end. Components x, y of each
+    place are consecutive.
     """
 
     mains: Array
@@ -32,9 +33,9 @@ class Flexibility:
 
 
 def self_balancing(mains: Array) -> Array:
-    """Return reactions without resultant, (n, n − 2) [-].
+    """Return self-balanced sets of reactions, (n, n − 2) [-].
 
-    One at a main between, the lever's at the outermost.
+    Each set has 1 at one inner main and the balancing lever-rule reactions at the two outermost mains.
     """
     n = mains.size
     share = (mains[1:-1] - mains[0]) / (mains[-1] - mains[0])

@@ -1,14 +1,14 @@
-r"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance.
+"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance.
 
-A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore
-where that exceeds the clearance c, otherwise not at all. The bore's centre may be offset from the line of the
+A support reacts with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore if |u|
+exceeds the clearance c, otherwise with no force. The centre of the bore may be offset from the line of the
 others.
 
 By the force method of `crank_supports`, the reactions are R = R₀ + B x, with self-balanced sets B. The
-shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap, Bᵀ(d + R/k +
-c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all crank angles
-at once. |R| is √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without contact carries only that
-much.
+displacements of the shaft d(R), of the supports R/k + c R/|R|, and the offsets o of the bores are compatible:
+Bᵀ(d + R/k + c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all
+crank angles at once. |R| is replaced by √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without
+contact then carries only that much.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from templates.physics.crankshaft.main_bearings import ShaftLoads, Vectors, leve
 from templates.physics.crankshaft.shaft_loads import Places, fits, throw_places
 
 _NONE = np.array(np.nan)
-_SMOOTH = 10.0 ** -np.arange(1, 8)  # ε over the largest load, one after the other
-_STEPS = 40  # of Newton's method at each ε
+_SMOOTH = 10.0 ** -np.arange(1, 8)  # successive values of ε over the largest load
+_STEPS = 40  # most Newton steps for each ε
 _HALVINGS = 30
-_SETTLED = 1e-9  # of the gap, relative to the displacements
+_SETTLED = 1e-9  # converged residual of compatibility, relative to the displacements
 _LAW = 1e-8
-_COLUMNS = 20_000  # crank angles at once
+_COLUMNS = 20_000  # most crank angles solved at once
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class Supports:
 
     @property
     def have_play(self) -> bool:
-        """Return whether any main has a clearance or is out of line."""
+        """Return whether any main has a clearance or an offset."""
         return bool(np.any(self.clearance > 0) or np.any(self.offset != 0))
 
 
 def supports_of(mains: Array, stiffness: Array, clearance: Array, x: Array, y: Array) -> Supports:
-    """Return the supports, one value for each main; rigid where no stiffness is given."""
+    """Return the supports, one value for each main; rigid if no stiffness is given."""
     each = np.zeros(np.size(mains))
     middle: Vectors = np.asarray(x + 1j * y + each, dtype=complex)
     return Supports(np.where(np.isnan(stiffness), np.inf, stiffness) + each, clearance + each, middle)
@@ -59,9 +59,9 @@ def flexibilities(
     mains: Array, cylinders: Array, webs: Array, throw: Places, pins: Array, radius: Array,
     sections: CrankSections,
 ) -> list[Flexibility]:  # fmt: skip
-    """Return the elastic shaft at each point of pins [rad] and radii [m], (…, N).
+    """Return the flexibility of the shaft at each point of pins [rad] and radii [m], (…, N).
 
-    None where it is not given.
+    It is None if the sections of the shaft are not given.
     """
     if not np.ndim(mains) or np.isnan([vars(sections)[name] for name in vars(sections)]).any():
         return []
@@ -81,7 +81,7 @@ def flexibilities(
 
 @dataclass(frozen=True)
 class SupportReactions:
-    """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative, (…, K)."""
+    """Reactions of the mains [N], (…, n, K), and the relative residual of the support law, (…, K)."""
 
     forces: Vectors
     residual: Array
@@ -90,7 +90,7 @@ class SupportReactions:
 def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
 ) -> SupportReactions:
-    """Return the loads of mains with play; each point of the loads has the one shaft, or its own."""
+    """Return the loads of mains with clearance; all points share one shaft, or each has its own."""
     turn = np.exp(1j * theta)[..., None, :]
     shape = loads.forces.shape[:-2]
     points = loads.forces.reshape(-1, *loads.forces.shape[-2:])
@@ -113,7 +113,7 @@ def with_play(
 
 
 class _Play:
-    """Reactions of one shaft in axes that turn with it; real parts and imaginary parts take turns in rows."""
+    """Reactions of one shaft in rotating axes; rows alternate between real and imaginary parts."""
 
     def __init__(self, mains: Array, places: Array, shaft: Flexibility, supports: Supports) -> None:
         plane = np.eye(2)
@@ -124,7 +124,7 @@ class _Play:
         self.clearance = supports.clearance[:, None]
 
     def reactions(self, forces: Vectors, offsets: Vectors) -> SupportReactions:
-        """Return reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
+        """Return reactions [N], (n, K), to loads, (L, K), with the bore centres at offsets [m], (n, K)."""
         parts = [
             self._some(forces[:, at : at + _COLUMNS], offsets[:, at : at + _COLUMNS])
             for at in range(0, forces.shape[-1], _COLUMNS)
@@ -150,7 +150,7 @@ class _Play:
         return SupportReactions(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
-        """Return Newton's method from x, damped by the energy at each crank angle for itself."""
+        """Return the solution of Newton's method from x, damped by the energy separately at each angle."""
         if not x.size:
             return x
         for _ in range(_STEPS):
@@ -164,15 +164,15 @@ class _Play:
                 self._energy(tried, first, free, stiff, small),
                 self._slope(tried, first, free, stiff, small)[0],
             ))  # fmt: skip
-            x = np.where(moves, x + length * step, x)  # one angle's answer does not depend on others
+            x = np.where(moves, x + length * step, x)  # the result at one angle must not depend on the others
         return x
 
     def _damped(
         self, x: Array, step: Array, slope: Array, look: Callable[[Array], tuple[Array, Array]]
     ) -> Array:
-        """Return the length of each step by which the energy falls, or else its slope.
+        """Return the length of each step for which the energy decreases, or else its gradient.
 
-        Energies end in rounding.
+        Near the solution, differences of energy are dominated by rounding error.
         """
         energy, _ = look(x)
         falls, steep = (slope * step).sum(axis=0), np.abs(slope).max(axis=0)
@@ -192,7 +192,7 @@ class _Play:
         )
 
     def _slope(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> tuple[Array, Array]:
-        """Return the first and second derivatives of the energy by x, (m, K) and (K, m, m)."""
+        """Return the gradient, (m, K), and Hessian, (K, m, m), of the energy by x."""
         R = first + self.basis @ x
         sizes = _sizes(R, small)
         pairs = R.reshape(-1, 2, R.shape[-1])
@@ -207,7 +207,7 @@ class _Play:
 
 
 def _rows(vectors: Vectors) -> Array:
-    """Return complex rows, (n, K), as real ones, (2 n, K)."""
+    """Return complex rows, (n, K), as alternating real and imaginary rows, (2 n, K)."""
     return np.stack([vectors.real, vectors.imag], axis=1).reshape(-1, vectors.shape[-1])
 
 
@@ -218,14 +218,14 @@ def _sizes(R: Array, small: Array) -> Array:
 
 @units("m", "m", "m", "m", returns="1")
 def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Truth:
-    """Return whether clearances and offsets are one number, or a list with one for each main."""
+    """Return whether clearances and offsets are single numbers, or lists with one value for each main."""
     given = (clearance, x, y)
     return all(np.ndim(one) == 0 or np.ndim(mains) == 0 or np.shape(one) == np.shape(mains) for one in given)
 
 
 @units(None, None, returns="1")
 def law_residual(forces: Vectors, supported: SupportReactions | None) -> Array:
-    """Return the residual of the supports' law, relative; 0 below 1e-8, none without mains."""
+    """Return the relative residual of the support law; 0 below 1e-8, NaN without mains."""
     if not np.ndim(forces):
         return _NONE
     if supported is None:

@@ -23,7 +23,7 @@ Places = NDArray[np.intp]
 
 
 def throw_places(places: Array, throw: Places) -> Array:
-    """Return the middle of each throw [m]: midway between the outermost of its cylinders."""
+    """Return the middle of each throw [m]: midway between its outermost cylinders."""
     return np.array([_middle(places[throw == t]) for t in range(int(throw.max()) + 1)])
 
 
@@ -32,7 +32,7 @@ def _middle(places: Array) -> float:
 
 
 def throw_of_web(places: Array, named: Array, middles: Array) -> Places:
-    """Return the throw from 0 of each web: as named from 1, else the nearest."""
+    """Return the index of each web's throw: the named one (from 1 in the input), else the nearest."""
     if np.ndim(named):
         return np.clip(np.rint(named).astype(int) - 1, 0, middles.size - 1)
     return np.argmin(np.abs(places[:, None] - middles), axis=1)
@@ -42,9 +42,9 @@ def web_unbalance(
     U: Array, angle: Array, counterweight: Array, its_angle: Array, places: Array, named: Array,
     middles: Array, pins: Array,
 ) -> Vectors:  # fmt: skip
-    """Return the unbalance of webs with their counterweights [kg m], complex at crank angle 0, (…, W).
+    """Return the unbalance of webs with counterweights [kg m], complex at crank angle 0, (…, W).
 
-    Angles [rad] count from the web's throw, whose pin stands at `pins`, (…, T).
+    Angles [rad] are measured from the web's throw; `pins`, (…, T), are the angles of the crankpins.
     """
     vector = U * np.exp(1j * angle) + counterweight * np.exp(1j * its_angle)
     throw = throw_of_web(places, named, middles)
@@ -52,12 +52,12 @@ def web_unbalance(
 
 
 def determinate(mains: Array, loads: ShaftLoads) -> Vectors:
-    """Return the loads of the mains, determinate; none without mains."""
+    """Return the loads of the mains by the lever rule; a single NaN without mains."""
     return determinate_loads(mains, loads) if np.ndim(mains) else _NONE + 0j
 
 
 def elastic(mains: Array, loads: ShaftLoads, reactions: Array, theta: Array) -> Vectors:
-    """Return the loads of the mains on elastic supports; none where the crank's sections are not given."""
+    """Return the loads of the mains on elastic supports; a single NaN without the crank's sections."""
     return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else _NONE + 0j
 
 
@@ -67,9 +67,8 @@ def reactions_of(
 ) -> Array:  # fmt: skip
     """Return reactions to unit loads on rods and webs, (…, 2 n, 2 L).
 
-    Rigid supports where no stiffness is given.
-
-    `pins` [rad] and `radius` [m] are (…, N): each point with a crank of its own is solved on its own.
+    Supports are rigid if no stiffness is given. `pins` [rad] and `radius` [m] are (…, N): points with
+    different cranks are solved separately.
     """
     if not np.ndim(mains) or np.isnan([vars(sections)[n] for n in vars(sections)]).any():
         return _NONE
@@ -92,7 +91,7 @@ def reactions_of(
 
 
 def fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections) -> bool:
-    """Return whether rods stand on their pins, throws do not overlap, and no main stands within a throw."""
+    """Return whether rods are on their pins, throws do not overlap, and no main lies within a throw."""
     middles = throw_places(cylinders, throw)
     on_pins = np.abs(cylinders - middles[throw]) < sections.pin_length / 2
     length = sections.pin_length + 2 * sections.web_thickness
@@ -113,13 +112,13 @@ def crank_fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSec
 
 @units("N/m", "m", returns="1")
 def has_one_for_each_main(stiffness: Array, mains: Array) -> Truth:
-    """Return whether the supports' stiffness is one number, or a list with one for each main."""
+    """Return whether the stiffness of the supports is one number, or a list with one value for each main."""
     return np.ndim(stiffness) == 0 or np.ndim(mains) == 0 or np.shape(stiffness) == np.shape(mains)
 
 
 @units("m", "kg*m", "kg*m", "1", None, returns="1")
 def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws: Array, count: int) -> Truth:
-    """Return whether webs with an unbalance have places and, if named, a throw that exists."""
+    """Return whether webs with an unbalance have positions and, if a throw is named, one that exists."""
     if np.ndim(places) == 0:
         return bool(np.all(unbalance == 0) and np.all(counterweight == 0))
     named = np.ndim(throws) == 0 or bool(np.all(throws <= count))
@@ -134,7 +133,7 @@ def has_any_unbalance(throws: Array, webs: Array, counterweights: Array) -> Trut
 
 @units(None, None, returns="1")
 def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
-    """Return by how much each main's greatest load differs from the determinate one, over that."""
+    """Return the relative change of each main's greatest load from the determinate one."""
     if not np.ndim(elastic_forces):
         return _NONE
     return relative_change(elastic_forces, determinate_forces)
@@ -142,19 +141,19 @@ def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> 
 
 @units(None, None, "m", returns="1")
 def imbalance(forces: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """Return the largest force or moment that reactions leave over, relative to the loads."""
+    """Return the largest force or moment left unbalanced by the reactions, relative to the loads."""
     return left_over(forces, loads, mains) if np.ndim(forces) else _NONE
 
 
 def on_the_shaft(places: Array, pins: Vectors, webs: Array, spinning: Vectors) -> ShaftLoads:
-    """Return the rods and webs together, broadcast over the points."""
+    """Return the loads of rods and webs together, broadcast over the points."""
     shape = np.broadcast_shapes(pins.shape[:-2], spinning.shape[:-2])
     parts = [np.broadcast_to(one, shape + one.shape[-2:]) for one in (pins, spinning)]
     return ShaftLoads(np.concatenate([places, webs]), np.concatenate(parts, axis=-2))
 
 
 def spun(unbalance: Vectors, omega: Array, theta: Array) -> Vectors:
-    """Return the forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
+    """Return the forces of unbalances [kg m] that rotate with the crank [N], (…, L, K)."""
     return np.asarray(
         (unbalance * np.asarray(omega)[..., None] ** 2)[..., None] * np.exp(1j * theta[..., None, :])
     )
@@ -164,6 +163,6 @@ def sections_of(
     journal: Array, pin: Array, pin_length: Array, thickness: Array, width: Array, E: Array, nu: Array,
     torsion: Array,
 ) -> CrankSections:  # fmt: skip
-    """Return the sections of a shaft as plain numbers; NaN where they are not given."""
+    """Return the sections of a shaft as plain numbers; NaN if they are not given."""
     sizes = (journal, pin, pin_length, thickness, width, E, nu, torsion)
     return CrankSections(*(float(size) for size in sizes))

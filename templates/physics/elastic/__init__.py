@@ -1,1 +1,1 @@
-"""Films in elastic bearings: liner, housing, and oil that thickens under pressure."""
+"""Films in elastic bearings: liner, housing, and oil whose viscosity increases with pressure."""

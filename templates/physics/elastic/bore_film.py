@@ -4,12 +4,12 @@ r"""The film of a journal bearing whose bore deforms in modes, by the equilibriu
     a_j = \overline{m_j P}
 
 m are the modes of `bore_modes`, a_j the mean of pressure times mode over the bore, g_n the compliances of a
-half plane.
+half-space under plane strain.
 
-A ring is equal in all directions, a housing is not: its modes are measured from the block, the film from the
-displacement of the journal. The angle between the two, the turn, is the angle from block to load plus the
-attitude angle, which the film determines. So the equilibrium is solved at a trial turn, and a secant method
-finds the turn that agrees with its attitude.
+A ring has the same compliance in all directions, but a housing does not: its modes are measured from the
+block, and the film from the displacement of the journal. The angle between the two, the turn, is the angle
+from block to load plus the attitude angle, which the film determines. The equilibrium is therefore solved at
+a trial turn, and a secant method finds the turn that agrees with the attitude.
 """
 
 from __future__ import annotations
@@ -35,30 +35,30 @@ from templates.physics.elastic.soft_equations import SoftFilm, Softness
 from templates.physics.films.film_equations import dual_widths
 
 _TURNS = 25
-"""Balances at most in the search of a turn."""
+"""Most equilibria in the search for the turn."""
 _TURNED = 1e-9
 """Accuracy of the turn [rad]."""
 _LARGEST_TURN = 0.3
-"""Of one step [rad]."""
+"""Largest step of the turn [rad]."""
 _SHORTER = 3
-"""Limit on how often such a step may be divided by three."""
+"""Largest number of times that a step may be divided by three."""
 _GRADED = 1.25
 """Change of the least gap beyond which the mesh is graded again."""
 
 
 @dataclass(frozen=True)
 class BoreSoftness(Softness):
-    """Response of gap and oil to the pressure, the bore by a matrix; `ring` holds the harmonics above it."""
+    """Compliance of gap and oil, with a matrix for the bore; `ring` contains the harmonics above it."""
 
     matrix: Array = field(default_factory=lambda: np.zeros((len(MODES), len(MODES))))
     """(38, 38) deformation in each mode per mode of P [-]."""
     share: float = 1.0
-    """Width of the film over that of the bore [-]."""
+    """Width of the film relative to that of the bore [-]."""
     turn: float = 0.0
-    """From the block to the journal's displacement in the sense of rotation [rad]."""
+    """Angle from the block to the journal's displacement in the sense of rotation [rad]."""
 
     def times(self, share: float) -> BoreSoftness:
-        """Return a share of it."""
+        """Return the compliances multiplied by a factor."""
         less = super().times(share)
         return BoreSoftness(
             less.liner, less.ring, less.size, less.scale, less.power, share * self.matrix, self.share,
@@ -68,20 +68,20 @@ class BoreSoftness(Softness):
 
 @dataclass(frozen=True)
 class BoreFilm(SoftFilm):
-    """A pressure on a mesh with the gap that it makes in a bore of modes."""
+    """A pressure on a mesh, with the gap that it produces in a bore that deforms in modes."""
 
     softness: BoreSoftness
 
     @cached_property
     def shapes(self) -> Array:
-        """(n + 1, m + 1, 38) the modes at the nodes."""
+        """Return the (n + 1, m + 1, 38) modes at the nodes."""
         around = modes_around(self.mesh.phi + self.softness.turn)
         along = modes_along(self.softness.share * self.mesh.zeta)
         return np.concatenate([around[:, None] * along[None, :, k, None] for k in range(2)], axis=-1)
 
     @cached_property
     def bent(self) -> Array:
-        """Return (36, nodes) deformation in each mode that bends the bore, per pressure of a node."""
+        """Return the (36, nodes) deformation in each mode that bends the bore, per nodal pressure."""
         weight = np.outer(self.mesh.weight_phi, self.mesh.weight_zeta) * self.softness.share / (4 * np.pi)
         taken = (self.shapes * weight[..., None]).reshape(self.P.size, len(MODES))
         return np.asarray(self.softness.matrix[BENDING] @ taken.T)
@@ -94,12 +94,12 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def amplitudes_of(self) -> Array:
-        """(M, nodes) deformations of the half plane that are not 0, then of the modes, per pressure."""
+        """Return (M, nodes) deformations per nodal pressure: non-zero ones of the half-plane, then modes."""
         plain = SoftFilm(self.mesh, self.ratio, self.softness, self.modes, self.eps, self.P).amplitudes_of
         return np.concatenate([plain[self.modes.compliance != 0], self.bent])
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivative of the loss inside the film by P, by the amplitudes and by eps."""
+        """Return the derivatives of the loss inside the film by P, by the amplitudes and by eps."""
         matrix, plain, by_eps = super().jacobian(film)
         shapes = self.shapes[..., BENDING]
         around, across = (shapes[:-1] + shapes[1:]) / 2, (shapes[:, :-1] + shapes[:, 1:]) / 2
@@ -116,7 +116,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """Derivatives of the flows around (n, m + 1) and across (n + 1, m) by the gap where they pass."""
+        """Return the derivatives of circumferential (n, m + 1) and axial (n + 1, m) flows by the gap."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2
@@ -126,7 +126,7 @@ class BoreFilm(SoftFilm):
 def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, to_load: float) -> list[
     tuple[FilmEquilibrium, FilmEquilibrium]
 ]:  # fmt: skip
-    """Return the films of a load in a rigid and in a soft bore on each of `MESHES`.
+    """Return the films under a load in a rigid and in a compliant bore on each mesh of `MESHES`.
 
     Parameters
     ----------
@@ -135,9 +135,9 @@ def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, t
     eps
         Relative eccentricity near that of the rigid film [-].
     softness
-        What gives way; its turn does not count.
+        The compliances; the turn in it is ignored.
     to_load
-        From the block to the load in the sense of rotation [rad].
+        Angle from the block to the load in the sense of rotation [rad].
 
     Raises
     ------
@@ -170,12 +170,12 @@ def attitude(film: SoftFilm) -> float:
 
 
 def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibrium:
-    """Return the film whose attitude is the one at which its bore was turned, from one nearby.
+    """Return the film whose attitude agrees with the turn of its bore, starting from a nearby film.
 
     Raises
     ------
     NoBalance
-        If the turn does not settle.
+        If the turn does not converge.
     """
     before: tuple[float, float] | None = None
     for _ in range(_TURNS):
@@ -192,7 +192,7 @@ def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibr
 
 
 def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> FilmEquilibrium:
-    """Return the balance after a turn step, shortened until the search converges."""
+    """Return the equilibrium after a step of the turn, which is shortened until the search converges."""
     for _ in range(_SHORTER):
         try:
             return _turned(found, So, turn + step)
@@ -202,7 +202,7 @@ def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> Film
 
 
 def _turned(found: FilmEquilibrium, So: float, turn: float) -> FilmEquilibrium:
-    """Return the balance at another turn angle, on a mesh graded to its gap."""
+    """Return the equilibrium at another turn, on a mesh graded to its gap."""
     film = replace(found.film, softness=replace(_softness(found), turn=turn))
     film = replace(film, eps=film.eps + float(found.film.H.min() - film.H.min()))
     after = settled(film, found.inside, So, found.graded, found.steps)
@@ -218,5 +218,5 @@ def _softness(found: FilmEquilibrium) -> BoreSoftness:
 
 
 def _wrapped(angle: float) -> float:
-    """Return the same angle within half a turn."""
+    """Return the angle wrapped to within half a revolution."""
     return float((angle + np.pi) % (2 * np.pi) - np.pi)

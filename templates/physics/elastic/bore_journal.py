@@ -1,9 +1,9 @@
 """One journal bearing under static load in a bore of known compliance; it complements `elastic_journal`.
 
-    elastic    the liner as columns, and behind it the bore as a matrix of modes with a half plane above them
+    elastic    the liner as columns, and behind it the bore as a matrix of modes with a half-plane above them
 
-As at the other soft levels, the change from stiff to soft is solved on 64 × 8 and 128 × 16 intervals,
-extrapolated, and applied to the film of the map. A rigid bore reproduces the map's film exactly.
+As for the other elastic levels, the change from rigid to compliant is solved on 64 × 8 and 128 × 16
+intervals, extrapolated, and applied to the film of the map. A rigid bore reproduces the map's film exactly.
 """
 
 from __future__ import annotations
@@ -47,19 +47,19 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 _DIFFERENCES = ("eps", "attitude", "peak")
 _OWN = ("deformation", "thickening")
 _PLACES = 72
-"""Around the bore, at which an estimated deformation is sought."""
+"""Number of circumferential places at which the deformation is estimated."""
 
 
 @dataclass(frozen=True)
 class Bore:
-    """A bore as a matrix of modes, in SI; arrays that broadcast with the film's."""
+    """A bore as a matrix of modes, in SI; arrays that broadcast with those of the film."""
 
     rows: Rows
-    """The matrix, one for all points; none leaves the bore stiff [m/Pa]."""
+    """The matrix, one for all points; empty for a rigid bore [m/Pa]."""
     share: Array
     """Width of the film over that of the bore [-]."""
     to_load: Array
-    """From the block or shank to the load in the sense of rotation [rad]."""
+    """Angle from the block or shank to the load in the sense of rotation [rad]."""
 
 
 @on_paper(
@@ -84,9 +84,9 @@ def bore_film_at(
     ratio
         Width over diameter B/D, 0.01 … 100 [-].
     elasticity
-        Liner, housing and oil; at level elastic the radii count for the half plane alone.
+        Liner, housing and oil; at level elastic the radii are used only for the half-plane.
     bore
-        What level elastic takes besides.
+        Further data for level elastic.
     """
     if level != ELASTIC:
         return elastic_film_at(level, So, ratio, elasticity)
@@ -110,7 +110,7 @@ def bore_film_at(
 
 
 def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
-    """Return the compliances, dimensionless; without a matrix the half plane is stiff too."""
+    """Return the dimensionless compliances; without a matrix the half-plane is rigid too."""
     per_gap = float(one.pressure / one.clearance)
     tail = per_gap * half_plane(one.inner, one.modulus, one.poisson) * bool(matrix.any())
     return BoreSoftness(
@@ -122,7 +122,7 @@ def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
 def _changed(
     So: float, ratio: float, softness: BoreSoftness, to_load: float, stiff: dict[str, float]
 ) -> dict[str, float]:
-    """Return the rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
+    """Return the rigid film's values with the changes found on the meshes; eps infinite without a film."""
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner + softness.share + to_load) and np.isfinite(softness.ring).all()):
         return unborne
@@ -143,7 +143,7 @@ def _changed(
 
 
 def _change(before: dict[str, float], after: dict[str, float]) -> dict[str, float]:
-    """Return the changes: logarithms of ratios, differences of angles, and the elastic film's own values."""
+    """Return the changes: logarithms of ratios, differences of angles, and values of the elastic film."""
     change = {name: float(np.log(after[name] / before[name])) for name in _RATIOS}
     change |= {name: after[name] - before[name] for name in _DIFFERENCES}
     return change | {name: after[name] for name in _OWN}
@@ -155,33 +155,33 @@ def neglected_in_bore(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array, rows: Rows, bore_width: Array, peak: Array,
 ) -> Array:  # fmt: skip
-    """Estimate the displacement, under the largest pressure, of the parts that a level takes as rigid [m].
+    """Estimate the displacement under the largest pressure of the parts that a level treats as rigid [m].
 
-    With a matrix the bore is the one that the matrix describes, not a ring. The shape of the pressure is that
-    of `neglected_deformation`, about the place of the largest.
+    With a matrix, the bore is the one that the matrix describes, not a ring. The shape of the pressure is
+    that of `neglected_deformation`, centred on the largest pressure.
 
     Parameters
     ----------
     level
-        One of `ALL_LEVELS`: rigid leaves out liner and bore, liner the bore, the others nothing.
+        One of `ALL_LEVELS`: rigid neglects liner and bore, liner the bore, the others nothing.
     p_max
         Largest pressure [Pa].
     load
         Radial load [N].
     radius, width
-        Of the bearing [m].
+        Radius and width of the bearing [m].
     liner
         Deformation of the liner per pressure; 0 without one [m/Pa].
     inner, outer
         Radii of the housing; NaN without one [m].
     modulus, poisson
-        Of the housing [Pa], [-].
+        Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     rows
-        The matrix [m/Pa]; none for a ring.
+        The matrix [m/Pa]; empty for a ring.
     bore_width
-        Along the bore [m].
+        Axial length of the bore [m].
     peak
-        From the block to the largest pressure in the sense of rotation [rad].
+        Angle from the block to the largest pressure in the sense of rotation [rad].
     """
     known = HOUSING if level == ELASTIC else level
     if not len(rows) or known == HOUSING:

@@ -1,15 +1,15 @@
-r"""Displacement of a bearing: its liner as columns, its housing as a thick ring in plane strain.
+r"""Displacement of a bearing: the liner as columns, the housing as a thick ring in plane strain.
 
-A bonded liner much thinner than the pressure is wide cannot spread sideways: each column shortens by
-p t (1 + nu)(1 − 2 nu)/(E (1 − nu)).
+A bonded liner that is much thinner than the extent of the pressure cannot expand sideways: each column
+shortens by p t (1 + nu)(1 − 2 nu)/(E (1 − nu)).
 
-The ring carries the pressure of its bore, spread as cos(n theta), and nothing outside. For n = 0 this is
-Lamé's solution. For n ≥ 2 Airy's function is Michell's
+The ring is loaded by the pressure in its bore, distributed as cos(n theta), and by nothing outside. For n = 0
+this is Lamé's solution. For n ≥ 2 the Airy stress function is Michell's
 
 .. math:: (A r^n + B r^{n+2} + C r^{-n} + D r^{2-n})\cos n\theta
 
-n = 1 carries the load itself. The supports of the ring against it move the whole bore, which is eccentricity
-in the gap. So n = 1 is left out here, and the eccentricity is relative to the displaced bore.
+n = 1 is the load itself. The reaction of the ring's supports moves the whole bore, which is eccentricity in
+the gap. Therefore n = 1 is omitted here, and the eccentricity is relative to the displaced bore.
 
 References
 ----------
@@ -24,11 +24,11 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 HARMONICS = 40
-"""Highest n of the ring's deformation that counts."""
+"""Highest harmonic n of the ring's deformation."""
 THINNEST = 1.0005
-"""Outer over inner radius at which a ring begins to be one [-]."""
+"""Outer over inner radius above which a ring counts as one [-]."""
 _ENDLESS = 1e-6
-"""Inner over outer radius of a ring that deforms as an endless body does, to rounding [-]."""
+"""Inner over outer radius below which a ring deforms as an infinite body, to rounding error [-]."""
 
 
 @units("m", "Pa", "1", returns="m/Pa", latex=r"\frac{{{0}\,(1+{2})(1-2\,{2})}}{{{1}\,(1-{2})}}")
@@ -38,7 +38,7 @@ def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
     Parameters
     ----------
     thickness
-        Of the layer [m].
+        Thickness of the layer [m].
     modulus
         Young's modulus [Pa].
     poisson
@@ -53,7 +53,7 @@ def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
 
 
 def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) -> Array:
-    """Return the widening of a ring's bore under a pressure of 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
+    """Return the radial displacement of a ring's bore under 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) 
 
     Returns
     -------
-    (..., HARMONICS + 1); 0 for n = 1, NaN throughout where the ring is none.
+    (..., HARMONICS + 1); 0 for n = 1, NaN throughout without a ring.
     """
     a, b, E, nu = np.broadcast_arrays(*(np.asarray(v, float) for v in (inner, outer, modulus, poisson)))
     valid = np.isfinite(a * b * E * nu) & (b > THINNEST * a) & (a > 0) & (E > 0)
@@ -84,16 +84,19 @@ def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) 
 
 
 def _michell(ratio: Array, nu: Array, n: Array) -> Array:
-    """Return 2 mu u_r(a)/(a p) for every ring (R,) of a ratio a/b and every n (N,), (R, N) [-].
+    """Return 2 mu u_r(a)/(a p) for every ring (R,) with ratio a/b and every n (N,), (R, N) [-].
 
-    Powers that grow are scaled to the outer face, those that fall to the inner one.
+    Powers that increase with r are scaled to the outer face, those that decrease to the inner face.
     """
     q, n = ratio[:, None], n[None, :]
     one = np.ones_like(q * n)
-    grow, fall = q ** (n - 2), q**n  # what reaches the inner face, and the outer one
+    grow, fall = (
+        q ** (n - 2),
+        q**n,
+    )  # decay of increasing powers to the inner face and of decreasing ones to the outer face
 
     def stresses(power: Array, at: Array, r: Array) -> tuple[Array, Array]:
-        """Return radial and shear stress of r**power, whose size at the face is `at`, in units of a = 1."""
+        """Return radial and shear stress of r**power, of magnitude `at` at the face, for a = 1."""
         return (power - n**2) * at / r**2, n * (power - 1) * at / r**2
 
     outside = 1 / q * one

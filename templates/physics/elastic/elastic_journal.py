@@ -1,13 +1,13 @@
-r"""A journal bearing under static load with elastic liner and housing, at every level.
+"""A journal bearing under static load with elastic liner and housing, at every level.
 
     rigid    the converged Swift–Stieber film of `film_map`
     liner    the same with the liner as columns
-    housing  the same with the liner, and with the housing as a ring that feels the mean pressure across
+    housing  the same with the liner, and with the housing as a ring under the axial mean of the pressure
 
-The effect of elasticity is the difference of two finite-volume solutions on the same mesh, stiff and soft,
-and is applied to the film of the map. So a stiff bearing has that film exactly, and the mesh error affects
-only the difference. Results of 64 × 8 and 128 × 16 intervals are extrapolated. Everything is dimensionless as
-in `static_journal`.
+The effect of elasticity is the difference of two finite-volume solutions on the same mesh, compliant and
+rigid, and is applied to the film of the map. A rigid bearing therefore has the map's film exactly, and the
+mesh error affects only the difference. Results of 64 × 8 and 128 × 16 intervals are extrapolated. Everything
+is dimensionless as in `static_journal`.
 """
 
 from dataclasses import dataclass, fields
@@ -30,18 +30,18 @@ from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 _FAR = 1e3
-"""Outer over inner radius of a ring that deforms as an endless body does [-]."""
+"""Outer over inner radius at which a ring deforms as an infinite body [-]."""
 RIGID, LINER, HOUSING = "rigid", "liner", "housing"
 LEVELS = (RIGID, LINER, HOUSING)
 ROELANDS_PRESSURE = 5.1e-9
-"""Over a pressure in Pa, in Roelands' law [1/Pa]."""
+"""Constant that multiplies a pressure in Pa in Roelands' law [1/Pa]."""
 ROELANDS_SIZE = 9.67
-"""Less the logarithm of his pole's viscosity in Pa s [-]."""
+"""Minus the logarithm of the pole viscosity in Pa s in Roelands' law [-]."""
 
 
 @dataclass(frozen=True)
 class Elasticity:
-    """What gives way, in SI; arrays that broadcast together."""
+    """The elastic data of liner, housing and oil, in SI; arrays that broadcast together."""
 
     liner: Array
     """Deformation of the liner per pressure; 0 without one [m/Pa]."""
@@ -51,46 +51,46 @@ class Elasticity:
     modulus: Array
     """Young's modulus of the housing [Pa]."""
     poisson: Array
-    """Its Poisson's ratio [-]."""
+    """Poisson's ratio of the housing [-]."""
     exponent: Array
-    """Roelands' exponent; 0 leaves the viscosity alone [-]."""
+    """Roelands' exponent; 0 for constant viscosity [-]."""
     eta: Array
-    """Viscosity without pressure [Pa s]."""
+    """Viscosity at ambient pressure [Pa s]."""
     pressure: Array
     """The unit of P, eta omega_h/psi² [Pa]."""
     clearance: Array
     """Radial clearance [m]."""
 
     def numbers(self) -> list[Array]:
-        """Return all of them."""
+        """Return all values as a tuple."""
         return [getattr(self, field.name) for field in fields(self)]
 
 
 @dataclass(frozen=True)
 class ElasticJournalFilm:
-    """What the film does; dimensionless, NaN where no film bears the load."""
+    """The results of the film; dimensionless, NaN where no film carries the load."""
 
     eps: Array
-    """Displacement of the journal against the displaced bore; infinite where none bears the load."""
+    """Displacement of the journal relative to the displaced bore; infinite if no film carries the load."""
     attitude: Array
-    """From the load to that displacement in the sense of rotation [rad]."""
+    """Angle from the load to that displacement in the sense of rotation [rad]."""
     least: Array
     """Smallest gap over the radial clearance."""
     P_max: Array
     peak: Array
-    """Its place, from the load [rad]."""
+    """Angle of the largest pressure from the load [rad]."""
     shear: Array
     load_couple: Array
     side_flow: Array
     deformation: Array
     """Largest deformation over the radial clearance; NaN at level rigid."""
     thickening: Array
-    """Viscosity at the largest pressure over that without."""
+    """Viscosity at the largest pressure over that at ambient pressure."""
     mesh_error: Array
     """Change of the smallest gap between the two meshes, relative; NaN at level rigid."""
 
     def admitted(self, eps: Array) -> "ElasticJournalFilm":
-        """Return the same with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is outside its bounds."""
         values = (np.where(np.isnan(eps), np.nan, getattr(self, field.name))[()] for field in fields(self))
         return ElasticJournalFilm(*values)
 
@@ -144,7 +144,7 @@ def elastic_film_at(level: str, So: Array, ratio: Array, elasticity: Elasticity)
 
 
 def _softness(level: str, one: Elasticity) -> Softness:
-    """Return the compliances of a level, dimensionless."""
+    """Return the dimensionless compliances of a level."""
     per_gap = float(one.pressure / one.clearance)
     ring = np.zeros(HARMONICS + 1)
     if level == HOUSING:
@@ -156,7 +156,7 @@ def _softness(level: str, one: Elasticity) -> Softness:
 
 
 def _changed(So: float, ratio: float, softness: Softness, stiff: dict[str, float]) -> dict[str, float]:
-    """Return the rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
+    """Return the rigid film's values with the changes found on the meshes; eps infinite without a film."""
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner) and np.isfinite(softness.ring).all()):
         return unborne
@@ -176,7 +176,7 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 
 
 def _changes(So: float, ratio: float, softness: Softness, eps: float) -> list[dict[str, float]]:
-    """On each mesh: logarithms of ratios, differences of angles, deformation and thickening."""
+    """Return, for each mesh, logarithms of ratios, differences of angles, deformation and viscosity ratio."""
     soft: FilmEquilibrium | None = None
     changes = []
     for mesh in MESHES:
@@ -214,7 +214,10 @@ def measured(film: SoftFilm) -> dict[str, float]:
 
 
 def _peak(film: SoftFilm) -> tuple[float, float]:
-    """Place, from the narrowest gap of the stiff bore, and height of the largest pressure, by a parabola."""
+    """Return angle (from the narrowest gap of the rigid bore) and height of the largest pressure.
+
+    Both are taken from a parabola through three nodes.
+    """
     i, j = np.unravel_index(film.P.argmax(), film.P.shape)
     phi, P = film.mesh.phi[i - 1 : i + 2] - film.mesh.phi[i], film.P[i - 1 : i + 2, j]
     bend, slope, top = np.polyfit(phi / phi[2], P, 2)
@@ -225,9 +228,9 @@ def _peak(film: SoftFilm) -> tuple[float, float]:
 
 @units("1/Pa", "Pa*s", returns="1")
 def roelands_exponent(alpha: Array, eta: Array) -> Array:
-    """Return Roelands' Z of a pressure-viscosity coefficient at ambient pressure.
+    """Return Roelands' Z from a pressure–viscosity coefficient at ambient pressure [-].
 
-    NaN for so thin a fluid [-].
+    The result is NaN if the viscosity is too low.
 
     Parameters
     ----------
@@ -243,12 +246,12 @@ def roelands_exponent(alpha: Array, eta: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def wall_ratio(outer: Array, inner: Array) -> Array:
-    """Return outer over inner diameter of a housing; 1, which is none, where the outer is not given [-]."""
+    """Return outer over inner diameter of a housing; 1 (no housing) if the outer one is not given [-]."""
     return np.where(np.isnan(outer), 1.0, outer / inner)[()]
 
 
 def mean_pressure(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
-    """Return the harmonics (..., 41) of the mean pressure across, 2/3 of the largest, about its peak [Pa]."""
+    """Return the harmonics (..., 41) of the axial mean pressure, 2/3 of the largest, about its peak [Pa]."""
     mean = np.asarray(2 / 3 * p_max)
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)
@@ -265,26 +268,27 @@ def neglected_deformation(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array,
 ) -> Array:  # fmt: skip
-    """Estimate the displacement, under the largest pressure, of the parts that a level takes as rigid [m].
+    """Estimate the displacement under the largest pressure of the parts that a level treats as rigid [m].
 
-    The mean pressure across is 2/3 of the largest. Around it is a cosine squared as wide as the load needs.
+    The axial mean of the pressure is 2/3 of the largest. Circumferentially it is a squared cosine, as wide as
+    the load requires.
 
     Parameters
     ----------
     level
-        One of `LEVELS`: rigid leaves out liner and housing, liner the housing, housing nothing.
+        One of `LEVELS`: rigid neglects liner and housing, liner the housing, housing nothing.
     p_max
         Largest pressure [Pa].
     load
         Radial load [N].
     radius, width
-        Of the bearing [m].
+        Radius and width of the bearing [m].
     liner
         Deformation of the liner per pressure; 0 without one [m/Pa].
     inner, outer
         Radii of the housing; NaN without one [m].
     modulus, poisson
-        Of the housing [Pa], [-].
+        Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     """
     of_liner = liner * p_max if level == RIGID else 0 * p_max
     if level == HOUSING:
@@ -296,9 +300,9 @@ def neglected_deformation(
 
 @units("Pa", "N", "m", "m", returns="m", latex=r"\text{{estimate, steel without end}}")
 def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
-    """Estimate the displacement of a bore in an endless body of steel under the largest pressure [m].
+    """Estimate the displacement of a bore in an infinite steel body under the largest pressure [m].
 
-    The shape of the pressure is that of `neglected_deformation`, and this is its least case.
+    The shape of the pressure is that of `neglected_deformation`; this is its lower limit.
 
     Parameters
     ----------
@@ -307,7 +311,7 @@ def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) 
     load
         Radial load [N].
     radius, width
-        Of the bearing [m].
+        Radius and width of the bearing [m].
     """
     steel = np.asarray(210e9), np.asarray(0.3)
     no_liner, far = np.asarray(0.0), _FAR * radius

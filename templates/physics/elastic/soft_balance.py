@@ -1,11 +1,10 @@
-r"""The film under a load with an elastic bearing and pressure-dependent oil, by a single Newton method.
+"""The film under a load with an elastic bearing and pressure-dependent viscosity, by a single Newton method.
 
-The unknowns are the pressures at the nodes, the nodes that belong to the film (P ≥ 0, loss ≥ 0, P · loss =
-0), and the eccentricity. The ring couples all nodes with each other, but through few harmonics, so its part
-of the matrix has low rank: each step takes one sparse factorisation with as many right-hand sides (Woodbury's
-formula).
+The unknowns are the nodal pressures, the set of nodes in the film (P ≥ 0, loss ≥ 0, P · loss = 0), and the
+eccentricity. The ring couples all nodes with each other, but through few harmonics, so its part of the matrix
+has low rank: each step needs one sparse factorisation with as many right-hand sides (Woodbury's formula).
 
-The search begins at the rigid film and increases the compliance in steps, each starting from the previous
+The search starts at the rigid film and increases the compliance in steps, each starting from the previous
 solution; a step that does not converge is halved. The mesh is graded to the least gap found.
 """
 
@@ -21,37 +20,37 @@ from templates.physics.films.film_mesh import ring_mesh
 from templates.physics.films.reynolds import journal_equations
 
 MESHES = ((64, 8), (128, 16))
-"""Intervals around, and across half the width."""
+"""Numbers of intervals around the circumference and over half the width."""
 _STEPS = 30
 MOST_DEFORMED = 100.0
-"""Deformation over the least gap beyond which no film is looked for [-]."""
+"""Deformation over the least gap beyond which no film is sought [-]."""
 _LEAST_STEP = 0.02
-"""A further share of the softness, over that reached, below which the search is given up."""
+"""Smallest increment of the compliance, relative to that reached, before the search stops."""
 _FIRST = 1.0
-"""Deformation over the least gap, of the first share [-]."""
+"""Deformation over the least gap in the first step of compliance [-]."""
 _REGRADE = 1.25
 """Change of the least gap beyond which the mesh is graded again."""
 _ACCURACY = 1e-9
 
 
 class NoBalance(ArithmeticError):
-    """No film was found that bears the load."""
+    """No film was found that carries the load."""
 
 
 @dataclass(frozen=True)
 class FilmEquilibrium:
-    """A film that bears the load, and which of its nodes carry pressure."""
+    """A film that carries the load, and a mask of the nodes with pressure."""
 
     film: SoftFilm
     inside: Mask
     graded: float
     """The least gap to which the mesh is graded [-]."""
     steps: int
-    """Factorisations, of all shares and meshes so far."""
+    """Number of factorisations for all compliances and meshes so far."""
 
 
 def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> FilmEquilibrium:
-    """Return the rigid film of a load on a mesh graded to an eccentricity near its own."""
+    """Return the rigid film under a load, on a mesh graded to an eccentricity near that of the film."""
     mesh = ring_mesh(eps, ratio, around, across)
     stiff = Softness(0.0, np.zeros(1))
     solved = rupture(journal_equations(eps, ratio, mesh))
@@ -65,7 +64,7 @@ def soft_balance(So: float, softness: Softness, rigid: FilmEquilibrium) -> FilmE
     Raises
     ------
     NoBalance
-        If some share of the softness leaves no film.
+        If there is no film at some fraction of the compliance.
     """
     film = rigid.film
     probe = replace(film, softness=softness, modes=modes(film.mesh, softness.ring))
@@ -87,7 +86,7 @@ def soft_balance(So: float, softness: Softness, rigid: FilmEquilibrium) -> FilmE
 
 
 def _shared(So: float, softness: Softness, at: FilmEquilibrium) -> FilmEquilibrium:
-    """Return one share, on the mesh there is, and on one graded to the gap that it makes."""
+    """Return the film at a fraction of the compliance, on the present mesh and on one graded to its gap."""
     film = replace(at.film, softness=softness, modes=modes(at.film.mesh, softness.ring))
     film = replace(film, eps=_opened(film, at.film))
     found = settled(film, at.inside, So, at.graded, at.steps)
@@ -99,12 +98,12 @@ def _shared(So: float, softness: Softness, at: FilmEquilibrium) -> FilmEquilibri
 
 
 def _opened(film: SoftFilm, before: SoftFilm) -> float:
-    """Return the eccentricity at which a softer bearing has the same least gap as before."""
+    """Return the eccentricity at which a more compliant bearing has the same least gap as before."""
     return film.eps + float(film.H.min() - before.H.min())
 
 
 def carried(found: FilmEquilibrium, So: float, around: int, across: int) -> FilmEquilibrium:
-    """Return the balance on a mesh of this number of intervals that is graded to its gap."""
+    """Return the film on a mesh of this number of intervals that is graded to its gap."""
     film, own = found.film, found.film.mesh
     least = min(max(float(film.H.min()), 1e-7), 1.0)
     mesh = ring_mesh(1 - least, film.ratio, around, across)
@@ -116,12 +115,12 @@ def carried(found: FilmEquilibrium, So: float, around: int, across: int) -> Film
 
 
 def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int = 0) -> FilmEquilibrium:
-    """Return Newton's method on one mesh.
+    """Return the film on one mesh by Newton's method.
 
     Raises
     ------
     NoBalance
-        If it does not settle.
+        If the method does not converge.
     """
     may = np.zeros(film.P.shape, bool)
     may[1:-1, :-1] = True
@@ -145,7 +144,7 @@ def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int =
 
 
 def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:
-    """Return Newton's step of pressure and eccentricity."""
+    """Return the Newton step of pressure and eccentricity."""
     matrix, modal, by_eps = film.jacobian(inside)
     right = np.concatenate([-(film.loss * inside).reshape(-1, 1), by_eps[:, None], modal], axis=1)
     solved = splu(matrix).solve(right)
@@ -165,7 +164,7 @@ def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:
 
 
 def _kept(film: SoftFilm, dP: Array, deps: float) -> float:
-    """Return the share of a step that leaves 30 % of the gap everywhere."""
+    """Return the fraction of a step that leaves 30 % of the gap everywhere."""
     after = replace(film, P=film.P + dP, eps=film.eps + deps)
     worst = float(((film.H - after.H) / film.H).max())
     return min(1.0, 0.7 / worst) if worst > 0 else 1.0

@@ -1,17 +1,17 @@
-r"""The Reynolds equation of a film whose gap and oil depend on its own pressure, and its derivatives.
+r"""The Reynolds equation of a film whose gap and viscosity depend on its own pressure, and its derivatives.
 
 .. math::
     \partial_\phi\left(\frac{H^3}{\bar\eta}\partial_\phi P\right)
     + (D/B)^2\,\partial_\zeta\left(\frac{H^3}{\bar\eta}\partial_\zeta P\right) = 6\,\partial_\phi H,\quad
     H = 1 - \varepsilon\cos\phi + l\,P + \sum_n g_n\,(a_n\cos n\phi + b_n\sin n\phi)
 
-l is the liner's compliance; a_n, b_n are the harmonics of the pressure's mean across the width, g_n the
-ring's compliances. The oil thickens after Roelands,
+l is the liner's compliance; a_n, b_n are the harmonics of the axial mean of the pressure, g_n the ring's
+compliances. The viscosity increases with pressure after Roelands,
 
 .. math:: \ln\bar\eta = L\,[(1 + s P)^Z - 1]
 
-The flow balances in finite volumes equal those of `film_equations` for a rigid bearing: the conductance
-between two nodes uses the means of their deformations and pressures.
+The finite-volume flow balances equal those of `film_equations` for a rigid bearing: the conductance between
+two nodes uses the means of their deformations and pressures.
 
 References
 ----------
@@ -32,7 +32,7 @@ from templates.physics.films.film_mesh import Mesh, swell
 
 @dataclass(frozen=True)
 class Softness:
-    """Response of gap and oil to the pressure P = p psi²/(eta omega_h); lengths over the radial clearance."""
+    """Compliance of gap and oil for the pressure P = p psi²/(eta omega_h); lengths over radial clearance."""
 
     liner: float
     """Deformation of the liner per P, l [-]."""
@@ -41,16 +41,16 @@ class Softness:
     size: float = 0.0
     """Roelands' ln(eta) + 9.67, L [-]."""
     scale: float = 0.0
-    """P in units of his pressure, s [-]."""
+    """Factor from P to Roelands' dimensionless pressure, s [-]."""
     power: float = 0.0
-    """His exponent Z; 0 leaves the viscosity alone [-]."""
+    """Roelands' exponent Z; 0 for constant viscosity [-]."""
 
     def times(self, share: float) -> "Softness":
-        """Return a share of it."""
+        """Return the compliances multiplied by a factor."""
         return Softness(share * self.liner, share * self.ring, self.size, self.scale, share * self.power)
 
     def thickening(self, P: Array) -> tuple[Array, Array]:
-        """Return the viscosity over that without pressure, and its slope over P."""
+        """Return the viscosity relative to ambient pressure, and its derivative by P."""
         if self.power == 0 or self.scale == 0:
             return np.ones_like(P), np.zeros_like(P)
         base = 1 + self.scale * np.maximum(P, 0)
@@ -66,13 +66,13 @@ class Modes:
     shapes: Array
     """(n + 1, M) cos and sin at the nodes."""
     taken: Array
-    """(n + 1, M) weights with which the mean pressure across makes their amplitudes."""
+    """(n + 1, M) weights that give the amplitudes from the axial mean pressure."""
     compliance: Array
     """(M,) deformation per amplitude."""
 
 
 def modes(mesh: Mesh, ring: Array) -> Modes:
-    """Return the harmonics 0, 2, 3, … of a ring on a mesh; none for a stiff ring."""
+    """Return the harmonics 0, 2, 3, … of a ring on a mesh; empty for a rigid ring."""
     order = np.concatenate([[0], np.arange(2, HARMONICS + 1)]) if np.any(ring > 0) else np.zeros(0, int)
     cos, sin = np.cos(np.outer(mesh.phi, order)), np.sin(np.outer(mesh.phi, order[1:]))
     shapes = np.concatenate([cos, sin], axis=1)
@@ -83,7 +83,7 @@ def modes(mesh: Mesh, ring: Array) -> Modes:
 
 @dataclass(frozen=True)
 class SoftFilm:
-    """A pressure on a mesh with the gap that it makes, whether or not it balances the flow."""
+    """A pressure on a mesh with the gap that it produces, whether or not it balances the flow."""
 
     mesh: Mesh
     ratio: float
@@ -107,14 +107,17 @@ class SoftFilm:
 
     @cached_property
     def around(self) -> tuple[Array, Array, Array, Array]:
-        """Between neighbours around (n, m + 1): gap, viscosity, its slope, and the pressure's slope."""
+        """Return gap, viscosity, its slope and pressure slope between circumferential neighbours.
+
+        All are (n, m + 1).
+        """
         rise = np.diff(self.P, axis=0) / np.diff(self.mesh.phi)[:, None]
         rigid = (1 - self.eps) + swell(midpoints(self.mesh.phi), self.eps)
         return rigid[:, None] + midpoints(self.deformation), *self._oil(midpoints(self.P)), rise
 
     @cached_property
     def across(self) -> tuple[Array, Array, Array, Array]:
-        """Between neighbours across (n + 1, m): the same."""
+        """Return gap, viscosity, its slope and pressure slope between axial neighbours, (n + 1, m)."""
         rise = np.diff(self.P, axis=1) / np.diff(self.mesh.zeta)
         H, P = ((values[:, :-1] + values[:, 1:]) / 2 for values in (self.deformation, self.P))
         rigid = (1 - self.eps) + swell(self.mesh.phi, self.eps)
@@ -135,16 +138,16 @@ class SoftFilm:
         return _gathered(onward * width, outward)
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivative of the loss inside the film by P, by the ring's amplitudes and by eps.
+        """Return the derivatives of the loss inside the film by P, by the ring's amplitudes and by eps.
 
         Parameters
         ----------
         film
-            (n + 1, m + 1) nodes of the film; at the others P stays 0.
+            (n + 1, m + 1) mask of the nodes of the film; at the others P stays 0.
 
         Returns
         -------
-        The matrix of all nodes, (nodes, M) and (nodes,).
+        The matrix over all nodes, (nodes, M) and (nodes,).
         """
         H, eta, bend, rise = self.around
         width = dual_widths(self.mesh.zeta)
@@ -170,30 +173,30 @@ class SoftFilm:
         turn = -np.cos(midpoints(self.mesh.phi)), -np.cos(self.mesh.phi)
         swollen = _gathered(
             by_gap * turn[0][:, None] + 6 * width, by_gap_side * turn[1][:, None]
-        )  # the constant 1 − eps is left out of the loss
+        )  # the loss omits the constant 1 − eps
         return matrix, modal.reshape(film.size, modal.shape[-1]), (film * swollen).ravel()
 
     @cached_property
     def amplitudes_of(self) -> Array:
-        """Return (M, nodes) the ring's deformations per pressure of a node."""
+        """Return the (M, nodes) deformations of the ring per nodal pressure."""
         taken = self.modes.taken * self.modes.compliance
         across = self.mesh.weight_zeta / 2
         return (taken.T[:, :, None] * across).reshape(taken.shape[1], self.P.size)
 
     @cached_property
     def force_of(self) -> Array:
-        """Return (2, nodes) force towards the narrowest gap and ahead of it per pressure of a node, in So."""
+        """Return the (2, nodes) force per nodal pressure towards and ahead of the narrowest gap, in So."""
         line = np.stack([np.cos(self.mesh.phi), np.sin(self.mesh.phi)]) * self.mesh.weight_phi / 4
         return (line[:, :, None] * self.mesh.weight_zeta).reshape(2, -1)
 
     @cached_property
     def force(self) -> Array:
-        """(2,) of this pressure."""
+        """Return the (2,) force of this pressure."""
         return np.asarray(self.force_of @ self.P.ravel())
 
 
 def _gathered(onward: Array, outward: Array) -> Array:
-    """Return the loss of each node by flows to the next around (n, m + 1, ...) and across (n + 1, m, ...)."""
+    """Return the loss of each node from circumferential (n, m + 1, ...) and axial (n + 1, m, ...) flows."""
     loss = np.zeros((outward.shape[0], onward.shape[1], *onward.shape[2:]))
     loss[:-1] += onward
     loss[1:] -= onward
@@ -203,9 +206,9 @@ def _gathered(onward: Array, outward: Array) -> Array:
 
 
 def _assembled(around: tuple[Array, Array], across: tuple[Array, Array], film: Mask) -> csc_array:
-    """Return the matrix from the slopes of each flow over the pressures at its two ends.
+    """Return the matrix from the derivatives of each flow by the pressures at its two ends.
 
-    Outside it is the unit matrix.
+    Outside the film it is the unit matrix.
     """
     number = np.arange(film.size).reshape(film.shape)
     ends = ((number[:-1], number[1:], *around), (number[:, :-1], number[:, 1:], *across))

@@ -1,1 +1,1 @@
-"""Crank mechanism, gas, balance and flywheel."""
+"""Crank mechanism, gas pressure, balance and flywheel."""

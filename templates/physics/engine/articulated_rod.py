@@ -1,14 +1,14 @@
-r"""Articulated rods: a master rod carries the rods of other cylinders on pins in its big end.
+"""Articulated rods: a master rod carries the rods of other cylinders on pins in its big end.
 
-Vectors across the shaft are complex. In the axes of the master's cylinder its crankpin stands at r e^{iα},
-its rod leans by φ, and the pin of an articulated rod is at Q = r e^{iα} + ρ e^{i(γ−φ)}: ρ the articulation
-radius, γ its angle from the axis of the master rod, in the sense of rotation. Rotated into the axes of its
-own cylinder, Q takes the place of the crankpin; the rest is a slider-crank. Primes are derivatives by the
-crank angle.
+Vectors in the plane of the mechanism are complex. In the axes of the master's cylinder the crankpin is at r
+e^{iα}, the master rod is inclined by φ, and the pin of an articulated rod is at Q = r e^{iα} + ρ e^{i(γ−φ)}:
+ρ is the articulation radius, γ its angle from the axis of the master rod, in the sense of rotation. Rotated
+into the axes of its own cylinder, Q replaces the crankpin; the rest is a slider-crank. Primes are derivatives
+by the crank angle.
 
-The rod's force F on its pin exerts a moment on the master rod, which the master's cylinder wall must react:
-with N = −Im((Q−P)* F)/(l cos φ), P the crankpin, the load on the crankpin increases by F + iN, and that on
-the wall by −N.
+The rod's force F on its pin exerts a moment on the master rod, which the wall of the master's cylinder must
+balance: with N = −Im((Q−P)* F)/(l cos φ), where P is the crankpin, the load on the crankpin increases by F +
+iN, and that on the wall by −N.
 
 References
 ----------
@@ -33,15 +33,15 @@ from templates.physics.engine.offset_crank import OffsetCrank, RodMotion, pin_fo
 
 Numbers = NDArray[np.intp]
 Vectors = NDArray[np.complex128]
-_SAMPLES = 360  # of a turn
-_NEWTON = 8  # steps to a dead centre, from a sample beside it
-_NEAR = 1e-6  # [m] of places, and of radii over the radius
-_CLEAR = 1e-6  # by which a rod is longer than its pin is far from the axis, relative
+_SAMPLES = 360  # per revolution
+_NEWTON = 8  # Newton steps from a sample to the dead centre next to it
+_NEAR = 1e-6  # tolerance of positions [m], and of radii relative to the radius
+_CLEAR = 1e-6  # least relative excess of the rod's length over the distance of its pin from the axis
 
 
 @dataclass(frozen=True)
 class ArticulatedCrank(OffsetCrank):
-    """Cranks of cylinders, (…, N), some of whose rods work on the rod of another cylinder."""
+    """The cranks of cylinders, (…, N); some of their rods are attached to the rod of another cylinder."""
 
     carrier: Numbers  # the cylinder whose rod carries this one, from 0; itself where it has a crankpin, (N,)
     arm: Vectors  # ρ e^{iγ} [m], 0 where it has a crankpin, (N,)
@@ -61,7 +61,7 @@ class ArticulatedCrank(OffsetCrank):
 
     @cached_property
     def top(self) -> Array:
-        """Return the crank angle [rad] at which the piston is highest."""
+        """Return the crank angle [rad] at which the piston is farthest from the crankshaft."""
         return self._dead_centre(highest=True)
 
     @cached_property
@@ -71,7 +71,7 @@ class ArticulatedCrank(OffsetCrank):
 
     @cached_property
     def lowest(self) -> Array:
-        """Return the smallest distance [m]."""
+        """Return the smallest distance of the piston pin from the crankshaft along the axis [m]."""
         return self.at(self._dead_centre(highest=False)[..., None]).x[..., 0]
 
     def at(self, alpha: Array) -> ArticulatedMotion:
@@ -79,7 +79,7 @@ class ArticulatedCrank(OffsetCrank):
         return ArticulatedMotion(self, alpha)
 
     def _dead_centre(self, *, highest: bool) -> Array:
-        """Return the angle of a dead centre, by Newton's method from the best of samples."""
+        """Return the angle of a dead centre, by Newton's method from the best sample."""
         alpha = np.linspace(-np.pi, np.pi, _SAMPLES, endpoint=False) + np.zeros((self.carrier.size, 1))
         x = self.at(alpha).x
         best = np.argmax(x if highest else -x, axis=-1)
@@ -92,7 +92,7 @@ class ArticulatedCrank(OffsetCrank):
 
 @dataclass(frozen=True)
 class ArticulatedMotion(RodMotion):
-    """Where rods and pistons are, and their derivatives by the crank angle, (…, N, K)."""
+    """Positions of rods and pistons, and their derivatives by the crank angle, (…, N, K)."""
 
     crank: ArticulatedCrank
     alpha: Array
@@ -108,7 +108,7 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def _crankpin(self) -> Vectors:
-        """Return the crankpin in the axes of the carrier."""
+        """Return the position of the crankpin in the axes of the carrier."""
         return np.asarray(self.lead.crank.r[..., None] * (self.lead.cos + 1j * self.lead.sin))
 
     @cached_property
@@ -123,17 +123,17 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def pin(self) -> Vectors:
-        """Return the pin on which the rod works [m], in the axes of its cylinder."""
+        """Return the position of the rod's pin [m], in the axes of its cylinder."""
         return (self._crankpin + self._arm) * self._back
 
     @cached_property
     def pin1(self) -> Vectors:
-        """Return its derivative [m]."""
+        """Return the first derivative of the pin's position [m]."""
         return 1j * (self._crankpin - self.lead.phi1 * self._arm) * self._back
 
     @cached_property
     def pin2(self) -> Vectors:
-        """Return its second derivative [m]."""
+        """Return the second derivative of the pin's position [m]."""
         lead = self.lead
         return -(self._crankpin + (1j * lead.phi2 + lead.phi1**2) * self._arm) * self._back
 
@@ -143,12 +143,12 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def sin_phi(self) -> Array:
-        """Return the sine of the rod's angle from the axis."""
+        """Return the sine of the rod's angle to the cylinder axis."""
         return (self.pin.imag - self.crank.e[..., None]) / self._rod
 
     @cached_property
     def phi1(self) -> Array:
-        """Return phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
+        """Return phi′ [1]; the rod rotates at −phi′ times the speed of the crank."""
         return np.asarray(self.pin1.imag / (self._rod * self.cos_phi))
 
     @cached_property
@@ -173,9 +173,9 @@ class ArticulatedMotion(RodMotion):
 
 
 def carriers(masters: Array, count: int) -> Numbers:
-    """Return the cylinder that carries each rod, from 0.
+    """Return the index of the cylinder that carries each rod.
 
-    Itself where none is named, or names are no cylinders.
+    It is the cylinder itself if none is named, or if a name is not a cylinder.
     """
     itself = np.arange(count)
     if np.shape(masters) != (count,):
@@ -188,7 +188,7 @@ def carriers(masters: Array, count: int) -> Numbers:
 def with_articulated(
     crank: OffsetCrank, carrier: Numbers, radius: Array, angle: Array, bank: Array
 ) -> OffsetCrank:
-    """Return the mechanisms with articulated rods; the same where there are none."""
+    """Return the mechanisms with articulated rods; unchanged if there are none."""
     count = carrier.size
     articulated = carrier != np.arange(count)
     shapes = {np.shape(one) for one in (radius, angle, bank)}
@@ -206,7 +206,7 @@ def with_articulated(
 
 
 def order_amplitudes(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
-    """Return amplitudes of −x″ [m] at orders, (…, N, H), complex.
+    """Return the complex amplitudes of −x″ [m] at the orders, (…, N, H).
 
     Those of articulated rods are always exact.
     """
@@ -220,7 +220,7 @@ def order_amplitudes(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
 
 
 def walls_with_articulated(walls: Array, motion: RodMotion, rods: Vectors) -> Array:
-    """Force of each piston on its wall [N], with what the master's wall holds of articulated rods."""
+    """Return the force of each piston on its wall [N], including the reaction to articulated rods."""
     if not isinstance(motion, ArticulatedMotion):
         return walls
     held = (np.conj(motion.lever) * rods).imag / (motion.lead.crank.l[..., None] * motion.lead.cos_phi)
@@ -231,14 +231,14 @@ def walls_with_articulated(walls: Array, motion: RodMotion, rods: Vectors) -> Ar
 
 
 def link_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array) -> Vectors:
-    """Return the force of each rod on its own pin in the cylinder's axes [N], complex, (…, N, K)."""
+    """Return the complex force of each rod on its own pin in its cylinder's axes [N], (…, N, K)."""
     if not isinstance(motion, ArticulatedMotion):
         return pin_force(at_crank, omega, motion, axial, wall)
     return np.asarray(-(at_crank * omega**2)[..., None] * motion.pin2 - axial - 1j * wall)
 
 
 def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
-    """Force of the masses at articulated pins on the frame [N] beyond that of the crankpin's circle."""
+    """Return the force on the frame [N] of masses at articulated pins, beyond that on the crankpin circle."""
     if not isinstance(motion, ArticulatedMotion):
         return np.zeros(1, dtype=complex)
     circle = motion.crank.r[..., None] * (motion.cos + 1j * motion.sin)
@@ -247,9 +247,9 @@ def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array
 
 
 def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
-    """Return loads on bearings [N].
+    """Return the big-end loads [N].
 
-    A master's on the crankpin with all it carries, others' on their own pins.
+    A master rod loads the crankpin with all that it carries; other rods load their own pins.
     """
     if not isinstance(motion, ArticulatedMotion):
         return pins
@@ -261,7 +261,7 @@ def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
 
 @units("1", "1", "rad", "rad", returns="1")
 def masters_are_named(masters: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether masters, if given, are named for each cylinder; a master has no master itself."""
+    """Return whether masters, if given, are named for each cylinder, and no master has a master itself."""
     if not np.ndim(masters):
         return True
     count = count_of(order, pins, firing)
@@ -304,7 +304,7 @@ def rods_share_a_pin(crank: OffsetCrank, layout: Layout, places: Array) -> Truth
 
 @units(None, returns="1")
 def articulated_rods_reach(crank: OffsetCrank) -> Truth:
-    """Return whether articulated rods are longer than the largest offset of their pins."""
+    """Return whether articulated rods are longer than the largest distance of their pins from the axis."""
     if not isinstance(crank, ArticulatedCrank):
         return True
     if not (np.isfinite(crank.arm).all() and np.isfinite(crank.r).all()):

@@ -1,10 +1,10 @@
-r"""Balance of a crankshaft with any number of equal cylinders: remaining forces and couples.
+"""Balance of a crankshaft with any number of equal cylinders: residual forces and couples.
 
-The crank of a cylinder is at −(firing interval) · (its place in the firing order, from 0) plus the angle of
-its bank, when the first cylinder to fire is at top dead centre. Phasors are complex: x real, y imaginary, in
-units of mass times omega² r. The force of a piston along its bank's axis is the sum of a phasor that turns
-with the crank and one that turns against it; for cylinders in line the two are equal, and the sum stays in
-the plane of the cylinders. A V engine differs only by its bank angles.
+When the first cylinder to fire is at top dead centre, the crank of a cylinder is at −(firing interval) · (its
+position in the firing order, from 0) plus the angle of its bank. Phasors are complex: x real, y imaginary, in
+units of mass times omega² r. The force of a piston along the axis of its bank is the sum of a phasor that
+rotates with the crank and one that rotates against it. For in-line cylinders the two are equal, and the sum
+stays in the plane of the cylinders. A V engine differs only by its bank angles.
 
 References
 ----------
@@ -23,41 +23,44 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 
 Phasor = NDArray[np.complex128]
-_VANISHES = 1e-12  # of the sum of all sizes; what is left is rounding
+_VANISHES = 1e-12  # relative to the sum of all magnitudes; smaller values are rounding error
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Phasors that turn with the crank and against it."""
+    """A phasor that rotates with the crank, and one that rotates against it."""
 
     forward: Phasor
     backward: Phasor
 
     @property
     def amplitude(self) -> Array:
-        """Return the largest size over the cycle: the major half axis of an ellipse."""
+        """Return the largest magnitude over the cycle: the semi-major axis of an ellipse."""
         return np.asarray(np.abs(self.forward) + np.abs(self.backward), dtype=float)
 
     def at(self, angle: Array) -> Phasor:
-        """Their sum, (…, K), where the crank has turned by `angle` [rad] times the order of the harmonic."""
+        """Return the sum of both phasors, (…, K), at a crank angle `angle` [rad] times the order."""
         turn = np.exp(1j * angle)
         return self.forward[..., None] * turn + self.backward[..., None] / turn
 
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Cylinders in a row: angle of crank and bank [rad], distance from the reference plane [m], (…, N)."""
+    """In-line or banked cylinders: crank and bank angle [rad], distance from reference plane [m].
+
+    All have the shape (…, N).
+    """
 
     turn: Array
     bank: Array
     arm: Array
 
     def rotating(self, arm: Array | float = 1.0) -> Phasor:
-        """Return the sum of the cranks' directions, each times its arm."""
+        """Return the sum of the crank directions, each multiplied by its arm."""
         return _sum(arm, self.bank + self.turn)
 
     def reciprocating(self, order: int, arm: Array | float = 1.0) -> Pair:
-        """Return the harmonic of an order of the pistons, each times its arm."""
+        """Return the phasors of one order of the pistons, each multiplied by its arm."""
         return Pair(
             _sum(np.asarray(arm) / 2, self.bank + order * self.turn),
             _sum(np.asarray(arm) / 2, self.bank - order * self.turn),
@@ -65,7 +68,7 @@ class Arrangement:
 
 
 def _sum(weight: Array | float, angle: Array) -> Phasor:
-    """Return the sum of weighted directions; exactly none where only rounding is left."""
+    """Return the sum of weighted directions; exactly 0 where it is only rounding error."""
     weight = np.broadcast_to(weight, np.shape(weight * angle))
     total = np.sum(weight * np.exp(1j * angle), axis=-1)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-1)
@@ -73,13 +76,13 @@ def _sum(weight: Array | float, angle: Array) -> Phasor:
 
 
 def crank_turns(order: Array, interval: Array | float) -> Array:
-    """Return angles of the cranks [rad] by cylinder, (…, N), from the firing order and the interval [rad]."""
+    """Return the crank angle [rad] of each cylinder, (…, N), from firing order and firing interval [rad]."""
     place = np.argsort(np.atleast_1d(order), axis=-1).astype(float)
     return np.asarray(-interval * place)
 
 
 def arrangement(strokes: Array, order: Array, bank: Array, places: Array, reference: Array) -> Arrangement:
-    """Return the cylinders that fire in `order`, at equal intervals, along the axis at `places` [m]."""
+    """Return the cylinders that fire in `order`, at equal intervals, at axial positions `places` [m]."""
     order, places = np.atleast_1d(order), np.atleast_1d(places)
     turn = crank_turns(order, np.pi * strokes / order.shape[-1])
     return Arrangement(turn, np.atleast_1d(bank) + 0 * turn, places - np.asarray(reference)[..., None])
@@ -110,19 +113,19 @@ def is_one_each(value: Array, count: Array) -> Truth:
 
 @units("kg", "rad/s", "m", None, returns="N")
 def rotating_force(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
-    """Return the size of the force of the rotating masses [N]."""
+    """Return the magnitude of the force of the rotating masses [N]."""
     return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating())
 
 
 @units("kg", "rad/s", "m", None, returns="N*m")
 def rotating_couple(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
-    """Return the size of the couple of the rotating masses about the reference plane [N m]."""
+    """Return the magnitude of the couple of the rotating masses about the reference plane [N m]."""
     return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating(row.arm))
 
 
 @units("kg", "rad/s", "m", "1", None, None, returns="N")
 def reciprocating_force(m: Array, omega: Array, r: Array, n: Array, order: int, row: Arrangement) -> Array:
-    """Return amplitude of the primary (1) or secondary (2) force, m ω² r [/n] times the pistons' sum [N]."""
+    """Return the amplitude of the primary (1) or secondary (2) force [N]: m ω² r [/n] times phasors."""
     return m * omega**2 * r / n ** (order - 1) * row.reciprocating(order).amplitude
 
 
@@ -161,14 +164,14 @@ def _residual(
 
 @dataclass(frozen=True)
 class TwoPlanes:
-    """Phasors of mass that balance, in two planes, cranks of unit mass at unit radius."""
+    """Phasors of the balancing masses in two planes, for cranks of unit mass at unit radius."""
 
     flywheel: Phasor
     damper: Phasor
 
 
 def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> TwoPlanes:
-    """Return masses that balance the rotating forces and couples, in the planes at x_f and x_d [m]."""
+    """Return the masses in the planes at x_f and x_d [m] that balance the rotating forces and couples."""
     place = row.arm + np.asarray(reference)[..., None]
     x_f, x_d = np.asarray(x_f), np.asarray(x_d)
     flywheel = row.rotating(place - x_d[..., None]) / (x_d - x_f)

@@ -1,11 +1,12 @@
-r"""Forces in a crank mechanism at constant speed, after Rao & Singh (DYREMI), with their errata corrected.
+"""Forces in a crank mechanism at constant speed, after Rao & Singh (DYREMI), with their errata corrected.
 
-x points from the crankshaft to the cylinder head, y to where the crankpin moves first; F_ij acts from body i
-on body j: 1 frame, 2 crank, 3 rod, 4 piston. No gravity, no friction.
+x points from the crankshaft to the cylinder head, y in the direction in which the crankpin moves at top dead
+centre; F_ij acts from body i on body j: 1 frame, 2 crank, 3 rod, 4 piston. Gravity and friction are
+neglected.
 
 The rod is replaced by two statically equivalent masses at its ends. Their moment of inertia exceeds that of
 the rigid rod by `excess`; the correction is a couple `excess` · d²phi/dt², which the cylinder wall and the
-main bearing carry. With an excess of 0 the forces are those of DYREMI.
+main bearing react. With an excess of 0 the forces are those of DYREMI.
 
 References
 ----------
@@ -23,7 +24,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 from templates.physics.engine.slider_crank import Motion
 
-GRAVITY = 9.80665  # m/s², by which a pendulum's period gives its inertia
+GRAVITY = 9.80665  # m/s², used to compute an inertia from a pendulum period
 
 
 def _column(value: Array) -> Array:
@@ -42,13 +43,13 @@ def pendulum_inertia(m_3: Array, a_g: Array, tau: Array) -> Array:
 
 @units(None, "kg*m**2", returns="kg*m**2", latex=r"{1}\ \text{{(rigid) or}}\ 0\ \text{{(lumped)}}")
 def excess_at(level: str, excess: Array) -> Array:
-    """Return the excess [kg m²] that counts at a level: all of it for a rigid rod, none for two masses."""
+    """Return the excess [kg m²] used at a level: all of it for a rigid rod, 0 for two masses."""
     return excess if level == "rigid" else np.zeros(np.shape(excess))[()]
 
 
 @units("kg", "rad/s", "m", "m**2", None, "Pa", "Pa", returns="N")
 def axial_force(m: Array, omega: Array, r: Array, A: Array, motion: Motion, p: Array, p_c: Array) -> Array:
-    """Return K = m a + (p − p_c) A [N], by which the crank moves the reciprocating mass m against the gas."""
+    """Return K = m a + (p − p_c) A [N], the force of the crank that drives the mass m against the gas."""
     inertia = _column(m * omega**2 * r) * motion.acceleration
     return inertia + _column(A) * (p - _column(p_c))
 
@@ -57,7 +58,7 @@ def axial_force(m: Array, omega: Array, r: Array, A: Array, motion: Motion, p: A
 def wall_force_Rao_Singh_1993(K: Array, excess: Array, omega: Array, r: Array, motion: Motion) -> Array:
     """Return F_41y = −K tan φ + d [N], piston on wall.
 
-    D = −excess · φ̈/(l cos φ) is the rigid rod's share.
+    d = −excess · φ̈/(l cos φ) is the contribution of the rigid rod.
     """
     couple = _column(excess * omega**2 / r) * (motion.rod_acceleration / motion.q)
     return -K * motion.tan_phi - couple
@@ -97,7 +98,7 @@ def wristpin_load_x(
 
 @dataclass(frozen=True)
 class CrankForces:
-    """Forces of a mechanism at all angles of a motion [N], (…, K): K, that of the wall, the wristpin's."""
+    """Forces of a mechanism at all angles of a motion [N], (…, K): axial, wall and wristpin force."""
 
     K: Array
     wall: Array
@@ -107,23 +108,23 @@ class CrankForces:
     r: Array
 
     def crankpin(self, m_3A: Array) -> NDArray[np.complex128]:
-        """Return the load of the crankpin [N], complex."""
+        """Return the complex load of the crankpin [N]."""
         x = crankpin_load_x_Rao_Singh_1993(m_3A, self.omega, self.r, self.K, self.motion)
         return x + 1j * crankpin_load_y_Rao_Singh_1993(m_3A, self.omega, self.r, self.wall, self.motion)
 
     def main(self, M: Array) -> NDArray[np.complex128]:
-        """Return the load of the main bearings [N], complex."""
+        """Return the complex load of the main bearings [N]."""
         x = main_load_x_Rao_Singh_1993(M, self.omega, self.r, self.K, self.motion)
         return x + 1j * main_load_y_Rao_Singh_1993(M, self.omega, self.r, self.wall, self.motion)
 
     def wristpin(self) -> NDArray[np.complex128]:
-        """Return the load of the wristpin [N], complex."""
+        """Return the complex load of the wristpin [N]."""
         return np.asarray(self.wristpin_x + 1j * self.wall)
 
 
 @units(None, returns="N")
 def greatest_force(force: NDArray[np.complex128] | Array) -> Array:
-    """Return the greatest size of one force over the cycle [N]."""
+    """Return the greatest magnitude of a force over the cycle [N]."""
     return np.asarray(np.abs(force).max(axis=-1))[()]
 
 

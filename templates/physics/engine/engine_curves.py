@@ -15,9 +15,9 @@ from templates.physics.numerics.crank_grid import CrankGrid
 
 @dataclass(frozen=True)
 class Rotors:
-    """Unbalances [kg m], complex as they stand at crank angle 0, (…, L), and their places [m], (L,).
+    """Unbalances [kg m], complex at crank angle 0, (…, L), and their axial positions [m], (L,).
 
-    They turn `ratio` times as fast as the crank.
+    They rotate `ratio` times as fast as the crank.
     """
 
     unbalance: Vectors
@@ -25,14 +25,14 @@ class Rotors:
     ratio: Array | float = 1.0
 
     def forces(self, omega: Array, theta: Array) -> Vectors:
-        """Return their forces [N], (…, L, K)."""
+        """Return the forces of the rotors [N], (…, L, K)."""
         size = self.unbalance * (np.asarray(omega)[..., None] * self.ratio) ** 2
         ratio = np.asarray(self.ratio + 0 * self.place)[:, None]
         return np.asarray(size[..., None] * np.exp(1j * ratio * theta[..., None, :]))
 
 
 def balancers(unbalance: Array, ratios: Array, phases: Array, places: Array) -> Rotors:
-    """Return the balance shafts, none where none are given; phases [rad] at crank angle 0."""
+    """Return the balance shafts, or no rotors if none are given; phases [rad] at crank angle 0."""
     if np.ndim(unbalance) == 0:
         return Rotors(np.zeros(0, complex), np.zeros(0))
     return Rotors(unbalance * np.exp(1j * phases), places, ratios)
@@ -40,14 +40,14 @@ def balancers(unbalance: Array, ratios: Array, phases: Array, places: Array) -> 
 
 @units("kg*m", "1", "m", returns="1")
 def balancers_are_whole(unbalance: Array, ratios: Array, places: Array) -> Truth:
-    """Return whether the balance shafts have one list of each, or nothing is given."""
+    """Return whether the lists that describe balance shafts are all given, or none of them."""
     lists = [np.ndim(one) for one in (unbalance, ratios, places)]
     return lists in ([0, 0, 0], [1, 1, 1])
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Forces of moving parts on the frame [N], (…, L, K), and their places [m], (L,), for Σ F and Σ z F."""
+    """Forces of moving parts on the frame [N], (…, L, K), and their positions [m], (L,): Σ F and Σ z F."""
 
     pistons: Vectors
     cylinder_places: Array
@@ -62,7 +62,7 @@ class Parts:
         return self._sum(reference)
 
     def _sum(self, reference: Array | None) -> Vectors:
-        """Return the sum over all parts, each times its arm; zero where only rounding is left."""
+        """Return the sum over all parts, each multiplied by its arm; 0 where it is only rounding error."""
         total, size = np.zeros((), complex), np.zeros(())
         for forces, places in ((self.pistons, self.cylinder_places), *self.rotors):
             arm = 1.0 if reference is None else (places - np.asarray(reference)[..., None])[..., None]
@@ -74,26 +74,26 @@ class Parts:
 
 
 def piston_shaking(reciprocating: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
-    """Force of each reciprocating mass on the frame [N], −m x″ω² along its bank, complex, (…, N, K)."""
+    """Return the force of each reciprocating mass on the frame [N], −m x″ω² along its bank, (…, N, K)."""
     along = -(reciprocating * omega**2)[..., None] * motion.x2
     return np.asarray(along * np.exp(1j * bank)[..., None])
 
 
 @units(None, None, None, None, returns="N*m")
 def roll_moment(wall: Array, gas: Array, motion: RodMotion, grid: CrankGrid) -> Array:
-    """Return moment about the shaft that walls and heads put on the frame [N m]: Σ (x W − e (p − p₀) A)."""
+    """Return the moment about the shaft of walls and heads on the frame [N m]: Σ (x W − e (p − p₀) A)."""
     each = motion.x * wall - motion.crank.e[..., None] * gas
     return grid.returned(np.asarray(each.sum(axis=-2)))
 
 
 def torque(pins: Vectors, motion: RodMotion) -> Array:
-    """Return torque of all rods on the crank [N m], from pin forces in the cylinders' own axes, (…, K)."""
+    """Return the torque of all rods on the crank [N m], from pin forces in cylinder axes, (…, K)."""
     lever = motion.crank.r[..., None]
     return np.asarray((lever * (motion.cos * pins.imag - motion.sin * pins.real)).sum(axis=-2))
 
 
 def running_energy(T: Array, grid: CrankGrid) -> Array:
-    """Integral of the torque less its mean from the first angle [J], (…, K), at all angles of the grid."""
+    """Return the integral of torque minus its mean from the first angle [J], (…, K), at all grid angles."""
     energy = grid.running(T)
     least = 1e-12 * np.abs(energy).max(axis=-1, keepdims=True)
     return np.where(np.abs(energy) <= least, 0.0, energy)
@@ -119,7 +119,7 @@ def pressure_curves(p: Array, grid: CrankGrid) -> Array:
 
 @dataclass(frozen=True)
 class Area:
-    """An area between torque and mean torque: from and to [rad], energy [J], positive above the mean."""
+    """An area between torque and mean torque: start and end [rad], energy [J], positive above the mean."""
 
     begin: float
     end: float
@@ -127,7 +127,7 @@ class Area:
 
 
 def areas_of(theta: Array, swing: Array, cycle: float) -> list[Area]:
-    """Return the areas of a periodic curve of mean 0 at ascending angles, (K,); they sum to 0."""
+    """Return the areas of a periodic curve of zero mean at ascending angles, (K,); they sum to 0."""
     width, after = np.diff(theta, append=theta[0] + cycle), np.roll(swing, -1)
     crossing = np.flatnonzero((swing < 0) != (after < 0))
     if not crossing.size:
@@ -144,7 +144,7 @@ def areas_of(theta: Array, swing: Array, cycle: float) -> list[Area]:
 
 
 def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
-    """Return the areas of each torque curve, (…, K), in order; empty if the torque does not vary."""
+    """Return the areas of each torque curve, (…, K), in order; empty if the torque is constant."""
     swing = grid.swing(T).reshape(-1, T.shape[-1])
     theta = np.broadcast_to(grid.ascending, T.shape).reshape(swing.shape)
     varies = np.abs(swing).max(axis=-1) > 1e-12 * np.abs(T).reshape(swing.shape).max(axis=-1)
@@ -156,7 +156,7 @@ def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
 
 @units("rad", None, None, returns="J")
 def area_curve(theta: Array, T: Array, grid: CrankGrid) -> Array:
-    """At each returned angle [rad] the whole area [J] in which it lies, (…, K); 0 without one."""
+    """Return at each returned angle [rad] the whole area [J] to which it belongs, (…, K); 0 without one."""
     curves = np.zeros((max(1, T.size // T.shape[-1]), theta.size))
     for curve, areas in zip(curves, _areas(T, grid), strict=True):
         for area in areas:
@@ -166,7 +166,7 @@ def area_curve(theta: Array, T: Array, grid: CrankGrid) -> Array:
 
 @units(None, None, returns="1")
 def areas_in_words(T: Array, grid: CrankGrid) -> str | Array:
-    """Return every area: `+312.4 J from 12.3 to 104.1 deg; …`."""
+    """Return all areas as text: `+312.4 J from 12.3 to 104.1 deg; …`."""
     words = [
         "; ".join(
             f"{area.energy:+.5g} J from {np.degrees(area.begin):.2f} to {np.degrees(area.end):.2f} deg"
@@ -179,5 +179,5 @@ def areas_in_words(T: Array, grid: CrankGrid) -> str | Array:
 
 @units(None, returns="J")
 def swing_of(energy: Array) -> Array:
-    """Return the largest less smallest running energy [J]."""
+    """Return the largest minus the smallest running energy [J]."""
     return np.asarray(np.ptp(energy, axis=-1))[()]

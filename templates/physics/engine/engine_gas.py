@@ -15,26 +15,26 @@ from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycl
 from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
 
 _HALVINGS = 60
-_NODES = 128  # of Gauss's rule over the change of the charge, which is smooth
-_NODES_A_RADIAN = 24  # of the same rule between two angles of a table
+_NODES = 128  # Gauss points for the gas exchange, where the integrand is smooth
+_NODES_A_RADIAN = 24  # Gauss points per radian between two angles of a table
 
 
 @dataclass(frozen=True)
 class OffsetPolytropic(Polytropic):
-    """The chain of events with the volumes of an offset crank; angles count from top dead centre."""
+    """The polytropic cycle with the volumes of an offset crank; angles are measured from top dead centre."""
 
     crank: OffsetCrank
 
     def in_every_cylinder(self, holds: Truth) -> Truth:
-        """Return whether a condition holds in every cylinder; the last axis counts the cylinders."""
+        """Return whether a condition is true for every cylinder (last axis)."""
         return np.all(holds, axis=-1)
 
     def greatest(self, value: Array) -> Array:
-        """Return the greatest value over all cylinders; the last axis counts the cylinders."""
+        """Return the greatest value over all cylinders (last axis)."""
         return np.max(value, axis=-1)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the travel of each piston from its highest position, over its stroke."""
+        """Return the travel of each piston from top dead centre, over its stroke."""
         turned = np.asarray(angle + self.crank.top)[..., None]
         return self.crank.travel(turned)[..., 0]
 
@@ -47,7 +47,7 @@ class OffsetPolytropic(Polytropic):
 
     @cached_property
     def cut(self) -> Array:
-        """Return the crank angle at which combustion ends, by halving between dead centres."""
+        """Return the crank angle at which combustion ends, by bisection between dead centres."""
         wanted = self.v_cut
         low, high = 0 * wanted, 0 * wanted + np.pi
         for _ in range(_HALVINGS):
@@ -59,12 +59,12 @@ class OffsetPolytropic(Polytropic):
 
 @dataclass(frozen=True)
 class OffsetTabulatedCycle(TabulatedCycle):
-    """A table of pressures with the volumes of an offset crank; angles count from top dead centre."""
+    """A table of pressures with the volumes of an offset crank; angles are measured from top dead centre."""
 
     crank: OffsetCrank
 
     def mean_effective(self) -> Array:
-        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of the way."""
+        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of the travel."""
         width = np.diff(self.angle, append=self.angle[0] + self.cycle)
         count = 6 + int(np.ceil(_NODES_A_RADIAN * width.max()))
         node, weight = np.polynomial.legendre.leggauss(count)
@@ -76,7 +76,7 @@ class OffsetTabulatedCycle(TabulatedCycle):
 
 
 def _for_each(record: Charge | Valves) -> list[Array]:
-    """Return the numbers of a record with an axis for the cylinders."""
+    """Return the numbers of a record with an additional axis for the cylinders."""
     return [np.asarray(getattr(record, field.name))[..., None] for field in fields(record)]
 
 
@@ -84,9 +84,9 @@ def engine_gas(
     name: str, strokes: Array, crank: OffsetCrank, charge: Charge, valves: Valves, angle: Array, p: Array,
     p_c: Array,
 ) -> GasCycle:  # fmt: skip
-    """Return the gas cycle of a name for each cylinder, (…, N); `angle` [rad] and `p` [Pa] are the table.
+    """Return the named gas cycle for each cylinder, (…, N); `angle` [rad] and `p` [Pa] are the table.
 
-    `p_c` [Pa] is the crankcase's pressure.
+    `p_c` [Pa] is the crankcase pressure.
     """
     cycle = float(np.pi * strokes)
     if name == "none":
@@ -125,19 +125,22 @@ def _firing(layout: Layout) -> float:
 
 @units(None, "1", None, returns="Pa")
 def indicated(gas: GasCycle, factor: Array, layout: Layout) -> Array:
-    """Return the work of a cycle over the swept volume [Pa] of each cylinder, (…, N), with its factor."""
+    """Return the indicated mean effective pressure [Pa] of each cylinder, (…, N), times its factor."""
     mean = np.atleast_1d(factor) * gas.mean_effective()
     return np.broadcast_to(mean, (*mean.shape[:-1], layout.firing.shape[-1]))
 
 
 @units("Pa", "m", None, "1", returns="N*m")
 def torque_of_work(p_mi: Array, bore: Array, stroke: Array, strokes: Array) -> Array:
-    """Return the mean torque [N m] of the work of all cylinders in a cycle of that many strokes."""
+    """Return the mean torque [N m] from the work of all cylinders in a cycle of the given strokes."""
     work = p_mi * np.pi * np.atleast_1d(bore) ** 2 / 4 * np.atleast_1d(stroke)
     return np.asarray(work.sum(axis=-1) / (np.pi * strokes))[()]
 
 
 def gas_force(p: Array, p_c: Array, factor: Array, bore: Array) -> Array:
-    """Force of the gas on each piston towards the crank [N], (…, N, K); `factor` multiplies its pressure."""
+    """Return the force of the gas on each piston towards the crank [N], (…, N, K).
+
+    `factor` multiplies the pressure.
+    """
     area = np.atleast_1d(np.pi * bore**2 / 4)[..., None]
     return area * (np.atleast_1d(factor)[..., None] * p - np.asarray(p_c)[..., None, None])

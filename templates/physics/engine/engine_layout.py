@@ -1,6 +1,6 @@
-r"""Angles of a crankshaft's pins and its firing angles, each computed from the other, for any layout.
+"""Crankpin angles and firing angles of any engine layout, each computed from the other.
 
-Seen from the flywheel, x is up, y left, and the shaft turns from x to y; a reference line on the shaft stands
+Seen from the flywheel, x is up, y left, and the shaft rotates from x to y; a reference line on the shaft is
 at theta. Cylinder j is at its bank angle beta_j from x, its pin at psi_j from the line, and it fires at theta
 = phi_j. Its crank angle is alpha_j = theta + psi_j − beta_j. At top dead centre it equals top_j, the angle of
 its own mechanism, so psi_j = beta_j − phi_j + top_j (mod 360°).
@@ -21,13 +21,13 @@ from templates.core.language.declare import units
 
 TURN = 2 * np.pi
 SAME = np.radians(1e-6)
-"""Angles this near [rad] are one: input contradicts itself beyond."""
+"""Angles closer than this [rad] are equal; a larger difference is a contradiction of the inputs."""
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Bank, pin and firing angles [rad], (…, N), and on which throw each cylinder works, from 0, (N,)."""
+    """Bank, pin and firing angles [rad], (…, N), and the throw index of each cylinder, (N,)."""
 
     strokes: int
     bank: Array
@@ -35,26 +35,26 @@ class Layout:
     firing: Array
     throw: NDArray[np.intp]
     is_timed: bool = True
-    """Whether firing angles are given; without gas pressures pins alone lay an engine out."""
+    """Whether firing angles are given; without gas pressures, pin angles alone define a layout."""
 
     @cached_property
     def cycle(self) -> float:
-        """Return 360° or 720° [rad]."""
+        """Return the cycle angle, 360° or 720° [rad]."""
         return float(np.pi * self.strokes)
 
     @cached_property
     def throws(self) -> int:
-        """Number of throws."""
+        """Return the number of throws."""
         return int(self.throw.max()) + 1
 
     @cached_property
     def throw_pin(self) -> Array:
-        """Return the pin of the first cylinder of each throw, (…, T)."""
+        """Return the pin angle of the first cylinder of each throw, (…, T)."""
         return self.pin[..., [int(np.argmax(self.throw == t)) for t in range(self.throws)]]
 
     @cached_property
     def order(self) -> NDArray[np.intp]:
-        """Return the cylinders from 0 in the order in which they fire."""
+        """Return the indices of the cylinders in the order in which they fire."""
         return np.argsort(np.round(self.first_firing % self.cycle, 9), kind="stable")
 
     @cached_property
@@ -68,12 +68,12 @@ class Layout:
 
 
 def listed(value: Array) -> bool:
-    """Return whether an input that may be missing is a list."""
+    """Return whether an optional input is a list."""
     return np.ndim(value) > 0
 
 
 def count_of(*lists: Array) -> int:
-    """Return the number of cylinders by the lists that are given."""
+    """Return the number of cylinders from the lists that are given."""
     return max((np.shape(one)[-1] for one in lists if listed(one)), default=1)
 
 
@@ -87,9 +87,9 @@ def arranged(
     top: Array,
     gas_cycle: str,
 ) -> Layout:
-    """Return the layout by the lists that are given; NaN where there is none, which the rules here refuse.
+    """Return the layout from the lists that are given; NaN where there is none, which a rule refuses.
 
-    Without gas pressures a cylinder whose firing nobody states stands as if it fired in the first turn.
+    Without gas pressures, a cylinder without firing data is treated as if it fired in the first revolution.
     """
     count = count_of(order, pins, firing)
     cycle, bank, top = float(np.pi * strokes), np.atleast_1d(banks), np.atleast_1d(top)
@@ -113,9 +113,9 @@ def arranged(
 
 
 def _timed(order: Array, base: Array, cycle: float) -> Array:
-    """Return the firing angles [rad] in this order, each `base` or a turn later.
+    """Return the firing angles [rad] in this order, each at `base` or one revolution later.
 
-    The smallest interval is largest.
+    The choice makes the smallest firing interval as large as possible.
     """
     if cycle < 1.5 * TURN:
         return base
@@ -136,7 +136,7 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
 
 
 def _evenness(intervals: Array) -> list[float]:
-    """Return the key to sort sets of intervals: the smallest first."""
+    """Return the key to sort sets of intervals: the intervals in ascending order."""
     return [float(gap) for gap in np.sort(np.round(intervals, 9))]
 
 
@@ -147,20 +147,20 @@ def _with_turns(gaps: Array, turns: int) -> Iterator[Array]:
 
 @units("1", "rad", "rad", returns="1")
 def says_layout(order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether any list that describes the layout of the engine is given."""
+    """Return whether any list that describes the engine layout is given."""
     return listed(order) or listed(pins) or listed(firing)
 
 
 @units("1", "rad", "rad", returns="1")
 def is_one_layout(order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether these are lists of one length and no tables of several engines."""
+    """Return whether these lists have the same length and describe a single engine."""
     lists = [one for one in (order, pins, firing) if listed(one)]
     return all(np.ndim(one) == 1 for one in lists) and len({np.shape(one) for one in lists}) <= 1
 
 
 @units("1", "rad", "rad", returns="1")
 def is_order(order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether every cylinder from 1 on is named once, if an order is given."""
+    """Return whether a firing order, if given, names every cylinder from 1 once."""
     if not listed(order):
         return True
     count = count_of(order, pins, firing)
@@ -169,9 +169,9 @@ def is_order(order: Array, pins: Array, firing: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", None, returns="1")
 def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array, gas_cycle: str) -> Truth:
-    """Return whether the firing is given, or not needed because there are no gas pressures.
+    """Return whether firing data are given, or not needed because there are no gas pressures.
 
-    In a four-stroke engine the pins alone leave two turns to choose from.
+    In a four-stroke engine the pin angles alone leave the choice between two revolutions.
     """
     return listed(order) or listed(firing) or bool(strokes == 2) or gas_cycle == "none"
 
@@ -183,7 +183,7 @@ def _is_near(one: Array, other: Array, period: float) -> bool:
 
 @units(None, returns="1")
 def has_times(layout: Layout) -> Truth:
-    """Return whether some firing angles within one cycle fit both the order and these pins."""
+    """Return whether firing angles within one cycle exist that fit both the order and the pin angles."""
     return bool(np.isfinite(layout.firing).all())
 
 
@@ -211,7 +211,7 @@ def order_agrees(layout: Layout, order: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", returns="1")
 def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether throws, if given, are one for each cylinder, numbered from 1 without a gap."""
+    """Return whether throws, if given, are given for each cylinder and numbered from 1 without a gap."""
     if not listed(throws):
         return True
     named = np.unique(throws)
@@ -222,7 +222,7 @@ def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) ->
 
 @units(None, None, returns="1")
 def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
-    """Return whether the pins of each throw are at one angle, or declared as split."""
+    """Return whether the pins of each throw are at the same angle, or declared as split."""
     if pins_of_a_throw == "split" or layout.throw.size != layout.pin.shape[-1]:
         return True
     if not np.isfinite(layout.pin).all():
@@ -232,7 +232,7 @@ def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
 
 @units(None, returns="rad")
 def pin_angles(layout: Layout) -> Array:
-    """Return the angle of each cylinder's pin from the reference line, from 0 to 2π [rad]."""
+    """Return the angle of each cylinder's pin from the reference line [rad], from 0 to 2π."""
     around = layout.pin % TURN
     return np.where(TURN - around < _ROUNDING, 0.0, around)
 
@@ -248,7 +248,7 @@ def firing_angles(layout: Layout) -> Array:
 
 @units(None, returns="rad")
 def firing_intervals(layout: Layout) -> Array:
-    """Return the intervals from each firing to the next, the last to the next cycle's first [rad]."""
+    """Return the intervals from each firing to the next [rad]; the last one ends in the next cycle."""
     in_order = firing_angles(layout)[..., layout.order]
     return np.diff(in_order, append=in_order[..., :1] + layout.cycle)
 
@@ -264,7 +264,7 @@ def pin_splits(layout: Layout) -> Array:
 
 @units(None, returns="1")
 def layout_in_words(layout: Layout) -> str:
-    """Return the layout in words: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
+    """Return the layout as text: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
     strokes = "two" if layout.strokes == 2 else "four"
     if not layout.is_timed:
         return f"{_kind(layout)}, {strokes} strokes, no firing order"

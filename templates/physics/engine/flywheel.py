@@ -1,4 +1,4 @@
-"""Torque of many cylinders, its energy fluctuation, and the flywheel that evens it out."""
+"""Torque of several cylinders, its energy fluctuation, and the flywheel that smooths it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from templates.physics.numerics.crank_grid import CrankGrid
 
 
 def cylinder_motion(theta: Array, strokes: Array, count: Array, n: Array) -> Motion:
-    """The motion of all cylinders, one after the other as they fire, (…, N K), for each ratio n [1]."""
+    """Return the motion of all cylinders in firing order, (…, N K), for each ratio n [1]."""
     angles = theta[..., None, :] - firing_angles(strokes, count)[:, None]
     return crank_motion(angles.reshape(*angles.shape[:-2], -1), n)
 
 
 def firing_angles(strokes: Array, count: Array) -> Array:
-    """Return the crank angle [rad] by which each cylinder follows the first, as they fire, (N,)."""
+    """Return the crank angle [rad] by which each cylinder lags the first, in firing order, (N,)."""
     return np.arange(round(float(count))) * (np.pi * strokes / count)
 
 
@@ -38,9 +38,9 @@ def total_torque(
     m: Array, omega: Array, r: Array, A: Array, excess: Array, motion: Motion, gas: GasCycle, p_c: Array,
     theta: Array,
 ) -> Array:  # fmt: skip
-    """Return torque of all cylinders [N m], (…, K): `crank_loads.torque_Rao_Singh_1993` summed part by part.
+    """Return the torque of all cylinders [N m], (…, K): `crank_loads.torque_Rao_Singh_1993`, part by part.
 
-    Each part is a curve of the mechanism or the gas alone, times a number for each point.
+    Each part is a curve of the mechanism or the gas alone, multiplied by a number for each point.
     """
     p = gas.pressure(motion.theta, motion.travel) - np.asarray(p_c)[..., None]
     parts = (
@@ -53,18 +53,18 @@ def total_torque(
 
 @units(None, None, returns="J")
 def energy_fluctuation(torque: Array, grid: CrankGrid) -> Array:
-    """Return the largest minus smallest running integral of torque [N m] less its mean over the grid [J]."""
+    """Return the largest minus smallest running integral [J] of torque minus its mean [N m] over the grid."""
     return np.asarray(np.ptp(grid.running(torque), axis=-1))[()]
 
 
 @units("N*m", "1", "rad/s", returns="kg*m**2", latex=r"\frac{{{0}}}{{{1}\,{2}^2}}")
 def inertia_of_fluctuation(E: Array, delta: Array, omega: Array) -> Array:
-    """Return the inertia [kg m²] that keeps the speed within delta of itself; NaN at rest."""
+    """Return the inertia [kg m²] that limits the coefficient of speed fluctuation to delta; NaN at rest."""
     moving = np.where(omega == 0, np.nan, omega)
     return (E / (delta * moving**2))[()]
 
 
 @units("kg*m**2", "kg*m**2", returns="kg*m**2", latex=r"\max\left({0},{1}\right)")
 def larger(one: Array, other: Array) -> Array:
-    """Return the larger of two inertias [kg m²], one of which may be unknown."""
+    """Return the larger of two inertias [kg m²], either of which may be NaN."""
     return np.fmax(one, other)

@@ -23,19 +23,19 @@ _QUARTER = np.pi / 2
 
 @units(None, None, None, returns="1")
 def known_for(name: str, cycles: tuple[str, ...], value: Array) -> Truth:
-    """Return whether a value that these cycles need is given at each point, if the cycle is one of them."""
+    """Return whether a value is given at each point, if the cycle is one of those that need it."""
     return np.logical_or(name not in cycles, ~np.isnan(value))
 
 
 @units(None, "Pa", returns="1")
 def table_is_known(name: str, p: Array) -> Truth:
-    """Return whether a table is given, if the cycle is one."""
+    """Return whether a table is given, if the cycle needs one."""
     return name != "table" or np.ndim(p) > 0
 
 
 @units("rad", "rad", "rad", "rad", returns="1")
 def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
-    """Return whether inlet opening and exhaust closing lie within 90° of the dead centre of the exchange."""
+    """Return whether inlet opening and exhaust closing lie within 90° of gas-exchange dead centre."""
     near = (np.abs(wrapped(io)) <= _QUARTER) & (np.abs(wrapped(ec)) <= _QUARTER)
     return near & (ic >= _QUARTER) & (eo <= 4 * np.pi - _QUARTER)
 
@@ -50,9 +50,9 @@ def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
 
 @units(None, None, returns="Pa")
 def end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
-    """Return the pressure [Pa] at the end of compression, rounding aside; 0 where nothing needs it.
+    """Return the pressure [Pa] at the end of compression; 0 if no rule needs it.
 
-    Of several cylinders it is the greatest.
+    For several cylinders it is the greatest, reduced by 1e-12 to allow for rounding.
     """
     if name not in GIVEN_PEAK or not isinstance(cycle := gas(), Polytropic):
         return np.asarray(0.0)
@@ -61,7 +61,7 @@ def end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
 
 @units(None, "rad", "Pa", returns="1")
 def angles_rise(name: str, angle: Array, p: Array) -> Truth:
-    """Return whether the angles of a table are one rising list, as many as pressures, or not given."""
+    """Return whether the angles of a table are missing, or one ascending list with an angle per pressure."""
     if name != "table" or np.ndim(angle) == 0:
         return True
     return np.ndim(angle) == 1 and np.shape(p)[-1:] == angle.shape and bool((np.diff(angle) > 0).all())
@@ -69,7 +69,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", "rad", "Pa", returns="1")
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
-    """Return whether a table of rising angles covers the cycle.
+    """Return whether a table of ascending angles covers the cycle.
 
     The gap from its end to its beginning is at most one step.
     """
@@ -85,7 +85,7 @@ def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", "rad", "Pa", returns="1")
 def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
-    """Return whether a point that repeats the first, a cycle later, repeats its pressure."""
+    """Return whether a point one cycle after the first repeats its pressure."""
     given = name == "table" and np.ndim(angle) > 0 and np.ndim(p) > 0
     if not given or not angles_rise(name, angle, p) or not full_cycle(name, strokes, angle, p):
         return True  # another rule reports it
@@ -95,29 +95,29 @@ def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 
 @units(None, "Pa", returns="1")
 def crankcase_is_filled(name: str, p_c: Array) -> Truth:
-    """Return whether the crankcase has a pressure [Pa] above 0 beside the absolute ones of a gas cycle."""
+    """Return whether the crankcase pressure [Pa] is above 0, if the gas cycle has absolute pressures."""
     return np.logical_or(name not in POLYTROPIC, p_c > 0)
 
 
 @units(None, "Pa", returns="Pa")
 def lowest_of_table(name: str, p: Array) -> Array:
-    """Return the lowest pressure [Pa] of a table; 0, which both scales have, where there is none."""
+    """Return the lowest pressure [Pa] of a table; 0, which fits both scales, without a table."""
     return np.min(p, axis=-1) if name == "table" and np.ndim(p) else np.asarray(0.0)
 
 
 @units(returns="Pa")
 def absolute_table() -> float:
-    """Return the lowest pressure [Pa] from which a table is taken for absolute; one below 0 is gauge."""
+    """Return the lowest pressure [Pa] above which a table counts as absolute; below it is gauge pressure."""
     return 0.3e5
 
 
 @units(returns="Pa")
 def absolute_crankcase() -> float:
-    """Return the pressure [Pa] from which a crankcase's is taken for absolute; 0 is gauge."""
+    """Return the pressure [Pa] above which a crankcase pressure counts as absolute; 0 is gauge pressure."""
     return 0.5e5
 
 
 @units(None, "1", "rad", returns="1")
 def is_manageable(points: tuple[int, ...], strokes: Array, step: Array) -> Truth:
-    """Return whether curves over the internal grid of angles at points of this shape fit into memory."""
+    """Return whether curves over the internal grid of angles at so many points fit into memory."""
     return bool(math.prod(points) * angles_in(strokes, step) <= MOST_VALUES)

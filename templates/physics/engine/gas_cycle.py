@@ -1,15 +1,14 @@
-r"""Gas cycles of engines and their work: ideal Otto, ideal Diesel, practical four-stroke, tabulated.
+"""Gas cycles of engines and their work: ideal Otto, ideal Diesel, practical four-stroke, tabulated.
 
-The first three share one chain of events. Between inlet opening and exhaust closing, in either order, the
-pressure changes linearly in crank angle from exhaust to suction pressure. It is constant until the inlet
+The first three share one sequence of events. Between inlet opening and exhaust closing, in either order, the
+pressure changes linearly in crank angle from exhaust to intake pressure. It is constant until the inlet
 closes, follows a polytrope to top dead centre, stays constant during combustion until the volume is `cutoff`
 times that at dead centre, and follows a polytrope until the exhaust opens. Then it falls linearly to the
-exhaust pressure at bottom dead centre (at once if the exhaust opens later), and stays constant during
+exhaust pressure at bottom dead centre (instantly if the exhaust opens later), and stays constant during
 exhaust.
 
-Otto has cutoff 1, and Diesel burns at the final compression pressure; both have valves that open and close at
-dead centres. In two-stroke engines the charge changes at bottom dead centre. Polytropes need absolute
-pressures.
+Otto has cutoff 1, and Diesel burns at the final compression pressure; in both, valves open and close at dead
+centres. In two-stroke engines the gas exchange is at bottom dead centre. Polytropes need absolute pressures.
 
 References
 ----------
@@ -30,12 +29,12 @@ from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycl
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
 _SAME = 1e-9
-"""Angles closer than this [rad] are one: at an event the pressure is that after it, whatever the rounding."""
+"""Angles closer than this [rad] are equal: at an event the pressure is that after it, despite rounding."""
 
 
 @dataclass(frozen=True)
 class Valves:
-    """Crank angles [rad], four-stroke: about 0 and 720°, 180°, 540°."""
+    """Crank angles of valve events [rad]; in a four-stroke engine about 0 and 720°, 180°, 540°."""
 
     inlet_opens: Array
     inlet_closes: Array
@@ -61,7 +60,7 @@ class Charge:
 
 @dataclass(frozen=True)
 class Polytropic(GasCycle):
-    """The chain of events, by the crank angles [rad] at which they begin or end; n = l/r [1]."""
+    """The sequence of events, by the crank angles [rad] at which they begin or end; n = l/r [1]."""
 
     charge: Charge
     n: Array
@@ -74,7 +73,7 @@ class Polytropic(GasCycle):
     emptied: float
 
     def in_every_cylinder(self, holds: Truth) -> Truth:
-        """Return whether a condition holds in every cylinder; here there is only one."""
+        """Return whether a condition is true for every cylinder; here there is only one."""
         return holds
 
     def greatest(self, value: Array) -> Array:
@@ -82,7 +81,7 @@ class Polytropic(GasCycle):
         return value
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Return the pressure by the event in which each angle lies."""
+        """Return the pressure according to the event in which each angle lies."""
         c = self.charge
         start = _column(self.exchange_begins)
         place = (theta - start + _SAME) % self.cycle - _SAME
@@ -92,7 +91,9 @@ class Polytropic(GasCycle):
 
         volume = 1 / (_column(c.compression_ratio) - 1) + travel
         p_s, p_e, p_3, p_o = (_column(p) for p in (c.suction, c.exhaust, c.combustion, self.p_opened))
-        expanded = np.minimum(_column(self.v_cut) / volume, 1.0)  # 1 at the cut, whatever the rounding
+        expanded = np.minimum(
+            _column(self.v_cut) / volume, 1.0
+        )  # exactly 1 at the end of combustion, despite rounding
         overlap = _column(self.exchange_ends) - start
         opened = _column(self.exhaust_opens)
         emptying = np.where(self.emptied > opened, self.emptied - opened, 1)
@@ -111,33 +112,33 @@ class Polytropic(GasCycle):
 
     @cached_property
     def v_dead(self) -> Array:
-        """Return the volume at top dead centre over the swept volume; all volumes are."""
+        """Return the volume at top dead centre; all volumes are relative to the swept volume."""
         return 1 / (self.charge.compression_ratio - 1)
 
     @cached_property
     def v_closed(self) -> Array:
-        """Return the volume where the inlet closes."""
+        """Return the volume at inlet closing."""
         return self.volume(self.inlet_closes)
 
     @cached_property
     def v_cut(self) -> Array:
-        """Return the volume where combustion ends."""
+        """Return the volume at the end of combustion."""
         return self.charge.cutoff * self.v_dead
 
     @cached_property
     def v_opened(self) -> Array:
-        """Return the volume where the exhaust opens."""
+        """Return the volume at exhaust opening."""
         return self.volume(self.exhaust_opens)
 
     @cached_property
     def p_opened(self) -> Array:
-        """Return the pressure where the exhaust opens."""
+        """Return the pressure at exhaust opening."""
         c = self.charge
         return c.combustion * (self.v_cut / self.v_opened) ** c.expansion_exponent
 
     @cached_property
     def p_compressed(self) -> Array:
-        """Return the pressure where compression ends."""
+        """Return the pressure at the end of compression."""
         return self.charge.suction * (self.v_closed / self.v_dead) ** self.charge.compression_exponent
 
     @cached_property
@@ -146,7 +147,7 @@ class Polytropic(GasCycle):
         return self.firing + angle_of_travel((self.charge.cutoff - 1) * self.v_dead, self.n)
 
     def volume(self, angle: Array | float) -> Array:
-        """Return the volume at an angle for each point."""
+        """Return the volume at one angle per point."""
         return self.v_dead + self.way(angle)
 
     def way(self, angle: Array | float) -> Array:
@@ -158,7 +159,7 @@ class Polytropic(GasCycle):
         return travel_integral(end, self.n) - travel_integral(begin, self.n)
 
     def mean_effective(self) -> Array:
-        """Return the work of each event in closed form, over the swept volume."""
+        """Return the work of all events in closed form, over the swept volume."""
         c, dead = self.charge, self.v_dead
         end = np.maximum(self.exhaust_opens, self.emptied)
         return (
@@ -172,7 +173,7 @@ class Polytropic(GasCycle):
         )
 
     def corners(self) -> Array:
-        """Return the angles of events that may make the pressure jump, and of the end of combustion."""
+        """Return the angles of events at which the pressure may jump, and of the end of combustion."""
         events = (
             self.exchange_begins,
             self.exchange_ends,
@@ -183,7 +184,7 @@ class Polytropic(GasCycle):
         return np.stack(np.broadcast_arrays(*events), axis=-1)
 
     def _linear_work(self, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
-        """Return the work while the pressure goes linearly in angle from p_1 to p_2; none if at once."""
+        """Return the work while the pressure changes linearly in angle from p_1 to p_2; 0 if at once."""
         angle = end - begin
         slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
         work = p_2 * self.way(end) - p_1 * self.way(begin) - slope * self.way_between(begin, end)
@@ -199,7 +200,7 @@ def _travel(angle: Array | float, n: Array) -> Array:
 
 
 def _polytropic_work(p_1: Array, v_1: Array, v_2: Array, exponent: Array) -> Array:
-    """Work along p v^k: p_1 v_1 (1 − (v_1/v_2)^(k − 1))/(k − 1), written so that k = 1 is no exception."""
+    """Return the work along p v^k: p_1 v_1 (1 − (v_1/v_2)^(k − 1))/(k − 1), also for k = 1."""
     power = (exponent - 1) * np.log(v_2 / v_1)
     mean = np.where(power == 0, 1.0, -np.expm1(-power) / np.where(power == 0, 1.0, power))
     return p_1 * v_1 * np.log(v_2 / v_1) * mean
@@ -208,9 +209,9 @@ def _polytropic_work(p_1: Array, v_1: Array, v_2: Array, exponent: Array) -> Arr
 def gas_cycle(
     name: str, strokes: Array, n: Array, charge: Charge, valves: Valves, angle: Array, p: Array, p_c: Array
 ) -> GasCycle:
-    """Return the gas cycle of a name.
+    """Return the named gas cycle.
 
-    `angle` [rad], `p` [Pa] are the table, `p_c` [Pa] is that of the crankcase.
+    `angle` [rad] and `p` [Pa] are the table, `p_c` [Pa] is the crankcase pressure.
     """
     cycle = float(np.pi * strokes)
     if name == "none":
@@ -229,12 +230,12 @@ def gas_cycle(
 
 
 def ideal(name: str, charge: Charge) -> Charge:
-    """An ideal Otto cycle burns at top dead centre, a Diesel cycle at the end pressure of its compression."""
+    """Return an ideal cycle: Otto burns at top dead centre, Diesel at the final compression pressure."""
     if name == "otto":
         return replace(charge, cutoff=np.asarray(1.0))
     return replace(charge, combustion=charge.suction * charge.compression_ratio**charge.compression_exponent)
 
 
 def wrapped(angle: Array) -> Array:
-    """Return a crank angle [rad] of a four-stroke cycle, as one from −360° to 360°."""
+    """Return a crank angle [rad] of a four-stroke cycle, wrapped to −360° … 360°."""
     return (angle + 2 * np.pi) % (4 * np.pi) - 2 * np.pi

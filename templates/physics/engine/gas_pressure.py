@@ -1,7 +1,7 @@
-r"""Results of every gas cycle, and the two simplest cycles: no gas, and pressure tabulated over crank angle.
+"""Results of every gas cycle, and the two simplest cycles: no gas, and pressure tabulated over crank angle.
 
-The zero of the crank angle: suction begins at 0° and combustion at 360° in a four-stroke engine, combustion
-at 0° in a two-stroke engine. Pressures are arrays over the angle (last axis) for each point.
+Zero of the crank angle: in a four-stroke engine the intake stroke begins at 0° and combustion at 360°; in a
+two-stroke engine combustion begins at 0°. Pressures are arrays over the angle (last axis) for each point.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from templates.core.language.declare import on_paper, units
 from templates.physics.engine.slider_crank import Motion, travel_integral
 
 _FINE = np.pi / 180  # the step of the grid of crank angles
-_STEEP = 0.02  # of the range of pressures, from one point of a table to the next
+_STEEP = 0.02  # fraction of the range of pressures between consecutive points of a table
 
 
 class GasCycle(ABC):
@@ -24,20 +24,20 @@ class GasCycle(ABC):
 
     @abstractmethod
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Return pressure [Pa] at crank angles theta [rad] and the piston's travel there over its stroke."""
+        """Return the pressure [Pa] at crank angles theta [rad]; `travel` there is relative to the stroke."""
 
     @abstractmethod
     def mean_effective(self) -> Array:
-        """Work of the gas in a cycle over the swept volume [Pa], exact, whatever angles are requested."""
+        """Return the work of the gas in a cycle over the swept volume [Pa], exact for any output angles."""
 
     @abstractmethod
     def corners(self) -> Array:
-        """Return crank angles [rad], (…, J), where the pressure jumps, bends sharply or is highest."""
+        """Return crank angles [rad], (…, J), where the pressure jumps, has a sharp bend or is highest."""
 
 
 @dataclass(frozen=True)
 class NoGas(GasCycle):
-    """The crankcase's pressure above the piston too: no gas force."""
+    """A cycle without gas force: the crankcase pressure acts on both sides of the piston."""
 
     p_c: Array
 
@@ -46,17 +46,17 @@ class NoGas(GasCycle):
         return self.p_c[..., None] + 0 * travel
 
     def mean_effective(self) -> Array:
-        """None."""
+        """Return 0."""
         return 0 * self.p_c
 
     def corners(self) -> Array:
-        """None."""
+        """Return no angles."""
         return np.zeros(0)
 
 
 @dataclass(frozen=True)
 class TabulatedCycle(GasCycle):
-    """Pressures p [Pa], (…, M), at angles [rad], (M,), linear between them and periodic; n = l/r, (…)."""
+    """Pressures p [Pa], (…, M), at angles [rad], (M,), periodic and piecewise linear; n = l/r, (…)."""
 
     angle: Array
     p: Array
@@ -64,7 +64,7 @@ class TabulatedCycle(GasCycle):
     cycle: float
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Return linear between the neighbours."""
+        """Return the pressure by linear interpolation."""
         angle, p = self.angle, self.p
         place = (theta - angle[0]) % self.cycle + angle[0]
         left = np.searchsorted(angle, place, side="right") - 1
@@ -74,14 +74,17 @@ class TabulatedCycle(GasCycle):
         return p[..., left] * (1 - share) + p[..., right] * share
 
     def mean_effective(self) -> Array:
-        """Between two angles, p dV is the change of p V less dp/dθ times the integral of V."""
+        """Return the exact mean effective pressure of the piecewise linear table.
+
+        Between two angles, ∫ p dV is the change of p V minus dp/dθ times the integral of V.
+        """
         ends = np.append(self.angle, self.angle[0] + self.cycle)
         volumes = np.diff(travel_integral(ends, self.n[..., None]))
         slopes = np.diff(self.p, append=self.p[..., :1]) / np.diff(ends)
         return -np.sum(slopes * volumes, axis=-1)
 
     def corners(self) -> Array:
-        """Return the highest point of each pressure, and both ends of steep steps below 1°."""
+        """Return the angle of the highest pressure, and both ends of steep steps shorter than 1°."""
         width = np.diff(self.angle, append=self.angle[0] + self.cycle)
         rise = np.abs(np.diff(self.p, append=self.p[..., :1])).reshape(-1, self.angle.size)
         steep = (width < _FINE) & (rise > _STEEP * np.ptp(self.p, axis=-1).reshape(-1, 1)).any(axis=0)
@@ -105,14 +108,14 @@ def mean_effective(gas: GasCycle) -> Array:
 
 @units(None, None, returns="Pa")
 def peak_pressure(name: str, p: Array) -> Array:
-    """Return the largest pressure over the cycle [Pa]; none (NaN) where there is no gas."""
+    """Return the largest pressure over the cycle [Pa]; NaN without gas."""
     return np.asarray(np.max(p, axis=-1))[()] if name != "none" else np.full(np.shape(p)[:-1], np.nan)[()]
 
 
 def one_cycle(angle: Array, p: Array, cycle: float) -> tuple[Array, Array]:
     """Return angles [rad] and pressures [Pa] of a table without the repeated last point.
 
-    Equal steps if unsaid.
+    The steps are equal if no angles are given.
     """
     if np.ndim(angle) == 0:
         angle = np.arange(p.shape[-1]) * (cycle / p.shape[-1])

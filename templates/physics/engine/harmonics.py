@@ -1,9 +1,9 @@
-r"""Unbalance of any engine by orders: the components that turn with the crank and against it.
+"""Unbalance of any engine by orders: the components that rotate with the crank and against it.
 
 The force of order h on the frame is f e^{ihθ} + b e^{−ihθ}, complex, x + i y. With w the amplitude of the
-force of a cylinder's piston, f = ½ Σ w e^{i(β+h(ψ−β))} and b = ½ Σ w* e^{i(β−h(ψ−β))}; couples are the same
-sums, with each cylinder multiplied by its arm. The largest magnitude over a turn is |f| + |b|, at hθ = (arg b
-− arg f)/2, in the direction (arg f + arg b)/2; the smallest is ||f| − |b||.
+piston force of a cylinder, f = ½ Σ w e^{i(β+h(ψ−β))} and b = ½ Σ w* e^{i(β−h(ψ−β))}; couples are the same
+sums with each cylinder multiplied by its arm. The largest magnitude over a revolution is |f| + |b|, at hθ =
+(arg b − arg f)/2, in the direction (arg f + arg b)/2; the smallest is ||f| − |b||.
 
 References
 ----------
@@ -25,13 +25,13 @@ from templates.physics.engine.engine_layout import Layout
 from templates.physics.engine.offset_crank import OffsetCrank
 
 Phasor = NDArray[np.complex128]
-_VANISHES = 1e-12  # of the sum of all sizes; what is left is rounding
-_SAMPLES = 360  # of a turn, for orders up to 90
+_VANISHES = 1e-12  # relative to the sum of all magnitudes; smaller values are rounding error
+_SAMPLES = 360  # per revolution, for orders up to 90
 
 
 @dataclass(frozen=True)
 class Harmonics:
-    """Phasors that turn with the crank and against it, (…, H), at orders h, (H,)."""
+    """Phasors that rotate with the crank and against it, (…, H), at orders h, (H,)."""
 
     orders: Array
     forward: Phasor
@@ -39,7 +39,10 @@ class Harmonics:
 
     @cached_property
     def largest_at(self) -> Array:
-        """Return hθ [rad] from 0 to π at which the size is largest; one that only turns points to x there."""
+        """Return hθ [rad] from 0 to π at which the magnitude is largest.
+
+        If the vector only rotates, it is the angle at which the vector points to x.
+        """
         f, b = np.angle(self.forward), np.angle(self.backward)
         both = (self.forward != 0) & (self.backward != 0)
         at = np.where(both, (b - f) / 2, b - f)
@@ -47,13 +50,13 @@ class Harmonics:
 
     @cached_property
     def there(self) -> Phasor:
-        """Return the vector at its largest size."""
+        """Return the vector where its magnitude is largest."""
         turn = np.exp(1j * self.largest_at)
         return self.forward * turn + self.backward / turn
 
 
 def _sum(weight: Phasor, angle: Array) -> Phasor:
-    """Return the sum over the cylinders, (…, H); exactly none where only rounding is left."""
+    """Return the sum over the cylinders, (…, H); exactly 0 where it is only rounding error."""
     total = np.sum(weight * np.exp(1j * angle), axis=-2)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-2)
     return np.where(vanishes, 0, total)
@@ -64,9 +67,9 @@ def _with_axis(value: Array) -> Array:
 
 
 def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
-    """Return the amplitudes of −x″ [m] at integer orders, (…, N, H), complex: Re Σ c e^{ihα}.
+    """Return the complex amplitudes c of −x″ [m] at integer orders, (…, N, H), with −x″ = Re Σ c e^{ihα}.
 
-    The leading terms r (r/l)^(h−1) for orders 1 and 2 of a centred crank, as textbooks take them; else the
+    They are the leading terms r (r/l)^(h−1) of textbooks for orders 1 and 2 of a centred crank; otherwise the
     Fourier coefficients of the exact motion.
     """
     whole = np.rint(np.atleast_1d(orders)).astype(int)
@@ -82,7 +85,7 @@ def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
 
 
 def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float = 1.0) -> Harmonics:
-    """Return the unbalance at the orders by the pistons' forces `weight`, (…, N, H), each times its arm."""
+    """Return the unbalance at the orders from piston forces `weight`, (…, N, H), each times its arm."""
     h = np.atleast_1d(orders)
     bank, turn = _with_axis(layout.bank), _with_axis(layout.pin - layout.bank)
     half = weight / 2 * _with_axis(np.asarray(arm, dtype=float))
@@ -93,50 +96,50 @@ def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float 
 
 @units(None, returns="N")
 def forward_force(parts: Harmonics) -> Array:
-    """Return the size of the component that turns with the crank [N]."""
+    """Return the magnitude of the force component that rotates with the crank [N]."""
     return np.abs(parts.forward)
 
 
 @units(None, returns="N")
 def backward_force(parts: Harmonics) -> Array:
-    """Return the size of the component that turns against the crank [N]."""
+    """Return the magnitude of the force component that rotates against the crank [N]."""
     return np.abs(parts.backward)
 
 
 @units(None, returns="N*m")
 def forward_couple(parts: Harmonics) -> Array:
-    """Return the size of the couple that turns with the crank [N m]."""
+    """Return the magnitude of the couple that rotates with the crank [N m]."""
     return np.abs(parts.forward)
 
 
 @units(None, returns="N*m")
 def backward_couple(parts: Harmonics) -> Array:
-    """Return the size of the couple that turns against the crank [N m]."""
+    """Return the magnitude of the couple that rotates against the crank [N m]."""
     return np.abs(parts.backward)
 
 
 @units(None, returns="rad")
 def largest_at(parts: Harmonics) -> Array:
-    """Return the crank angle at which force or couple is largest [rad], from 0 to a half of its period."""
+    """Return the crank angle at which force or couple is largest [rad], from 0 to half its period."""
     return parts.largest_at / parts.orders
 
 
 @units(None, returns="rad")
 def largest_towards(parts: Harmonics) -> Array:
-    """Return its direction there [rad], from x in the sense of rotation, from 0 to 2π."""
+    """Return the direction of the largest force or couple [rad], from x in the sense of rotation, 0 to 2π."""
     angle = np.angle(parts.there) % (2 * np.pi)
     return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)
 
 
 @units(None, returns="N")
 def force_size(phasor: Phasor) -> Array:
-    """Return the size of a force [N]."""
+    """Return the magnitude of a force [N]."""
     return np.abs(phasor)[()]
 
 
 @units(None, returns="N*m")
 def couple_size(phasor: Phasor) -> Array:
-    """Return the size of a couple [N m]."""
+    """Return the magnitude of a couple [N m]."""
     return np.abs(phasor)[()]
 
 
@@ -148,9 +151,9 @@ def direction(phasor: Phasor) -> Array:
 
 
 def rotating_sum(parts: Sequence[tuple[Phasor, Array]], omega: Array, reference: Array | None) -> Phasor:
-    """Force [N] of unbalances [kg m], (…, L), at places [m], (L,); their couple [N m] about a reference.
+    """Return force [N] and couple about a reference [N m] of unbalances [kg m], (…, L), at places [m], (L,).
 
-    Exactly none where only rounding is left.
+    Both are exactly 0 where they are only rounding error.
     """
     total, size = np.zeros((), complex), np.zeros(())
     for unbalance, places in parts:

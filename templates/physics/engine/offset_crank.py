@@ -1,9 +1,9 @@
-r"""Slider-crank with an optional offset of the cylinder axis: motion, and the forces of rod and piston.
+"""Slider-crank with an optional offset of the cylinder axis: motion, and the forces of rod and piston.
 
-Vectors across the shaft are complex, x + i y: x along the axis of the cylinder to its head, y to where the
-crankpin moves first. The axis is offset by `e` towards y; an offset piston pin adds to it. The crank angle
-alpha is measured from x, and the rod's angle phi has sin(phi) = (r sin(alpha) − e)/l. Primes are derivatives
-by alpha.
+Vectors in the plane of the mechanism are complex, x + i y: x along the axis of the cylinder to its head, y in
+the direction in which the crankpin first moves. The axis is offset by `e` towards y; an offset piston pin
+adds to it. The crank angle alpha is measured from x, and the rod's angle phi has sin(phi) = (r sin(alpha) −
+e)/l. Primes are derivatives by alpha.
 
 References
 ----------
@@ -24,7 +24,7 @@ from templates.core.language.declare import units
 from templates.physics.numerics.crank_grid import CrankGrid
 
 _ROUNDING = 2e-14
-"""Sines and cosines below it are those of dead centres and right angles."""
+"""Sines and cosines below this are rounding errors at dead centres and right angles."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class OffsetCrank:
 
     @cached_property
     def top(self) -> Array:
-        """Return the crank angle [rad] at which the piston is highest."""
+        """Return the crank angle [rad] at which the piston is farthest from the crankshaft."""
         return np.arcsin(self.e / (self.l + self.r))
 
     @cached_property
@@ -47,12 +47,12 @@ class OffsetCrank:
 
     @cached_property
     def lowest(self) -> Array:
-        """Return the smallest distance [m]."""
+        """Return the smallest distance of the piston pin from the crankshaft along the axis [m]."""
         return np.sqrt((self.l - self.r - self.e) * (self.l - self.r + self.e))
 
     @cached_property
     def stroke(self) -> Array:
-        """Return the distance from the lowest to the highest place of the piston [m]."""
+        """Return the distance between the two dead centres of the piston [m]."""
         return self.highest - self.lowest
 
     def at(self, alpha: Array) -> RodMotion:
@@ -60,13 +60,13 @@ class OffsetCrank:
         return RodMotion(self, alpha)
 
     def travel(self, alpha: Array) -> Array:
-        """Return the travel of the piston over the stroke from its highest position, at angles (…, N, K)."""
+        """Return the travel of the piston from top dead centre over the stroke, at angles (…, N, K)."""
         return (self.highest[..., None] - self.at(alpha).x) / self.stroke[..., None]
 
 
 @dataclass(frozen=True)
 class RodMotion:
-    """Where rod and piston are, and their derivatives by the crank angle `alpha` [rad], (…, N, K)."""
+    """Positions of rod and piston, and their derivatives by the crank angle `alpha` [rad], (…, N, K)."""
 
     crank: OffsetCrank
     alpha: Array
@@ -87,7 +87,7 @@ class RodMotion:
 
     @cached_property
     def sin_phi(self) -> Array:
-        """Return the sine of the rod's angle from the axis."""
+        """Return the sine of the rod's angle to the cylinder axis."""
         return self._share * self.sin - (self.crank.e / self.crank.l)[..., None]
 
     @cached_property
@@ -102,7 +102,7 @@ class RodMotion:
 
     @cached_property
     def phi1(self) -> Array:
-        """Return phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
+        """Return phi′ [1]; the rod rotates at −phi′ times the speed of the crank."""
         return self._share * self.cos / self.cos_phi
 
     @cached_property
@@ -128,13 +128,13 @@ class RodMotion:
 
 
 def _exact(value: Array) -> Array:
-    """Return zero where no more than rounding is left, so that it makes no load at a dead centre."""
+    """Return values with rounding errors set to 0, so that they give no load at a dead centre."""
     return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 
 @dataclass(frozen=True)
 class RodMasses:
-    """A rod as two masses at its pins [kg] and the inertia that these have too much of [kg m²], (…, N)."""
+    """A rod as two masses at its pins [kg], and the excess of their moment of inertia [kg m²], (…, N)."""
 
     at_crank: Array
     at_piston: Array
@@ -143,15 +143,15 @@ class RodMasses:
 
 @units("m", "m", "m", returns="m", latex=r"\frac{{{0}}}{{2}}\sqrt{{1-\frac{{4 {2}^2}}{{4 {1}^2-{0}^2}}}}")
 def radius_of_stroke(stroke: Array, rod: Array, offset: Array) -> Array:
-    """Return the crank radius [m] that gives a stroke, whose axis passes at `offset` from the crankshaft."""
+    """Return the crank radius [m] that gives a stroke if the axis is at `offset` from the crankshaft."""
     return stroke / 2 * np.sqrt(1 - 4 * offset**2 / (4 * rod**2 - stroke**2))
 
 
 @units("m", "m", "m", "m", returns="1")
 def turns_through(stroke: Array, radius: Array, rod: Array, offset: Array) -> Truth:
-    """Return whether the mechanism turns all the way round.
+    """Return whether the mechanism can make a full revolution.
 
-    The rod exceeds crank radius and offset together.
+    The rod must be longer than crank radius plus offset.
     """
     by_stroke = np.where(np.isnan(stroke), 2 * radius, stroke) / 2
     reach = np.where(np.isnan(radius), by_stroke, radius)
@@ -164,7 +164,10 @@ def _at_all_cylinders(holds: NDArray[np.bool_]) -> Truth:
 
 
 def rod_masses(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
-    """Return the rod as two masses; `centre` from the big end [m]; without its inertia there is no excess."""
+    """Return the rod as two masses; `centre` is measured from the big end [m].
+
+    Without the rod's inertia there is no excess.
+    """
     excess = mass * centre * (rod - centre) - inertia
     return RodMasses(
         mass * (rod - centre) / rod, mass * centre / rod, np.where(np.isnan(excess), 0.0, excess)
@@ -172,12 +175,12 @@ def rod_masses(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMas
 
 
 def axial_force(reciprocating: Array, omega: Array, motion: RodMotion, gas: Array) -> Array:
-    """K = m x″ω² + gas [N], by which the crank moves the reciprocating mass against the gas, (…, N, K)."""
+    """Return K = m x″ω² + gas [N], the crank's force that drives the mass against the gas, (…, N, K)."""
     return (reciprocating * omega**2)[..., None] * motion.x2 + gas
 
 
 def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> Array:
-    """Return the force of the piston on the wall along y [N]; the rigid rod's share is −ΔI φ̈/(l cos φ)."""
+    """Return the force of the piston on the wall along y [N]; the rigid rod contributes −ΔI φ̈/(l cos φ)."""
     arm = motion.crank.l[..., None] * motion.cos_phi
     return -axial * motion.tan_phi - (excess * omega**2)[..., None] * motion.phi2 / arm
 
@@ -185,12 +188,12 @@ def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> 
 def pin_force(
     at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array
 ) -> NDArray[np.complex128]:
-    """Return the force of the rod on the crankpin in the cylinder's axes [N], complex, (…, N, K)."""
+    """Return the complex force of the rod on the crankpin in the cylinder's axes [N], (…, N, K)."""
     turning = (at_crank * omega**2 * motion.crank.r)[..., None]
     return (turning * motion.cos - axial) + 1j * (turning * motion.sin - wall)
 
 
 @units("rad/s", None, None, returns="rad/s")
 def rod_speed(omega: Array, motion: RodMotion, grid: CrankGrid) -> Array:
-    """Return the speed at which each rod turns [rad/s] at the returned angles, (…, N, K)."""
+    """Return the angular speed of each rod [rad/s] at the returned angles, (…, N, K)."""
     return -np.asarray(omega)[..., None, None] * grid.returned(motion.phi1)

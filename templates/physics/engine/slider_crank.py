@@ -1,8 +1,8 @@
-r"""Slider-crank: positions and motion of piston and rod, per unit of crank radius and crank speed.
+"""Slider-crank: positions and motion of piston and rod, per unit of crank radius and crank speed.
 
-The axis of the cylinder meets that of the crankshaft. x points from the crankshaft to the cylinder head, y to
-where the crankpin moves first; theta is measured from top dead centre, n = l/r, sin(phi) = sin(theta)/n. The
-rod is at −phi from the x axis, so at top dead centre it swings against the crank.
+The cylinder axis intersects the crankshaft axis. x points from the crankshaft to the cylinder head, y in the
+direction in which the crankpin first moves; theta is measured from top dead centre, n = l/r, sin(phi) =
+sin(theta)/n. The rod is at −phi from the x axis, so at top dead centre it swings against the crank.
 
 With q = n cos(phi) = sqrt(n² − sin²(theta)), all formulas are exact for n > 1. At n = 1 the mechanism locks
 at 90°.
@@ -24,12 +24,12 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 _ROUNDING = 1e-14
-"""Sines and cosines below it are those of dead centres and right angles, accurate to no more digits."""
+"""Sines and cosines below this are rounding errors at dead centres and right angles."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A slider-crank at the angles theta [rad], last axis, for ratios n = l/r [1] of shape (…, 1)."""
+    """A slider-crank at the angles theta [rad] (last axis), for ratios n = l/r [1] of shape (…, 1)."""
 
     theta: Array
     n: Array
@@ -46,7 +46,7 @@ class Motion:
 
     @cached_property
     def q(self) -> Array:
-        """Return the height of the rod over the crank radius, n cos(phi)."""
+        """Return the projection of the rod on the axis over the crank radius, n cos(phi)."""
         return np.sqrt((self.n - 1) * (self.n + 1) + self.cos**2)
 
     @cached_property
@@ -61,9 +61,9 @@ class Motion:
 
     @cached_property
     def lever(self) -> Array:
-        """Return the torque over force along the cylinder and crank radius.
+        """Return the torque over axial force and crank radius.
 
-        Also −dx/dtheta of the piston over r.
+        It equals −dx/dtheta of the piston over r.
         """
         return self.sin + self.cos * self.tan_phi
 
@@ -84,12 +84,12 @@ class Motion:
 
 
 def _exact(value: Array) -> Array:
-    """Return zero where no more than rounding is left, so that it makes no load at a dead centre."""
+    """Return values with rounding errors set to 0, so that they give no load at a dead centre."""
     return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 
 def piston_acceleration_Rao_Singh_1993(sin: Array, cos: Array, q: Array, n: Array) -> Array:
-    """Return the acceleration of the piston over omega² r [1], positive to the head; exact.
+    """Return the acceleration of the piston over omega² r [1], positive towards the head; exact.
 
     a = −[cos θ + ((n² − 1) cos 2θ + cos⁴ θ) / (n³ (1 − sin² θ/n²)^1.5)], where n³ (…)^1.5 = q³.
     """
@@ -103,12 +103,12 @@ def crank_motion(theta: Array, n: Array) -> Motion:
 
 
 def travel_integral(theta: Array, n: Array) -> Array:
-    """Return the travel over the stroke, integrated over the crank angle from 0 [rad]."""
+    """Return the integral of travel over stroke from crank angle 0 [rad]."""
     return ((1 + n) * theta - np.sin(theta) - n * ellipeinc(theta, 1 / n**2)) / 2
 
 
 def angle_of_travel(travel: Array, n: Array) -> Array:
-    """Return the crank angle in [0, π] [rad] at which the piston has travelled a share of its stroke."""
+    """Return the crank angle in [0, π] [rad] at which the piston has covered a fraction of its stroke."""
     share = travel * (n - travel) / (1 + n - 2 * travel)
     return 2 * np.arcsin(np.sqrt(np.clip(share, 0, 1)))
 
@@ -121,5 +121,5 @@ def crank_angles(strokes: Array, step: Array) -> Array:
 
 @units("1", "rad", returns="1")
 def steps_in(strokes: Array, step: Array) -> Array:
-    """Return the number of steps of a cycle of 2 or 4 strokes."""
+    """Return the number of grid steps of a cycle of 2 or 4 strokes."""
     return np.pi * strokes / step

@@ -17,7 +17,9 @@ from templates.core.language.declare import units
 MPA, MM = 1e6, 1e-3
 
 MANUFACTURES = {"continuous_grain_flow": 1.05, "free_form_forged": 1.0, "cast_rolled": 0.93}
-"""K for shafts without surface treatment; cast steel with cold rolled fillets, by an approved process."""
+"""Manufacturing factor K of shafts without surface treatment; cast steel with cold-rolled fillets, by an
+approved process.
+"""
 
 
 @units(
@@ -25,13 +27,13 @@ MANUFACTURES = {"continuous_grain_flow": 1.05, "free_form_forged": 1.0, "cast_ro
     latex=r"1.05\ \text{{(grain flow)}},\ 1\ \text{{(free form)}},\ 0.93\ \text{{(cast, rolled)}}",
 )  # fmt: skip
 def manufacture_factor(manufacture: str) -> Array:
-    """Return K of a fillet [1]."""
+    """Return the manufacturing factor K of a fillet [1]."""
     return np.float64(MANUFACTURES[manufacture])  # type: ignore[return-value]
 
 
 @units("1", returns="1", latex=r"\min\left({0},1\right)")
 def factor_at_bore(K: Array) -> Array:
-    """Return K at the outlet of an oil bore [1]: values above 1 apply only to fillets."""
+    """Return the manufacturing factor K at an oil bore [1]: values above 1 apply only to fillets."""
     return np.minimum(K, 1.0)
 
 
@@ -43,8 +45,8 @@ def factor_at_bore(K: Array) -> Array:
 def fatigue_strength_IACS_M53(K: Array, ultimate: Array, diameter: Array, radius: Array) -> Array:
     """Return the alternating von Mises stress [Pa] that a crankshaft withstands permanently.
 
-    The ultimate strength [Pa] counts in MPa, the diameter of pin or journal [m] and the radius of the fillet,
-    or half the diameter of the oil bore, [m] in mm.
+    The formula uses the ultimate strength [Pa] in MPa; the diameter of pin or journal [m] and the radius of
+    the fillet, or half the diameter of the oil bore, [m] in mm.
     """
     B, D, R = ultimate / MPA, diameter / MM, radius / MM
     support = 0.264 + 1.073 * D**-0.2 + (785 - B) / 4900 + 196 / B * np.sqrt(1 / R)

@@ -28,15 +28,15 @@ GOODMAN, GERBER, MORROW, NONE = "goodman", "gerber", "morrow", "none"
 HAIBACH, ORIGINAL, ELEMENTARY = "haibach", "original", "elementary"
 NO, YES = "no", "yes"
 EXTREMES, RAINFLOW = "extremes", "rainflow"
-_LARGEST = 690.0  # of logarithms of cycles and damages
+_LARGEST = 690.0  # limit of logarithms of cycles and damages
 
 
 @dataclass(frozen=True)
 class CycleCounts:
-    """Cycles of every point, and the lowest stress that takes part in a compressive mean."""
+    """Cycles of every point, and the lowest stress that contributes to a compressive mean."""
 
     cycles: Cycles  # [..., point, cycle]; with Findley amplitudes of shear
-    high: Array | None  # [..., point] [Pa], the normal stress that counts beside the shear; with Findley
+    high: Array | None  # [..., point] [Pa], the normal stress combined with the shear; only with Findley
     low: Array  # [..., point] [Pa]
 
 
@@ -57,24 +57,24 @@ def _normal_that_counts(plane: CriticalPlane, credit: str) -> Array:
 
 
 def _to_points(value: Array) -> Array:
-    """Return a number for each point of the inputs, to go with [..., point]."""
+    """Return a value for each point of the inputs, shaped to broadcast with [..., point]."""
     return np.asarray(value)[..., None]
 
 
 def _to_cycles(value: Array) -> Array:
-    """Return a number for each point of the inputs, to go with [..., point, cycle]."""
+    """Return a value for each point of the inputs, shaped to broadcast with [..., point, cycle]."""
     return np.asarray(value)[..., None, None]
 
 
 @units(None, None, returns="1")
 def one_tensor_leads(criterion: str, history: Array) -> Truth:
-    """Return whether one tensor carries the stress of every point, where a sign is given to it."""
+    """Return whether a single tensor dominates the stress of every point, if the criterion needs a sign."""
     return criterion != SIGNED or np.all(leading_tensor(history)[1] >= PROPORTIONAL, axis=-1)[()]
 
 
 @units(None, returns="1")
 def shares_of_leading_tensors(history: Array) -> Array:
-    """Return the share of one tensor in the squared stress of each point [1]."""
+    """Return the fraction of the squared stress of each point that its leading tensor contributes [1]."""
     return leading_tensor(history)[1]
 
 
@@ -86,9 +86,9 @@ def greatest_von_mises(history: Array) -> Array:
 
 @units(None, None, "1", "Pa", returns="1")
 def compression_used(counted: CycleCounts, credit: str, support: Array, yield_strength: Array) -> Array:
-    """Return the lowest stress of each point, in compression, over the yield strength [1].
+    """Return the lowest, compressive stress of each point over the yield strength [1].
 
-    0 without credit.
+    It is 0 if compressive mean stresses get no credit.
     """
     if credit == NO:
         return np.zeros(np.broadcast_shapes(counted.low.shape, _to_points(support).shape))
@@ -102,7 +102,7 @@ def reversed_amplitudes(
 ) -> Array:  # fmt: skip
     """Return the reversed uniaxial amplitudes [..., point, cycle] [Pa] that do the same damage as each cycle.
 
-    0 where there is none; infinite where a mean reaches the strength that bounds it.
+    The amplitude is 0 without a cycle, and infinite if a mean stress reaches the strength that limits it.
     """
     amplitude = counted.cycles.amplitude * _to_cycles(support)
     present = counted.cycles.count > 0
@@ -120,7 +120,7 @@ def reversed_amplitudes(
 def mean_shares(correction: str, credit: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
     """Return the share of the bearable amplitude that mean stresses [..., point, cycle] [Pa] use up [1].
 
-    A compressive mean takes nothing, and gives nothing unless there is `credit` for it.
+    A compressive mean stress reduces nothing, and adds to the bearable amplitude only with `credit`.
     """
     used = mean if credit == YES else np.maximum(mean, 0.0)
     strength = _to_cycles(coefficient if correction == MORROW else ultimate)
@@ -157,12 +157,11 @@ def load_uses(
     counted: CycleCounts, equivalent: Array, correction: str, credit: str, endurance: Array, ultimate: Array,
     coefficient: Array, support: Array,
 ) -> Array:  # fmt: skip
-    """Return 1/n of each point [1].
+    """Return 1/n of each point [1]; n is the safety factor on load.
 
-    All loads may grow n-fold, means included, until the endurance limit is reached.
-
-    Goodman and Morrow: sigma_a/S_e + sigma_m/strength. Gerber: the root of n sigma_a/S_e + (n sigma_m/S_u)² =
-    1. Findley's parameter grows as the loads do.
+    All loads, including mean stresses, may grow n-fold until the endurance limit is reached. Goodman and
+    Morrow: 1/n = sigma_a/S_e + sigma_m/strength. Gerber: the root of n sigma_a/S_e + (n sigma_m/S_u)² = 1.
+    Findley's parameter is proportional to the loads.
     """
     limit = _to_cycles(endurance)
     if counted.high is not None:
@@ -177,13 +176,13 @@ def load_uses(
 
 @units(None, returns="1")
 def numbers_of_points(history: Array) -> Array:
-    """Return 1, 2, … for the points of a history."""
+    """Return the point numbers 1, 2, … of a history."""
     return np.arange(1, history.shape[-3] + 1, dtype=float)
 
 
 @units(None, None, returns="1")
 def governing_point(damage: Array, uses: Array) -> Array:
-    """Return the number of the point of the largest damage.
+    """Return the number of the point with the largest damage.
 
     Without damage, it is the point of the smallest safety factor.
     """
@@ -195,18 +194,18 @@ def governing_point(damage: Array, uses: Array) -> Array:
 
 @units(None, returns="1")
 def largest(values: Array) -> Array:
-    """Return the largest of the values of all points [1]."""
+    """Return the largest value of all points [1]."""
     return np.max(values, axis=-1)[()]
 
 
 @units("1", returns="1", latex=r"\frac{{1}}{{{0}}}")
 def inverse_or_none(value: Array) -> Array:
-    """Return 1 over a value [1]; NaN where that is 0."""
+    """Return 1 over a value [1]; NaN if the value is 0."""
     return np.where(value > 0, 1 / np.where(value > 0, value, 1.0), np.nan)[()]
 
 
 @units("1", returns="1")
 def life_in_words(damage: Array) -> Any:
-    """Return in words whether a life is finite or endless."""
+    """Return a text that states whether a life is finite or infinite."""
     words = np.select([np.isnan(damage), damage > 0], ["", "finite"], "endless")
     return words if words.ndim else str(words)

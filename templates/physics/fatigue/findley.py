@@ -23,22 +23,22 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 from templates.physics.fatigue.smallest_circle import radii_of_smallest_circles
 
-_PLANES = 400  # of the first search, 7 degrees apart
-_FIRST_STEP = 0.07  # [rad] of the second search, about the best of the first
-_SHRINK, _STEPS = 0.6, 18  # to 1e-5 rad
+_PLANES = 400  # planes in the first search, 7 degrees apart
+_FIRST_STEP = 0.07  # first step [rad] of the second search, around the best planes of the first
+_SHRINK, _STEPS = 0.6, 18  # factor and number of steps, down to 1e-5 rad
 _NEIGHBOURS = 6
-_STARTS = 5  # of the second search
-_APART = np.cos(np.radians(15))  # of these from each other
-_AT_ONCE = 4_000_000  # values of a stress at once
-_DIRECTIONS = 36  # of the shear on its plane, in which it is counted
+_STARTS = 5  # starts of the second search
+_APART = np.cos(np.radians(15))  # cosine of the least angle between these starts
+_AT_ONCE = 4_000_000  # most stress values at once
+_DIRECTIONS = 36  # directions on the plane in which the shear range is compared
 
 
 @dataclass(frozen=True)
 class CriticalPlane:
-    """Findley's plane of each history, and what acts on it over the cycle."""
+    """Findley's critical plane of each history, and the stresses on it over the cycle."""
 
     normal: Array  # [..., 3]
-    shear: Array  # [..., angle] [Pa], along the line of its longest way, as large as its amplitude
+    shear: Array  # [..., angle] [Pa], along the line of its largest range, scaled to its amplitude
     shear_amplitude: Array  # [...] [Pa]
     normal_high: Array  # [...] [Pa], greatest normal stress
     normal_low: Array  # [...] [Pa]
@@ -50,18 +50,18 @@ class CriticalPlane:
 
 @units("1", returns="1", latex=r"\frac{{x}}{{\sqrt{{1-x^{{2}}}}}},\ x=\frac{{2}}{{{0}}}-1")
 def findley_coefficient(ratio: Array) -> Array:
-    """Return the factor k [1] of f/t, endurance limits in bending and in torsion: f/t = 2/(1+k/√(1+k²))."""
+    """Return k [1] from the ratio f/t of endurance limits in bending and torsion: f/t = 2/(1+k/√(1+k²))."""
     x = 2 / ratio - 1
     return x / np.sqrt(1 - x**2)
 
 
 def uniaxial_equivalent(parameter: Array, k: Array) -> Array:
-    """Return the reversed uniaxial amplitude [Pa] of the same tau_a + k sigma_n,max [Pa]."""
+    """Return the reversed uniaxial amplitude [Pa] with the same tau_a + k sigma_n,max [Pa]."""
     return 2 * parameter / (k + np.sqrt(1 + k**2))
 
 
 def critical_planes(tensors: Array, k: float, *, credit: bool) -> CriticalPlane:
-    """Return Findley's plane of histories [..., angle, 6] [Pa].
+    """Return Findley's critical plane of stress histories [..., angle, 6] [Pa].
 
     A compressive mean of the normal stress counts as zero unless there is `credit` for it.
     """
@@ -87,7 +87,7 @@ def critical_planes(tensors: Array, k: float, *, credit: bool) -> CriticalPlane:
 
 @lru_cache(1)
 def _hemisphere() -> Array:
-    """Return the directions spread evenly over half a sphere, on a spiral (Fibonacci's lattice)."""
+    """Return directions distributed evenly over half a sphere on a Fibonacci spiral."""
     number = np.arange(_PLANES) + 0.5
     z = number / _PLANES
     angle = np.pi * (1 + np.sqrt(5)) * number
@@ -121,7 +121,7 @@ def _planes_of(tensors: Array, k: float, credit: bool) -> Array:
 
 
 def _around(places: Array, step: float, turn: float) -> Array:
-    """Return the directions at a small angle about others [..., 3]: [..., neighbour, 3]."""
+    """Return directions at a small angle around others [..., 3]: [..., neighbour, 3]."""
     u, v = _in_plane(places)
     angles = turn + 2 * np.pi * np.arange(_NEIGHBOURS) / _NEIGHBOURS
     aside = u[..., None, :] * np.cos(angles)[:, None] + v[..., None, :] * np.sin(angles)[:, None]
@@ -129,7 +129,7 @@ def _around(places: Array, step: float, turn: float) -> Array:
 
 
 def _in_plane(normals: Array) -> tuple[Array, Array]:
-    """Return two directions at right angles within planes."""
+    """Return two orthogonal directions within each plane."""
     steep = np.abs(normals[..., 2:]) < 0.9
     helper = np.where(steep, np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0]))
     u = np.cross(helper, normals)
@@ -138,9 +138,9 @@ def _in_plane(normals: Array) -> tuple[Array, Array]:
 
 
 def _acting(tensors: Array, normals: Array) -> tuple[Array, Array]:
-    """Return the shear, as a complex number within the plane, and normal stress on planes.
+    """Return the shear stress (complex, in the plane) and the normal stress on planes.
 
-    [history, plane, angle].
+    Both are [history, plane, angle].
     """
     u, v = _in_plane(normals)
     shear = _weights(normals, u) + 1j * _weights(normals, v)
@@ -165,7 +165,7 @@ def _parameters(tensors: Array, normals: Array, k: float, credit: bool) -> Array
 
 
 def _longest_way(shear: Array, amplitude: Array) -> Array:
-    """Return the shear [history, angle] along the line of its largest range, with the given amplitude."""
+    """Return the shear [history, angle] along the line of its largest range, scaled to the amplitude."""
     lines = np.exp(-1j * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS)
     along = (shear[:, None, :] * lines[:, None]).real
     ranges = along.max(axis=-1) - along.min(axis=-1)

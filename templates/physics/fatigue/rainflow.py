@@ -17,12 +17,12 @@ import rainflow
 from templates.core.arrays import Array
 
 _SMALL = 0.01
-"""Of the largest amplitude of a history: cycles below it are not counted."""
+"""Fraction of the largest amplitude of a history below which cycles are ignored."""
 
 
 @dataclass(frozen=True)
 class Cycles:
-    """Cycles of each history; rows of fewer cycles end with counts of 0."""
+    """Cycles of each history; rows with fewer cycles are padded with counts of 0."""
 
     amplitude: Array  # [..., cycle] [Pa]
     mean: Array  # [..., cycle] [Pa]
@@ -30,13 +30,13 @@ class Cycles:
 
 
 def from_the_highest(history: Array) -> Array:
-    """Return one turn of a periodic history, from its highest point to that point again, in its unit."""
+    """Return one period of a periodic history from its highest point to that point again, in its unit."""
     turned = np.roll(history, -int(np.argmax(history)))
     return np.append(turned, turned[0])
 
 
 def counted(history: Array) -> list[tuple[float, float, float]]:
-    """Return amplitude, mean [Pa] and count of the cycles of one periodic history, equal ones together."""
+    """Return amplitude, mean [Pa] and count of the cycles of one periodic history; equal ones are merged."""
     cycles = rainflow.extract_cycles(from_the_highest(history).tolist())
     sums: dict[tuple[float, float], float] = {}
     for width, mean, count, _, _ in cycles:
@@ -59,7 +59,7 @@ def by_rainflow(histories: Array) -> Cycles:
 
 
 def by_extremes(histories: Array) -> Cycles:
-    """Return one cycle for each history [..., angle] [Pa], between its extremes: constant amplitude."""
+    """Return one cycle for each history [..., angle] [Pa], between its extremes."""
     high, low = histories.max(axis=-1), histories.min(axis=-1)
     amplitude = ((high - low) / 2)[..., None]
     return Cycles(amplitude, ((high + low) / 2)[..., None], np.where(amplitude > 0, 1.0, 0.0))

@@ -1,9 +1,9 @@
-"""The smallest circle about plane paths, many at once; its radius is the shear amplitude on a plane.
+"""The smallest enclosing circles of plane paths; the radius is the shear amplitude on a plane.
 
-Two or three points define the circle. The search begins with the two points farthest apart among a few; as
-long as a point lies outside, the next circle is the smallest one about the defining points and that point.
-The radius grows with each step, so no set of points recurs, and a few steps suffice. The circle is exact, not
-sampled.
+Two or three points define the circle. The search begins with the two points that are farthest apart in a
+small subset. While a point lies outside, the next circle is the smallest one around the defining points and
+that point. The radius grows with each step, so no set of points recurs, and a few steps suffice. The circle
+is exact, not sampled.
 
 References
 ----------
@@ -23,14 +23,14 @@ from templates.core.arrays import Array
 
 Complex = NDArray[np.complex128]
 
-_OUTSIDE = 1e-9  # of the radius: a point so far out is on the circle
+_OUTSIDE = 1e-9  # relative to the radius: a point within this distance is on the circle
 _MOST_STEPS = 100
 _PAIRS = tuple(combinations(range(4), 2))
 _TRIPLES = tuple(combinations(range(4), 3))
 
 
 def radii_of_smallest_circles(x: Array, y: Array) -> Array:
-    """Return the radii [...] of the smallest circles about the points x, y [..., point] of plane paths."""
+    """Return the radii [...] of the smallest circles around the points x, y [..., point] of plane paths."""
     flat = (x + 1j * y).reshape(-1, x.shape[-1])
     return np.asarray(_radii(flat).reshape(x.shape[:-1]))
 
@@ -56,15 +56,15 @@ def _radii(paths: Complex) -> Array:
 
 
 def _far(paths: Complex, centres: Complex) -> Array:
-    """Return the squares of distances."""
+    """Return the squares of the distances from the centres."""
     away = paths - centres[:, None]
     return np.asarray(away.real**2 + away.imag**2)
 
 
 def _about_four(points: Complex) -> tuple[Complex, Array, Complex]:
-    """Return the smallest circle about each four points [n, 4].
+    """Return the smallest circle around each set of four points [n, 4].
 
-    Centre, radius and the points that hold it.
+    The result contains centre, radius and the points that define the circle.
     """
     centres, radii, held = [], [], []
     for i, j in _PAIRS:
@@ -80,14 +80,14 @@ def _about_four(points: Complex) -> tuple[Complex, Array, Complex]:
     centre, radius = np.stack(centres, 1), np.stack(radii, 1)
     reach = np.abs(points[:, None] - centre[:, :, None]).max(axis=-1)
     encloses = reach <= radius * (1 + _OUTSIDE / 10)
-    # Rounding may leave no circle that holds all: then the one that reaches least.
+    # If rounding leaves no circle that encloses all points, take the one with the smallest excess.
     choice = np.where(encloses.any(axis=1)[:, None], np.where(encloses, radius, np.inf), reach)
     best, rows = np.argmin(choice, axis=1), np.arange(len(points))
     return centre[rows, best], reach[rows, best], np.stack(held, 1)[rows, best]
 
 
 def _circumscribed(a: Complex, b: Complex, c: Complex) -> tuple[Complex, Array]:
-    """Return the circles through three points [n]; infinite where they lie on a line."""
+    """Return the circles through three points [n]; infinite if the points are collinear."""
     p, q = b - a, c - a
     twice = 2 * (p.conj() * q).imag
     flat = twice == 0

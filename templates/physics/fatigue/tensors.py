@@ -1,8 +1,8 @@
-r"""Stress tensors over a cycle: superposed from those of unit loads, and the data types that hold them.
+"""Stress tensors over a cycle, superposed from those of unit loads, and the types that contain them.
 
 A tensor has the components xx, yy, zz, xy, yz, xz [Pa], in the order of finite-element tables. By linear
 elasticity, the stress of simultaneous loads is the sum of their tensors: sigma(theta) = sum over the loads of
-load(theta) times its unit tensor. Equivalent stresses do not add.
+load(theta) times its unit tensor. Equivalent stresses cannot be added.
 
 References
 ----------
@@ -23,15 +23,17 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 Rows = tuple[tuple[float, ...], ...]
 
 _WEIGHTS = np.sqrt(np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
-"""Of components in the length of a tensor: a shear stands in it twice."""
+"""Weights of the components in the length of a tensor: a shear component counts twice."""
 
 PROPORTIONAL = 0.95
-"""The share of one tensor in a history from which on a sign may be given to an equivalent stress."""
+"""The share of one tensor in a history above which an equivalent stress may have a sign."""
 
 MOST_TENSORS = 200_000
-"""Of all points, angles and curves; Findley's planes of so many take about ten seconds."""
+"""Most tensors for all points, angles and curves; Findley's method then takes about ten seconds."""
 
-_PURE_SHEAR = 1e-6  # |p1 + p3| of the length of a tensor: neither tension nor compression leads
+_PURE_SHEAR = (
+    1e-6  # |p1 + p3| over the length of a tensor, below which neither tension nor compression dominates
+)
 
 
 def is_given(load: Array) -> bool:
@@ -41,13 +43,13 @@ def is_given(load: Array) -> bool:
 
 @units(None, None, returns="1")
 def go_together(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Return whether every load has its stresses, and all stresses their load."""
+    """Return whether every load has its stresses, and every table of stresses its load."""
     return all(is_given(load) == bool(rows) for load, rows in zip(loads, stresses, strict=True))
 
 
 @units(None, returns="1")
 def has_any(stresses: Sequence[Rows]) -> Truth:
-    """Return whether there is any table of stresses."""
+    """Return whether any table of stresses is given."""
     return any(len(rows) > 0 for rows in stresses)
 
 
@@ -59,13 +61,13 @@ def same_points(stresses: Sequence[Rows]) -> Truth:
 
 @units(None, returns="1")
 def changes(loads: Sequence[Array]) -> Truth:
-    """Return whether at least one load is a curve, of two values or more."""
+    """Return whether at least one load is a curve of two or more values."""
     return any(np.ndim(load) > 0 and np.shape(load)[-1] > 1 for load in loads)
 
 
 @units(None, None, returns="1")
 def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Return whether points, angles and curves together stay within the permitted number of tensors."""
+    """Return whether the number of tensors (points, angles and curves) is within the limit."""
     curves = np.broadcast_shapes(*(np.shape(load)[:-1] for load in loads if np.ndim(load)))
     angles = max((np.shape(load)[-1] for load in loads if np.ndim(load)), default=1)
     rows = max((len(rows) for rows in stresses), default=0)
@@ -75,8 +77,8 @@ def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
 def superposed(loads: Sequence[Array], stresses: Sequence[Rows]) -> Array:
     """Return the stress tensors [..., point, angle, 6] [Pa] of loads [..., angle] times unit stresses.
 
-    A load is in its SI unit, its stresses in Pa for each of these. One point without stress where the inputs
-    do not go together, which is refused elsewhere.
+    A load is in its SI unit, its stresses in Pa per unit of load. If the inputs do not match, which a rule
+    refuses, the result is one point without stress.
     """
     fits = has_any(stresses) and same_points(stresses) and go_together(loads, stresses)
     if not (fits and is_manageable(loads, stresses)):
@@ -103,10 +105,10 @@ def von_mises_1913(tensors: Array) -> Array:
 
 
 def leading_tensor(tensors: Array) -> tuple[Array, Array]:
-    """Return the unit tensor [..., 6] that carries most of a history, and its share [1].
+    """Return the unit tensor [..., 6] that contributes most to a history, and its share [1].
 
-    The share is that of the sum of the squares of all tensors; 1 where nothing acts. The sign of the tensor
-    is such that its principal stress of the larger amount is tension; of pure shear it is either.
+    The share is that of the sum of squares of all tensors; 1 without stress. The sign of the tensor is such
+    that its principal stress of larger magnitude is tension; for pure shear the sign is arbitrary.
     """
     weighted = tensors * _WEIGHTS
     gram = np.einsum("...ai,...aj->...ij", weighted, weighted)
@@ -121,7 +123,8 @@ def leading_tensor(tensors: Array) -> tuple[Array, Array]:
 def signed_von_mises(tensors: Array) -> Array:
     """Return the equivalent stress [..., angle] [Pa], negative where the leading tensor is reversed.
 
-    Only for a history that one tensor carries. Pure shear has no sign of its own: its mean counts as tension.
+    This applies only to a history that one tensor dominates. Pure shear has no sign: its mean counts as
+    tension.
     """
     tensor, _ = leading_tensor(tensors)
     along = np.einsum("...ai,...i->...a", tensors * _WEIGHTS**2, tensor)
@@ -132,6 +135,6 @@ def signed_von_mises(tensors: Array) -> Array:
 
 
 def _leading_principal(tensor: Array) -> Array:
-    """Return p1 + p3 [1] of tensors of length 1: positive where tension leads, 0 in pure shear."""
+    """Return p1 + p3 [1] of tensors of unit length: positive if tension dominates, 0 in pure shear."""
     principal = np.linalg.eigvalsh(as_matrices(tensor))
     return np.asarray(principal[..., 0] + principal[..., 2])

@@ -1,4 +1,4 @@
-"""The matrix of the film equations in banded form, and its solution on the nodes of the film."""
+"""The matrix of the film equations in banded form, and its solution at the nodes of the film."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -13,30 +13,30 @@ from templates.physics.films.film_equations import Equations
 
 @dataclass(frozen=True)
 class BandedMatrix:
-    """The symmetric matrix A of the unknown nodes by its lower diagonals; the axial index runs fastest."""
+    """The symmetric matrix A of the unknown nodes, by its lower diagonals; axial index fastest."""
 
     diagonals: Array
-    """(diagonals, unknowns): each starts at the first unknown; those between are empty."""
+    """(diagonals, unknowns): each diagonal starts at the first unknown; those between are empty."""
     offsets: tuple[int, ...]
-    """Distances of the diagonals from the main one, rising from 0; the last is the bandwidth."""
+    """Distances of the diagonals from the main one, ascending from 0; the last is the bandwidth."""
     order: NDArray[np.intp]
-    """The rows of nodes around the bearing in the order of their unknowns."""
+    """The circumferential rows of nodes in the order of their unknowns."""
     shape: tuple[int, int]
     """Shape of the node arrays, fixed nodes included."""
 
     def solve(self, inside: Mask, b: Array) -> Array:
-        """Solve A P = b at the nodes inside and P = 0 at the others.
+        """Solve A P = b at the nodes inside the film; P = 0 at the others.
 
         Parameters
         ----------
         inside
-            (n + 1, m + 1) the nodes of the film.
+            (n + 1, m + 1) mask of the nodes of the film.
         b
             (n + 1, m + 1, ...) right-hand sides.
 
         Returns
         -------
-        P like b.
+        P, in the shape of b.
 
         Raises
         ------
@@ -46,16 +46,16 @@ class BandedMatrix:
         return IncrementalSolver(self).solve(inside, b)
 
     def write(self, bands: Array, film: Mask, start: int) -> None:
-        """Write the bands from an unknown on; rows and columns outside the film are those of the unit matrix.
+        """Write the bands from an unknown on; outside the film they are those of the unit matrix.
 
         Parameters
         ----------
         bands
-            (bandwidth + 1, film.size - start) what is written.
+            (bandwidth + 1, film.size - start) the array that is written.
         film
-            The unknowns inside the film, from the first to the last that counts.
+            Mask of the unknowns inside the film, from the first to the last one used.
         start
-            The unknown from which on to write.
+            The first unknown to write.
         """
         inside, diagonals = film[start:], self.diagonals[:, start : film.size]
         bands[:] = 0
@@ -67,19 +67,19 @@ class BandedMatrix:
 
 
 class IncrementalSolver:
-    """Solutions on one film after another, each factorised from where it differs from the one before.
+    """Solver for successive films; each is refactorised only from where it differs from the previous one.
 
-    The unknowns run in the sense of rotation, and films differ where they rupture: near the end.
+    The unknowns are ordered in the sense of rotation, and films differ at rupture, which is near the end.
     """
 
     def __init__(self, matrix: BandedMatrix) -> None:
         self.matrix = matrix
         shape = matrix.offsets[-1] + 1, matrix.diagonals.shape[1]
-        self._factors = np.empty(shape, order="F")  # as LAPACK has it: another order would be copied
-        self._film = np.zeros(0, bool)  # up to its last unknown; what is beyond is not factorised
+        self._factors = np.empty(shape, order="F")  # LAPACK's memory order, which avoids a copy
+        self._film = np.zeros(0, bool)  # up to its last unknown; the rest is not factorised
 
     def solve(self, inside: Mask, b: Array) -> Array:
-        """Solve A P = b (n + 1, m + 1, ...) at the nodes inside and P = 0 at the others.
+        """Solve A P = b (n + 1, m + 1, ...) at the nodes inside the film; P = 0 at the others.
 
         Raises
         ------
@@ -103,7 +103,7 @@ class IncrementalSolver:
         band, shared = len(self._factors) - 1, min(film.size, self._film.size)
         differs = film[:shared] != self._film[:shared]
         first = int(differs.argmax()) if differs.any() else shared
-        start = first - band if first >= 2 * band else 0  # a column reaches as far as the band is wide
+        start = first - band if first >= 2 * band else 0  # a column extends over one bandwidth
         rest = self._factors[:, start : film.size]
         self.matrix.write(rest, film, start)
         if start:
@@ -115,7 +115,7 @@ class IncrementalSolver:
         self._film = film
 
     def _brought(self, start: int, band: int) -> Array:
-        """Return the reduction of the trailing block by the earlier factors, (band, band)."""
+        """Return the update of the trailing block by the earlier factors, (band, band)."""
         column, row = _lower(band)
         beside = np.zeros((band, band))
         beside[row, column] = self._factors[row - column + band, start - band + column]
@@ -130,7 +130,7 @@ def _lower(size: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def banded(equations: Equations) -> BandedMatrix:
-    """Order the unknowns and fill the diagonals."""
+    """Return the matrix of the ordered unknowns in banded form."""
     n, m = equations.around.size, equations.zeta.size - 1
     order = _ring_order(n) if equations.ring else np.arange(1, n)
     offsets = (0, 1, m, 2 * m) if equations.ring else (0, 1, m)
@@ -150,7 +150,7 @@ def banded(equations: Equations) -> BandedMatrix:
 
 
 def _couple_ring(diagonals: Array, order: NDArray[np.intp], around: Array) -> None:
-    """Enter the conductance between neighbours on the ring, one or two rows apart, (2, unknowns)."""
+    """Enter the conductances between ring neighbours, which are one or two rows apart, (2, unknowns)."""
     n, m = around.shape
     rank = np.zeros(n + 1, np.intp)
     rank[order] = np.arange(order.size)
@@ -160,7 +160,7 @@ def _couple_ring(diagonals: Array, order: NDArray[np.intp], around: Array) -> No
 
 
 def _ring_order(n: int) -> NDArray[np.intp]:
-    """Return the rows 0, 1, n − 1, 2, n − 2 …: neighbours on the ring are at most two apart."""
+    """Return the rows in the order 0, 1, n − 1, 2, n − 2 …, with ring neighbours at most two apart."""
     order = np.zeros(n, np.intp)
     order[1::2] = np.arange(1, n // 2 + 1)
     order[2::2] = np.arange(n - 1, n // 2, -1)

@@ -1,4 +1,4 @@
-r"""Film rupture after Swift and Stieber as a complementarity problem, solved by an active set.
+r"""Swift–Stieber film rupture as a complementarity problem, solved by an active-set method.
 
 .. math:: P \ge 0, \quad A P - b \ge 0, \quad P\,(A P - b) = 0
 
@@ -37,19 +37,19 @@ class Rupture:
 
 
 def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
-    """Find pressure and film.
+    """Return the pressure and the extent of the film.
 
     Parameters
     ----------
     equations
-        Balances of flow.
+        The flow balances.
     film
-        The nodes supposed inside the film; by default those to which motion brings oil.
+        Initial mask of the nodes inside the film; by default those to which motion brings oil.
 
     Raises
     ------
     ArithmeticError
-        If the set is not final after 1000 steps, which no film should need.
+        If the active set still changes after 1000 steps, which no film should need.
     """
     matrix = banded(equations)
     may = np.zeros(matrix.shape, bool)
@@ -73,7 +73,7 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
 
 
 def finer(film: Mask) -> Mask:
-    """Return a film interpolated on a mesh with twice as many intervals in each direction."""
+    """Return the mask of a film on a mesh with twice as many intervals in each direction."""
     n, m = film.shape
     fine = np.zeros((2 * n - 1, 2 * m - 1), bool)
     fine[::2, ::2] = film

@@ -1,6 +1,6 @@
 """Linear stiffness and damping of a static journal film, by perturbing its discrete equations.
 
-The film's extent is held constant: at a free rupture, pressure and gradient vanish, so its motion has a
+The extent of the film is held constant: at a free rupture, pressure and gradient vanish, so its motion has a
 second-order effect. Axes: x along the load, y ahead of x in the sense of rotation. K = k c W⁻¹ and B = b c
 omega_h W⁻¹ with radial clearance c and load W; force on the journal = −k·x − b·dx/dt.
 
@@ -25,7 +25,7 @@ from templates.physics.numerics.arrays import require
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Linear film forces about a static position."""
+    """Linear film forces about a static equilibrium position."""
 
     So: float
     """Sommerfeld number F psi²/(B D eta omega_h) of the static film."""
@@ -38,7 +38,7 @@ class Coefficients:
 
 
 def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int = 16) -> Coefficients:
-    """Return the stiffness and damping of the film of `reynolds.static_film`, its supply line fixed in space.
+    """Return stiffness and damping of the film of `reynolds.static_film`; its supply line is fixed in space.
 
     Parameters
     ----------
@@ -47,9 +47,9 @@ def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int 
     ratio
         Width over diameter B/D [-].
     around
-        Intervals around.
+        Number of circumferential intervals.
     across
-        Intervals across half the width.
+        Number of intervals over half the width.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def linear_forces(eps: float, ratio: float, mesh: Mesh, film: Rupture) -> Array:
 
 
 def in_load_axes(forces: list[Array]) -> Coefficients:
-    """Add up the lands and turn from the line of centres to the load."""
+    """Return the coefficients of the sum of all lands, rotated from the line of centres to the load."""
     total = np.sum(forces, axis=0)
     along, ahead = total[:, 0]
     So = float(np.hypot(along, ahead))

@@ -4,8 +4,8 @@ r"""The Reynolds equation in finite volumes on a product mesh: one flow balance 
     \partial_\phi(H^3\partial_\phi P) + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P)
     = 6\,\partial_\phi H + 12\,\partial_\tau H
 
-written A P = b: A is symmetric and an M-matrix, b is the flow that rotation and squeeze bring to a node. All
-coefficients are products of a circumferential and an axial factor, so a perturbation of the gap gives
+In discrete form A P = b: A is a symmetric M-matrix, b is the flow that rotation and squeeze bring to a node.
+All coefficients are products of a circumferential and an axial factor, so a perturbation of the gap gives
 equations of the same form.
 """
 
@@ -26,36 +26,36 @@ def dual_widths(nodes: Array) -> Array:
 
 @dataclass(frozen=True)
 class Equations:
-    """Coefficients of the balance of flow at (n + 1) × (m + 1) nodes."""
+    """Coefficients of the flow balances at (n + 1) × (m + 1) nodes."""
 
     around: Array
-    """(n,) conductance H³/dphi between neighbours around, per unit zeta."""
+    """(n,) conductance H³/dphi between circumferential neighbours, per unit zeta."""
     across: Array
-    """(n + 1,) conductance (D/B)² H³ dphi across, times dzeta."""
+    """(n + 1,) axial conductance (D/B)² H³ dphi, times dzeta."""
     source: Array
-    """(n + 1,) what rotation and squeeze bring to a node, per unit zeta."""
+    """(n + 1,) flow that rotation and squeeze bring to a node, per unit zeta."""
     zeta: Array
     """(m + 1,) axial places of the nodes."""
     ring: bool = False
-    """Whether the last node is the first; else P = 0 at both."""
+    """Whether the last node coincides with the first; otherwise P = 0 at both."""
 
     @cached_property
     def conductance_around(self) -> Array:
-        """Return the flow from a node to the next around for a unit of pressure, (n, m + 1)."""
+        """Return the flow between circumferential neighbours per unit of pressure, (n, m + 1)."""
         return np.asarray(self.around[:, None] * dual_widths(self.zeta))
 
     @cached_property
     def conductance_across(self) -> Array:
-        """Return the flow from a node to the next across for a unit of pressure, (n + 1, m)."""
+        """Return the flow between axial neighbours per unit of pressure, (n + 1, m)."""
         return np.asarray(self.across[:, None] / np.diff(self.zeta))
 
     @cached_property
     def brought(self) -> Array:
-        """Return the inflow of nodes due to rotation and squeeze, (n + 1, m + 1)."""
+        """Return the flow brought to the nodes by rotation and squeeze, (n + 1, m + 1)."""
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:
-        """Return a P − b: the outflow of a node by pressure less its inflow by motion, (n + 1, m + 1)."""
+        """Return A P − b: the outflow of a node by pressure minus its inflow by motion, (n + 1, m + 1)."""
         flow = P[1:] - P[:-1]
         flow *= self.conductance_around
         axial = P[:, 1:] - P[:, :-1]
@@ -77,7 +77,7 @@ class Equations:
         return self._closed(total)
 
     def _closed(self, balance: Array) -> Array:
-        """On a ring the last node's cell belongs to the first."""
+        """Return the nodal balances; on a ring, those of the last node are added to the first."""
         if self.ring:
             balance[0] += balance[-1]
             balance[-1] = 0
@@ -85,7 +85,7 @@ class Equations:
 
 
 def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Array) -> Equations:
-    """Return the balances of flow for a gap that is given at the nodes and between them.
+    """Return the flow balances for a gap that is given at the nodes and midway between them.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Arr
     H_mid
         (n,) gap midway between the nodes [-].
     source
-        (n + 1,) what motion brings to the nodes, see `rotation` and `squeeze`.
+        (n + 1,) flow that motion brings to the nodes, see `rotation` and `squeeze`.
     """
     return Equations(
         around=H_mid**3 / np.diff(mesh.phi),
@@ -121,19 +121,19 @@ def perturbed_equations(
 
 
 def rotation(H_mid: Array) -> Array:
-    """Return oil that shear flow brings to each node, −6 dH over its cell [-]; a constant in H_mid cancels.
+    """Return the oil that shear flow brings to each node, −6 dH over its cell [-].
 
-    At the ends of the mesh it is the flow onward, or that from before.
+    A constant in H_mid cancels. At the ends of the mesh the value is the flow out of or into the mesh.
     """
     flow = 6 * H_mid
     return np.concatenate([[0.0], flow]) - np.concatenate([flow, [0.0]])
 
 
 def squeeze(mesh: Mesh, H_rate: Array) -> Array:
-    """Return oil that a falling gap brings to each node, −12 dH/d(omega_h t) over its cell [-]."""
+    """Return the oil that a decreasing gap brings to each node, −12 dH/d(omega_h t) over its cell [-]."""
     return -12 * H_rate * dual_widths(mesh.phi)
 
 
 def midpoints(nodes: Array) -> Array:
-    """Return the places midway between the nodes, in their unit."""
+    """Return the positions midway between the nodes, in their unit."""
     return (nodes[:-1] + nodes[1:]) / 2

@@ -1,8 +1,8 @@
 """The fit of DIN 31652-2 / ISO 7902-2 to the converged film of 1976: load and attitude, 1/8 ≤ B/D ≤ 1.
 
-Inside its range the error of So is 2.4 % (median) and 6.8 % (largest), that of the attitude 0.7° and 2.4°.
-Outside it is badly wrong (+221 % at B/D 1.5, tenfold at 2) and is therefore refused.
-Boundary condition: P = 0 at the ends and at the widest gap, rupture after Swift and Stieber.
+Within its range the error of So is 2.4 % (median) and 6.8 % (largest), that of the attitude 0.7° and 2.4°.
+Outside its range it is badly wrong (+221 % at B/D 1.5, tenfold at 2), so values there are refused.
+Boundary condition: P = 0 at the ends and at the widest gap, Swift–Stieber rupture.
 
 References
 ----------
@@ -26,7 +26,7 @@ _ANGLE = np.array([(1.152624, -0.105465), (-2.5905, 0.798745), (8.73393, -2.3291
 
 
 def _require_width(eps: Array, ratio: Array) -> None:
-    """Refuse a width ratio outside the fit's range."""
+    """Raise an error for a width ratio outside the range of the fit."""
     require_film(eps, ratio)
     ratio = np.asarray(ratio)
     require((ratio >= NARROWEST) & (ratio <= WIDEST), "ratio B/D must lie in [1/8, 1] for the ISO 7902 fit")

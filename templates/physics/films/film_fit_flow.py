@@ -9,7 +9,7 @@ from templates.core.arrays import Array
 
 
 def side_flow_ISO_7902(eps: Array, ratio: Array) -> Array:
-    r"""Return oil that leaves at both ends by the film's own pressure, Q/(R³ psi omega_h) [-].
+    r"""Return the oil flow out of both ends due to the film's own pressure, Q/(R³ psi omega_h) [-].
 
     .. math:: \frac{Q_3}{D^3\psi\omega_h} = \frac{1}{4}\left(b - 0.223\,b^3\right)\epsilon
 

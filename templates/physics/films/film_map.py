@@ -1,9 +1,9 @@
 """The converged static film of `reynolds`, precomputed over eccentricity and width.
 
 Cubic splines over atanh(eps) and ln(B/D) represent each result of the film, as the logarithm of its ratio to
-the short-bearing form or in Sommerfeld's angle, so that little is left to interpolate.
-`benchmarks/film_map.py` computes and measures the map from solutions extrapolated by Richardson; it has the
-same boundary condition. Range: eps 0 … 1 − 1e-7, B/D 0.01 … 100; values outside are refused.
+the short-bearing form or in terms of Sommerfeld's angle, so that the interpolated functions vary little.
+`benchmarks/film_map.py` computes the map from Richardson-extrapolated solutions with the same boundary
+condition, and measures its error. Range: eps 0 … 1 − 1e-7, B/D 0.01 … 100; values outside are refused.
 """
 
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class FilmMap:
 
 @cache
 def film_map() -> FilmMap:
-    """Read the data, once."""
+    """Return the map's data, which are read once."""
     with np.load(_DATA) as data:
         over_eps, over_width = (Axis(float(a), float(h), int(n)) for a, h, n in data["axes"])
         static, linear, error = (data[name].astype(float) for name in ("static", "linear", "error"))
@@ -77,7 +77,7 @@ def mapped_load(eps: Array, ratio: Array) -> Array:
 
 
 def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
-    """Return everything that `film_measures.Film` names but the imbalance, by name.
+    """Return all results of `film_measures.Film` except the imbalance, by name.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
 
 
 def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
-    """Return stiffness k c/W and damping b c omega_h/W, (..., 2, 2) each: `film_dynamics.plain_coefficients`.
+    """Return stiffness k c/W and damping b c omega_h/W, (..., 2, 2) each, of `film_dynamics`.
 
     Parameters
     ----------
@@ -123,12 +123,12 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def map_error(eps: Array, ratio: Array) -> Array:
-    """Return the largest relative error [-] measured about a point between the map and new, finer solutions.
+    """Return the largest error [-] measured near a point between the map and new, finer solutions.
 
     Returns
     -------
-    (..., 8): of ln So, ln tan(attitude/2), ln P_max, ln tan(gamma/2) of the peak, ln side flow,
-    ln supply flow, ln shear by streamers, tan(gamma/2) of the rupture; gamma is Sommerfeld's angle.
+    (..., 8): errors of ln So, ln tan(attitude/2), ln P_max, ln tan(gamma/2) of the peak, ln side flow,
+    ln supply flow, ln shear with streamers, tan(gamma/2) of the rupture; gamma is Sommerfeld's angle.
     """
     data = film_map()
     cells = np.array(data.error.shape[:2])
@@ -141,7 +141,7 @@ def map_error(eps: Array, ratio: Array) -> Array:
 
 
 def encode(eps: float, ratio: float, film: Film) -> Array:
-    """Return the smooth values that are interpolated, (8,), of a film at eps > 0."""
+    """Return the smooth interpolated values, (8,), of a film at eps > 0."""
     s = np.sqrt((1 - eps) * (1 + eps))
     peak, rupture = np.tan(sommerfeld_angle(np.array([film.peak, film.rupture]), eps) / 2)
     shear = film.friction_streamers - (film.friction - film.friction_bearing) / 2
@@ -158,7 +158,7 @@ def encode(eps: float, ratio: float, film: Film) -> Array:
 
 
 def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
-    """Return the film's measures by name, from the values of `encode`, (8, ...); half is tan(attitude/2)."""
+    """Return the film's results by name from the values of `encode`, (8, ...); half is tan(attitude/2)."""
     s2 = (1 - eps) * (1 + eps)
     s, thin = np.sqrt(s2), np.sqrt((1 - eps) / (1 + eps))
     load, half, P_max, peak, side, supply, streamers = np.exp(values[:7])
@@ -180,7 +180,7 @@ def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
 
 
 def encode_linear(eps: float, forces: Array) -> Array:
-    """Return the smooth values, (8,), of stiffness and damping along the line of centres."""
+    """Return smooth values, (8,), for stiffness and damping in axes of the line of centres."""
     thin = np.sqrt((1 - eps) / (1 + eps))
     scale = eps / float(np.hypot(*forces[:, 0]))
     K, B = forces[:, 1:3] * scale * thin**_STIFFNESS_SCALE, forces[:, 3:5] * scale * thin**_DAMPING_SCALE
@@ -188,7 +188,7 @@ def encode_linear(eps: float, forces: Array) -> Array:
 
 
 def require_mapped(eps: Array, ratio: Array) -> None:
-    """Refuse a point outside the map.
+    """Raise an error for a point outside the map.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def _place(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def _look_up(coefficients: Array, eps: Array, ratio: Array) -> Array:
-    """Interpolate at points of any shape, (functions, ...)."""
+    """Return the interpolated functions at points of any shape, (functions, ...)."""
     require_mapped(eps, ratio)
     x, y = np.broadcast_arrays(*_place(eps, ratio))
     data = film_map()

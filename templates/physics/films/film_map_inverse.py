@@ -1,7 +1,7 @@
 """Relative eccentricity from load by the film map, for any number of points at once.
 
 The load rises with eps, so the loads at the map's nodes bracket eps within one cell. Inside the cell the
-spline is a cubic, and a bracketed search converges to rounding.
+spline is a cubic, and a bracketed search converges to rounding error.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ _LOWEST = 1e-20
 
 
 def mapped_eccentricity(So: Array, ratio: Array) -> Array:
-    """Return the relative eccentricity eps that bears So: the inverse of `film_map.mapped_load` [-].
+    """Return the relative eccentricity eps that carries So: the inverse of `film_map.mapped_load` [-].
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def mapped_eccentricity(So: Array, ratio: Array) -> Array:
 
     Returns
     -------
-    eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
+    eps; 0 where So is 0, NaN where So is more than the film carries at eps 1 − 1e-7.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def mapped_eccentricity(So: Array, ratio: Array) -> Array:
 
 
 def _block(data: FilmMap, So: Array, ratio: Array) -> Array:
-    """Find the cell, then the root in it."""
+    """Return the eccentricities of a block of points: find the cell, then the root in it."""
     wanted = np.log(np.where(So > 0, So, 1.0) / ratio**2)
     coefficients = line(data.load[..., 0], data.width, np.log(ratio))
     inner = data.eccentricity.places()[1:-1]
@@ -68,5 +68,5 @@ def _block(data: FilmMap, So: Array, ratio: Array) -> Array:
 
 
 def _eccentricity(x: Array) -> Array:
-    """Return eps of the map's coordinate, not beyond the limit by rounding."""
+    """Return eps from the map's coordinate, limited so that rounding cannot exceed the bound."""
     return np.minimum(np.tanh(x), ECCENTRICITY_LIMIT)

@@ -1,6 +1,6 @@
-"""Integral measures of a static film from its pressure field: load, friction, flow, peak pressure.
+"""Integral results of a static film from its pressure field: load, friction, flow, peak pressure.
 
-Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902; the friction with
+Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902. The friction with
 shear by streamers only, where the film has ruptured, is computed as well.
 """
 
@@ -16,7 +16,7 @@ from templates.physics.films.film_mesh import Mesh, sommerfeld_angle
 
 @dataclass(frozen=True)
 class Film:
-    """What a static film does; every value dimensionless, angles in rad."""
+    """The results of a static film; every value is dimensionless, angles are in rad."""
 
     So: float
     """Sommerfeld number F psi²/(B D eta omega_h)."""
@@ -25,26 +25,26 @@ class Film:
     P_max: float
     """Largest pressure p psi²/(eta omega_h)."""
     peak: float
-    """Its place, from the narrowest gap in the sense of rotation: negative [rad]."""
+    """Angle of the largest pressure from the narrowest gap in the sense of rotation: negative [rad]."""
     rupture: float
-    """Where the film ruptures at mid-width, from the narrowest gap; good to a mesh width [rad]."""
+    """Rupture angle at mid-width, from the narrowest gap; accurate to a mesh width [rad]."""
     friction: float
     """Friction on the journal F_f psi/(B D eta omega), shear over the full circle (DIN 31652)."""
     friction_bearing: float
     """Friction on the bearing, in the same convention."""
     friction_streamers: float
-    """Friction on the journal if beyond the rupture only streamers that fill H_rupture/H shear."""
+    """Friction on the journal if, beyond rupture, only streamers that fill H_rupture/H are sheared."""
     side_flow: float
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
     supply_flow: float
     """Oil that enters the film at the widest gap, Q/(R³ psi omega_h)."""
     imbalance: float
-    """Oil lost by the discrete film over the supply: rounding, if the solution is one."""
+    """Residual of the discrete flow balance over the supply; only rounding error in a solution."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """A pressure field and the discrete film that it solves."""
+    """A pressure field and the discrete film equations that it solves."""
 
     eps: float
     ratio: float
@@ -60,7 +60,7 @@ def force(mesh: Mesh, P: Array) -> tuple[float, float]:
 
 
 def measure(field: Field) -> Film:
-    """Integrate load, friction and flow from the pressure."""
+    """Return load, friction and flow by integrating the pressure."""
     along, ahead = force(field.mesh, field.rupture.P)
     peak, P_max = _peak(field.mesh.phi, field.rupture.P[:, 0])
     shear, pressure = np.pi / np.sqrt((1 - field.eps) * (1 + field.eps)), -field.eps * ahead / 2
@@ -82,7 +82,10 @@ def measure(field: Field) -> Film:
 
 
 def rupture_angle(field: Field) -> Array:
-    """Return the film's end [rad], (m + 1,), from the last two pressures, which fall quadratically."""
+    """Return the rupture angle of the film [rad], (m + 1,), from the last two pressures.
+
+    The pressure decreases quadratically there.
+    """
     phi, P = field.mesh.phi, np.sqrt(np.maximum(field.rupture.P[:, :-1], 0))
     last = np.maximum(P.shape[0] - 1 - (P[::-1] > 0).argmax(axis=0), 1)
     column = np.arange(P.shape[1])
@@ -94,7 +97,7 @@ def rupture_angle(field: Field) -> Array:
 
 
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
-    """Return the place and value of the largest pressure, by a parabola through the three nodes around it."""
+    """Return position and value of the largest pressure, from a parabola through three nodes."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
     before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
     slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after
@@ -106,7 +109,7 @@ def _peak(phi: Array, P: Array) -> tuple[float, float]:
 
 
 def _flows(field: Field) -> tuple[float, float, float]:
-    """Supply and side flow Q/(R³ psi omega_h) by balance of flow, and the imbalance of the film [-]."""
+    """Return supply and side flow Q/(R³ psi omega_h) from flow balances, and the film's imbalance [-]."""
     excess = field.equations.residual(field.rupture.P)
     film = field.rupture.film
     carried = 6 * (1 - field.eps)
@@ -117,7 +120,7 @@ def _flows(field: Field) -> tuple[float, float, float]:
 
 
 def _streamer_shear(field: Field, end: Array) -> float:
-    """Shear of the full film up to the rupture and beyond it of streamers as wide as H_rupture/H [-]."""
+    """Return the shear of the full film up to rupture and of streamers of width H_rupture/H beyond it [-]."""
     eps, gamma = field.eps, sommerfeld_angle(end, field.eps)
     s = np.sqrt((1 - eps) * (1 + eps))
     H_end = s**2 / (1 + eps * np.cos(gamma))

@@ -14,7 +14,7 @@ from templates.physics.films.long_bearing import rupture_Swift_Stieber
 from templates.physics.numerics.arrays import require
 
 _MARGIN = 1.03
-"""Extent of the mesh over that of the long bearing's film [-]; a finite bearing ruptures earlier."""
+"""Extent of the mesh over that of the long bearing's film [-]; in a finite bearing rupture is earlier."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Mesh:
     """(m + 1,) the same over zeta, for both halves together."""
 
     def coarser(self) -> "Mesh":
-        """Return the mesh of every second node; its quadrature weights are not meant for use."""
+        """Return the mesh of every second node; its quadrature weights must not be used."""
         return Mesh(self.phi[::2], self.zeta[::2], self.weight_phi[::2], self.weight_zeta[::2])
 
 
@@ -41,12 +41,12 @@ def gap(phi: Array, eps: float) -> Array:
 
 
 def swell(phi: Array, eps: float) -> Array:
-    """Film thickness above its least value, H − (1 − eps), exact in relative terms for every eps [-]."""
+    """Return the film thickness above its least value, H − (1 − eps), to full relative accuracy."""
     return 2 * eps * np.sin(phi / 2) ** 2
 
 
 def gregory(n: int) -> Array:
-    """Weights of Gregory's fourth-order rule on n + 1 equally spaced points at unit distance, (n + 1,) [-].
+    """Return the weights of Gregory's fourth-order rule on n + 1 points at unit spacing, (n + 1,) [-].
 
     Raises
     ------
@@ -68,7 +68,7 @@ def sommerfeld_angle(phi: Array, eps: float) -> Array:
 
 
 def journal_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
-    """Mesh from the widest gap to just past the farthest place at which the film can rupture.
+    """Return a mesh from the widest gap to just past the farthest angle at which the film can rupture.
 
     Parameters
     ----------
@@ -77,9 +77,9 @@ def journal_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
     ratio
         Width over diameter B/D [-].
     n
-        Intervals around.
+        Number of circumferential intervals.
     m
-        Intervals across half the width.
+        Number of intervals over half the width.
     """
     end = np.tan(_MARGIN * (rupture_Swift_Stieber(eps) - np.pi) / 2)
     end = 2 * np.arctan(end * np.sqrt((1 - eps) / (1 + eps)))
@@ -100,7 +100,7 @@ def halved(mesh: Mesh) -> Mesh:
 
 
 def ring_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
-    """Mesh of the whole circle; its first and last nodes are the same place."""
+    """Return a mesh of the whole circle; its first and last nodes coincide."""
     return _mesh(eps, ratio, n, m, np.pi)
 
 
@@ -111,10 +111,10 @@ def _mesh(eps: float, ratio: float, n: int, m: int, end: float) -> Mesh:
 
 
 def _graded_around(eps: float, ratio: float, n: int, end: float) -> tuple[Array, Array]:
-    """Return the nodes equally spaced in Sommerfeld's angle plus asinh(phi/w), and dphi per interval.
+    """Return nodes equally spaced in Sommerfeld's angle plus asinh(phi/w), and dphi of each interval.
 
-    The first resolves the thin film, the second every decade from it to the wide gap, where the
-    side flow arises. w is the thin film's width or, if less, that of a short bearing's rupture.
+    The first term resolves the thin film, the second every decade from it to the wide gap, where the side
+    flow arises. w is the width of the thin film or, if smaller, that of the rupture zone of a short bearing.
     """
     width = min(np.sqrt((1 - eps) / (1 + eps)), 3 * ratio)
 
@@ -132,13 +132,13 @@ def _graded_around(eps: float, ratio: float, n: int, end: float) -> tuple[Array,
 
 
 def _guesses(width: float, end: float) -> Array:
-    """Return the angles from −pi to the end, closer towards 0 in geometric steps."""
+    """Return angles from −pi to the end, geometrically refined towards 0."""
     steps = np.geomspace(1e-3 * width, np.pi, 200)
     return np.concatenate([-steps[::-1], [0.0], steps[steps < end], [end]])
 
 
 def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Array, guesses: Array) -> Array:
-    """Invert a smooth rising function from a table of guesses by Newton's method."""
+    """Return the inverse of a smooth increasing function, from a table of guesses by Newton's method."""
     x = np.interp(y, f(guesses), guesses)
     for _ in range(4):
         x = x - (f(x) - y) / slope(x)
@@ -146,9 +146,9 @@ def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Ar
 
 
 def graded_across(layer: float, m: int) -> tuple[Array, Array]:
-    """Return the axial nodes zeta [-] graded to an edge layer of a given width, and dzeta of each interval.
+    """Return axial nodes zeta [-] graded to an edge layer of given width, and dzeta of each interval.
 
-    The layer is as wide as the film is long where it is thin, over half the bearing's width.
+    The layer is as wide as the thin film is long, relative to half the bearing's width.
     """
     t = 1 - np.linspace(0, 1, m + 1)
     if layer >= 1:

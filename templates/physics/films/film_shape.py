@@ -6,9 +6,9 @@ r"""Shape of the gap of a journal bearing: lobes, bell mouth, and the position a
 
 phi is measured from the load in the sense of the hydrodynamic speed, n = (cos phi, sin phi), zeta = 2z/B from
 −1 to 1. All lengths are divided by the assembled clearance c_b, the radial clearance of the largest cylinder
-that fits into the bore. So a centred, aligned journal has H ≥ 1 everywhere, whatever the shape.
+that fits into the bore. A centred, aligned journal therefore has H ≥ 1 everywhere, for any shape.
 
-Lobes are arcs of one radius, which exceeds the journal's by c_p, the machined clearance. Their
+Lobes are arcs of the same radius, which exceeds that of the journal by c_p, the machined clearance. Their
 preload is 1 − c_b/c_p. With the least gap at psi_k, delta = (c_p/c_b − 1)(1 − cos(phi − psi_k)) on lobe k.
 
 References
@@ -23,24 +23,24 @@ import numpy as np
 from templates.core.arrays import Array
 
 _ALONG = np.linspace(-1, 1, 401)
-"""Axial places at which the narrowest gap is looked for; with a tilt alone it is at an end."""
+"""Number of axial places at which the narrowest gap is sought; with a tilt alone it is at an end."""
 
 _SAME = 1e-11
-"""Angles closer than this [rad] are one: rounding does not say on which side of a joint a node is."""
+"""Angles closer than this [rad] are equal, because rounding does not determine the side of a joint."""
 
 
 @dataclass(frozen=True)
 class Bore:
-    """Shape of a bore; without arguments a plain cylinder."""
+    """Shape of a bore; by default a plain cylinder."""
 
     lobes: int = 1
     """Number of arcs; 1 with a preload of 0 is a cylinder."""
     preload: float = 0.0
     """1 − c_b/c_p of each lobe, 0 to below 1 [-]."""
     angle: float = 0.0
-    """Where the middle of the first lobe is, from the load [rad]."""
+    """Angle of the middle of the first lobe from the load [rad]."""
     offset: float = 0.5
-    """Which share of a lobe's arc lies before its least gap: ½ centred, 1 at its end [-]."""
+    """Fraction of a lobe's arc before its least gap: ½ centred, 1 at its end [-]."""
     mouth: float = 0.0
     """Opening of the bell mouth at the ends over the radial clearance [-]."""
     mouth_length: float = 0.0
@@ -48,7 +48,7 @@ class Bore:
 
     @property
     def is_lobed(self) -> bool:
-        """Return whether the gap of a centred journal differs around."""
+        """Return whether the gap of a centred journal varies circumferentially."""
         return self.preload > 0
 
     @property
@@ -58,25 +58,25 @@ class Bore:
 
     @property
     def excess(self) -> float:
-        """Return the distance of a lobe's centre from the bearing's: c_p/c_b − 1 [-]."""
+        """Return the distance of a lobe's centre from that of the bearing: c_p/c_b − 1 [-]."""
         return self.preload / (1 - self.preload)
 
     def joints(self) -> Array:
-        """Return the angles at which lobes meet, (lobes,) or none, from the load [rad]."""
+        """Return the angles at which lobes meet, from the load [rad], (lobes,); empty without lobes."""
         arc = 2 * np.pi / self.lobes
         joints = self.angle + arc * (np.arange(self.lobes) - 0.5)
         return np.asarray(joints, float) if self.is_lobed else np.zeros(0)
 
     def arcs(self) -> tuple[Array, Array, Array]:
-        """Begin and end of each lobe, and the direction of its least gap, (lobes,) each [rad]."""
+        """Return begin and end of each lobe, and the direction of its least gap, (lobes,) each [rad]."""
         arc = 2 * np.pi / self.lobes
         begin = np.asarray(self.angle + arc * (np.arange(self.lobes) - 0.5), float)
         return begin, begin + arc, begin + arc * self.offset
 
     def around(self, phi: Array, side: int = 1) -> Array:
-        """Return the addition of lobes to the gap of a centred journal, at angles from the load [-].
+        """Return the contribution of lobes to the gap of a centred journal, at angles from the load [-].
 
-        Where lobes meet, with side 1 that of the lobe ahead, with −1 that of the lobe behind.
+        Where lobes meet, a side of 1 selects the lobe ahead, −1 the lobe behind.
         """
         if not self.is_lobed:
             return np.zeros_like(phi)
@@ -85,7 +85,7 @@ class Bore:
         return np.asarray(2 * self.excess * np.sin((within - arc * self.offset) / 2) ** 2)
 
     def along(self, zeta: Array) -> Array:
-        """Return the gap of the bell mouth: a parabola that begins at its length from the end [-]."""
+        """Return the contribution of the bell mouth, a parabola from its beginning to the end [-]."""
         if self.mouth_length <= 0:
             return np.zeros_like(zeta)
         depth = np.maximum(np.abs(zeta) - (1 - self.mouth_length), 0.0) / self.mouth_length
@@ -94,26 +94,26 @@ class Bore:
 
 @dataclass(frozen=True)
 class Lie:
-    """Where the journal lies; axes x along the load, y ahead of it in the sense of rotation."""
+    """Position and tilt of the journal; axes x along the load, y ahead of it in the sense of rotation."""
 
     e: Array
-    """(2,) displacement of its middle over the radial clearance [-]."""
+    """(2,) displacement of the journal's middle over the radial clearance [-]."""
     tilt: Array
     """(2,) further displacement at the end zeta = 1, the opposite one at zeta = −1 [-]."""
 
     @property
     def is_tilted(self) -> bool:
-        """Return whether the journal's axis is not the bearing's direction."""
+        """Return whether the journal's axis is not parallel to that of the bearing."""
         return bool(np.any(self.tilt != 0))
 
     @property
     def eps(self) -> float:
-        """Return the relative eccentricity of its middle; above 1 where a lobed bore lets it [-]."""
+        """Return the relative eccentricity at mid-width; it may exceed 1 in a lobed bore [-]."""
         return float(np.hypot(*self.e))
 
     @property
     def attitude(self) -> float:
-        """Return the angle of its middle's displacement from the load [rad]."""
+        """Return the angle of the displacement at mid-width from the load [rad]."""
         return float(np.arctan2(self.e[1], self.e[0]))
 
 
@@ -123,9 +123,9 @@ def directions(phi: Array) -> Array:
 
 
 def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array, side: int = 1) -> Array:
-    """Return the film thickness over the radial clearance at every angle and axial place, (angles, places).
+    """Return the film thickness over the radial clearance at all angles and places, (angles, places).
 
-    Where lobes meet, on that side of the joint, see `Bore.around`.
+    Where lobes meet, `Bore.around` explains the side that is used.
     """
     x, y = directions(phi)
     e, t = lie.e, lie.tilt
@@ -137,7 +137,7 @@ def narrowest(bore: Bore, lie: Lie) -> tuple[float, float]:
     """Return the least gap [-] and its angle from the load [rad].
 
     On each lobe, at each axial place, the gap is least in the direction of the journal's displacement from
-    the lobe's centre, or at the lobe's end that is nearer to it.
+    the lobe's centre, or at the nearer end of the lobe.
     """
     begin, end, least = bore.arcs()
     zeta = _ALONG if lie.is_tilted or not bore.is_plain else np.zeros(1)

@@ -1,7 +1,7 @@
 """Rupture of the long journal bearing's film: no axial flow, pressure along the circumference only.
 
-H = 1 + eps cos(theta) from the widest gap; gamma is Sommerfeld's angle, H = (1−eps²)/(1−eps cos gamma).
-Tests compare with the closed forms of its load and pressure in `tests/references/long_bearing.py`.
+H = 1 + eps cos(theta) from the widest gap; gamma is Sommerfeld's angle, H = (1−eps²)/(1−eps cos gamma). Tests
+compare with the closed forms of its load and pressure in `tests/references/long_bearing.py`.
 
 References
 ----------
@@ -17,7 +17,7 @@ from templates.physics.numerics.arrays import require_film
 
 
 def rupture_Swift_Stieber(eps: float) -> float:
-    r"""Sommerfeld's angle gamma at which the film ruptures with P = dP/dtheta = 0, in (pi, 3 pi/2) [rad].
+    r"""Return Sommerfeld's angle gamma of film rupture, P = dP/dtheta = 0, in (pi, 3 pi/2) [rad].
 
     .. math:: \epsilon(\sin\gamma\cos\gamma - \gamma) + 2(\sin\gamma - \gamma\cos\gamma) = 0
 

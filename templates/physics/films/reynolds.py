@@ -1,8 +1,8 @@
 """Static plain journal bearing: the Reynolds equation in two dimensions with free film rupture.
 
-Isothermal, incompressible, rigid and aligned, laminar; full circle without grooves.
-Boundary condition: P = 0 at the ends and along a supply line at the widest gap; the film ruptures
-where P = dP/dn = 0 (Swift, Stieber). A purely periodic film would have different attitudes at small eps.
+Isothermal, incompressible, rigid and aligned, laminar; full circle without grooves. Boundary condition: P = 0
+at the ends and along a supply line at the widest gap; the film ruptures where P = dP/dn = 0 (Swift, Stieber).
+A film without a supply line, periodic around the circle, would have different attitudes at small eps.
 
 Everything is dimensionless: P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Second-order finite
 volumes: with 128 × 16 intervals the error of So is about 0.05 % up to eps 0.999 (0.1 % at 1 − 1e-6);
@@ -27,13 +27,15 @@ from templates.physics.numerics.arrays import require_film
 
 _COARSEST = 16, 4
 _CLOSE = 0.9999
-"""Eccentricity above which rounding and the start decide about single nodes, by 1e-7 of a load [-]."""
+"""Eccentricity above which rounding and initial guess decide single nodes, with an effect of 1e-7 of the load
+[-].
+"""
 _CENTRED = 1e-9
-"""Eccentricity at which a centred journal's attitude and places are taken: their limits."""
+"""Eccentricity used for the limits of attitude and angles of a centred journal."""
 
 
 def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> Film:
-    """Solve the static film.
+    """Return the solved static film.
 
     Parameters
     ----------
@@ -42,9 +44,9 @@ def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -
     ratio
         Width over diameter B/D, 0.01 … 100 [-].
     around
-        Intervals around, 16 times a power of 2 for the fastest start.
+        Number of circumferential intervals; 16 times a power of 2 is fastest.
     across
-        Intervals across half the width, 4 times a power of 2 likewise.
+        Number of intervals over half the width; 4 times a power of 2 is fastest.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -
 
 
 def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> tuple[Film, Film]:
-    """Solve on the mesh given and on twice as many intervals, and extrapolate by Richardson.
+    """Return the film by Richardson extrapolation from the given mesh and one with twice as many intervals.
 
     Returns
     -------
@@ -89,7 +91,7 @@ def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) 
 
 
 def _nested(eps: float, ratio: float, mesh: Mesh, coarser: Field | None = None) -> Field:
-    """Solve with the start taken from the next coarser mesh, as long as there is one."""
+    """Return the solution, started recursively from the next coarser mesh as long as there is one."""
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
     if coarser is None and min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 2 == m % 2 == 0:
         coarser = _nested(eps, ratio, mesh.coarser())
@@ -99,16 +101,16 @@ def _nested(eps: float, ratio: float, mesh: Mesh, coarser: Field | None = None) 
 
 
 def _start(coarser: Field, mesh: Mesh) -> Mask:
-    """Return the nodes of a finer mesh that lie before the end of a film, (n + 1, m + 1)."""
+    """Return a mask of the nodes of a finer mesh that lie inside a film, (n + 1, m + 1)."""
     if coarser.eps > _CLOSE:
         return finer(coarser.rupture.film)
     end = rupture_angle(coarser)
-    end[-1] += end[-2] - end[-3]  # at the edge of the bearing, where it is taken from the node beside
+    end[-1] += end[-2] - end[-3]  # at the edge of the bearing, extrapolated from the neighbouring nodes
     return np.asarray(mesh.phi[:, None] < np.interp(mesh.zeta, coarser.mesh.zeta, end))
 
 
 def journal_equations(eps: float, ratio: float, mesh: Mesh) -> Equations:
-    """Return the balances of flow of a journal that rotates and does not squeeze."""
+    """Return the flow balances of a journal that rotates without squeeze motion."""
     middle = midpoints(mesh.phi)
     source = rotation(swell(middle, eps))
     return film_equations(mesh, ratio, gap(mesh.phi, eps), gap(middle, eps), source)

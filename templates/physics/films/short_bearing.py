@@ -70,7 +70,7 @@ def attitude_Ocvirk_1952(eps: Array) -> Array:
 
 
 def side_flow_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
-    """Return oil that leaves at both ends, Q/(R³ psi omega) = 2 b eps [-].
+    """Return the oil flow out of both ends, Q/(R³ psi omega) = 2 b eps [-].
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ def side_flow_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
 
 
 def friction_Ocvirk_1952(eps: Array) -> Array:
-    r"""Return friction force on the journal F_f psi/(B D eta omega), shear alone over the full circle [-].
+    r"""Return the friction force on the journal F_f psi/(B D eta omega), full-circle shear only [-].
 
     .. math:: \frac{F_f\psi}{BD\eta\omega} = \frac{\pi}{\sqrt{1-\epsilon^2}}
 
-    The pressure term eps So sin(beta)/2 is neglected, as published. f/psi is this over So.
+    The pressure term eps So sin(beta)/2 is neglected, as published. Dividing by So gives f/psi.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def friction_Ocvirk_1952(eps: Array) -> Array:
 
 
 def peak_angle_Ocvirk_1952(eps: Array) -> Array:
-    r"""Return the place of the largest pressure, from the widest gap [rad].
+    r"""Return the angle of the largest pressure from the widest gap [rad].
 
     .. math:: \cos\theta_m = \frac{1-\sqrt{1+24\epsilon^2}}{4\epsilon}
 

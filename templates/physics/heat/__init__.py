@@ -1,1 +1,1 @@
-"""Heat balances of films over a cycle."""
+"""Heat balances of films over a load cycle."""

@@ -1,13 +1,13 @@
-r"""One viscosity for a film over a cycle, from the heat of the film and the heat that its oil removes.
+r"""One effective viscosity for a film over a cycle, from the heat balance of film and oil flow.
 
 .. math::
     k\,P = \rho c\,(Q + Q_p)(T_{ex} - T_{en}),\quad T = (T_{en} + T_{ex})/2,\quad
     \eta = \eta_\mathrm{Cross}\left(\eta_0(T),\ \dot\gamma\right)
 
-This is the balance of ISO 7902-1 for a steady load, with power loss P and side flow Q as means over the
+This is the balance of ISO 7902-1 for a steady load, with power loss P and side flow Q averaged over the
 cycle. Q_p is the flow that the supply pressure drives from a groove over the two lands, with the gap along
-the orbit; as in the standard, the film's own pressure does not reduce it. The shear rate is |U|/h, a mean
-over circle and cycle.
+the orbit; as in the standard, the film's own pressure does not reduce it. The shear rate is |U|/h, averaged
+over circumference and cycle.
 
 P rises with the viscosity, and the film's temperature with P, so there is one root in ln(eta). The viscosity
 at the supply temperature is divided by four repeatedly until it is too low: the last step brackets the root.
@@ -27,7 +27,7 @@ from scipy.optimize.elementwise import find_root
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.oil import ViscousOil, viscosity_at
 from templates.physics.journals.shear_thinning import (
     HTHS_TEMPERATURE,
     critical_rate_at,
@@ -45,64 +45,53 @@ from templates.physics.supplied.fed_cycle import (
 from templates.physics.supplied.supply_geometry import SupplyGeometry
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
-"""Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
+"""Levels of `fed_cycle` that are cheap enough to be solved at many viscosities."""
 _STEPS = 6
 _STEP = float(np.log(4))
-"""Steps, at most so many and of so much in ln, by which the search lowers the viscosity of the supply."""
+"""Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
 
 
-@dataclass(frozen=True)
-class CycleOil:
-    """The oil and what it carries off, SI; single values of the points."""
+@dataclass(frozen=True, kw_only=True)
+class CycleOil(ViscousOil):
+    """The oil and its heat capacity, in SI; single values for each point."""
 
-    A: Array
-    B: Array
-    """Walther's intercept and slope [-]."""
-    a: Array
-    b: Array
-    offset: Array
-    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
-    eta: Array
-    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    T_ref: Array
-    """Density [kg/m³] at a temperature [K]."""
     left: Array
-    """Of what shear can take, the share that 1e6 1/s leave at 150 °C; NaN if the oil does not thin [-]."""
+    """Fraction of the shear-dependent viscosity that remains at 150 °C and 1e6 1/s; NaN without shear
+    thinning [-].
+    """
     endless: Array
-    """Share of the viscosity that endless shear leaves [-]."""
+    """Fraction of the viscosity that remains at infinite shear rate [-]."""
     exponent: Array
-    """Of Cross's law [-]."""
+    """Exponent of Cross's law [-]."""
     supply: Array
     """Temperature of the supply [K]."""
     heat_capacity: Array
-    """Per volume [J/(m³ K)]."""
+    """Heat capacity per volume [J/(m³ K)]."""
     share: Array
-    """Share of the loss that the oil carries off [-]."""
-
-    def still(self, T: Array) -> Array:
-        """Return the viscosity at low shear at a temperature [K]; [Pa s]."""
-        return viscosity_at(
-            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
-        )
+    """Share of the power loss that the oil removes [-]."""
 
     def sheared(self, T: Array, rate: Array) -> Array:
-        """Return the viscosity at a temperature [K] and a shear rate [1/s]; [Pa s]."""
-        still, hot = self.still(T), self.still(np.asarray(HTHS_TEMPERATURE))
-        at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
+        """Return the viscosity [Pa s] at a temperature [K] and a shear rate [1/s]."""
+        return self.viscosity(T) * (1 - self.taken(T, rate))
+
+    def taken(self, T: Array, rate: Array) -> Array:
+        """Return the share [-] of the viscosity that shear takes at a temperature [K] and a rate [1/s]."""
+        one, nothing = np.asarray(1.0), np.asarray(0.0)
+        still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
+        at_150 = critical_rate_of_HTHS(self.left, one, nothing, self.exponent)
         critical = critical_rate_at(at_150, hot, still)
         with np.errstate(invalid="ignore"):
-            thin = viscosity_Cross_1965(rate, still, self.endless * still, critical, self.exponent)
-        return np.where(np.isnan(self.left), still, thin)
+            kept = viscosity_Cross_1965(rate, one, nothing, critical, self.exponent)
+        return np.where(np.isnan(self.left), 0.0, (1 - self.endless) * (1 - kept))
 
 
 @dataclass(frozen=True)
 class CycleBearing:
-    """A bearing over its cycle, SI."""
+    """A bearing over its cycle, in SI."""
 
     level: str
     duty: Duty
-    """Its scale is that of 1 Pa s."""
+    """Loads and speeds; the scale is that for 1 Pa s."""
     feeding: SupplyGeometry
     pressure: Array
     """Supply pressure, NaN without a groove [Pa]."""
@@ -117,27 +106,29 @@ class CycleBearing:
 
 @dataclass(frozen=True)
 class CycleHeat:
-    """The balance of every point; NaN where there is none."""
+    """The heat balance of every point; NaN where there is none."""
 
     eta: Array
     """Effective viscosity [Pa s]; infinite where no balance was found."""
     T: Array
     """Effective temperature [K]."""
+    taken: Array
+    """Share of the viscosity that shear takes [-]."""
     rate: Array
     """Mean shear rate [1/s]."""
     loss: Array
     """Power loss [W]."""
     side_flow: Array
-    """What the journal's motion displaces from the ends [m³/s]."""
+    """Flow out of the ends displaced by the journal's motion [m³/s]."""
     feed_flow: Array
-    """What the supply pressure drives [m³/s]."""
+    """Flow driven by the supply pressure [m³/s]."""
     residual: Array
-    """Viscosity that belongs to the heat, over that taken, less 1 [-]."""
+    """Viscosity from the heat balance over the assumed viscosity, minus 1 [-]."""
 
 
 @dataclass(frozen=True)
 class FilmState:
-    """What a film of some viscosity does."""
+    """The results of a film with a given viscosity."""
 
     loss: Array
     side_flow: Array
@@ -165,16 +156,16 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, FilmState]
 
 @on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
 def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """Return the viscosity of every point at which heat and viscosity agree."""
+    """Return the viscosity of every point that satisfies the heat balance."""
     shape = np.broadcast_shapes(
         *(np.shape(getattr(oil, field.name)) for field in fields(oil)), bearing.duty.points,
         *(np.shape(getattr(bearing.feeding, field.name)) for field in fields(bearing.feeding)),
         np.shape(bearing.pressure), np.shape(bearing.clearance),
     )  # fmt: skip
-    top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
+    top = np.log(np.broadcast_to(oil.viscosity(oil.supply), shape))
 
     def lack(x: Array) -> Array:
-        """Return the logarithm of the viscosity that follows from the heat, less that of the assumed one."""
+        """Return the logarithm of the viscosity from the heat balance minus that of the assumed viscosity."""
         eta = np.exp(x)
         film = heated_film(bearing, eta)[1]
         T = temperature(oil, film)
@@ -182,7 +173,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """Return the same object for the points of these numbers."""
+        """Return the same object for the points with these indices."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
@@ -203,14 +194,16 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     with np.errstate(invalid="ignore"):
         residual = np.asarray(oil.sheared(T, film.rate) / np.exp(solved) - 1)
     eta = np.where(np.isfinite(residual), np.exp(solved), np.inf)
-    values = (eta, T, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
+    taken = oil.taken(T, film.rate)
+    values = (eta, T, taken, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
     return CycleHeat(*(np.asarray(value)[()] for value in values))
 
 
 def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
-    """Return the step below the supply's viscosity, in ln, that encloses the root; NaN if none does.
+    """Return the step below the supply viscosity, in ln, that brackets the root; NaN if none does.
 
-    A load so light at the supply's viscosity that no orbit is found may have one further down.
+    If the load is so light that no orbit is found at the supply viscosity, there may be one at a lower
+    viscosity.
     """
     low, high = np.full(top.shape, np.nan), np.full(top.shape, np.nan)
     at, above = top, top
@@ -229,19 +222,19 @@ def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[A
 
 
 def heaviest(duty: Duty) -> Array:
-    """Return the largest load number with oil of 1 Pa s, (...) [Pa s]."""
+    """Return the largest load number for an oil of 1 Pa s, (...) [Pa s]."""
     return np.asarray(np.hypot(duty.F_x, duty.F_y).max(axis=-1) * duty.scale)
 
 
 def temperature(oil: CycleOil, film: FilmState) -> Array:
-    """Return the mean of supply and outlet, by the heat that the oil carries off [K]."""
+    """Return the mean of supply and outlet temperature, from the heat that the oil removes [K]."""
     with np.errstate(invalid="ignore", divide="ignore"):
         rise = oil.share * film.loss / (oil.heat_capacity * (film.side_flow + film.feed_flow))
     return np.asarray(oil.supply + rise / 2)
 
 
 def _where_known(eta: Array, value: Array) -> Array:
-    """Return the value if a viscosity was found, else NaN."""
+    """Return the value where a viscosity was found, else NaN."""
     return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
 
 
@@ -253,37 +246,47 @@ def viscosity_of(heat: CycleHeat) -> Array:
 
 @units(None, "Pa*s", returns="K", latex=r"\text{{by the heat balance}}")
 def temperature_of(heat: CycleHeat, eta: Array) -> Array:
-    """Return the effective temperature [K]; NaN where the viscosity is."""
+    """Return the effective temperature [K]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.T)
 
 
 @units(None, "Pa*s", returns="1/s", latex=r"\text{{by the heat balance}}")
 def rate_of(heat: CycleHeat, eta: Array) -> Array:
-    """Return the mean shear rate [1/s]; NaN where the viscosity is."""
+    """Return the mean shear rate [1/s]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.rate)
+
+
+@units(None, "Pa*s", "Pa*s", returns="1", latex=r"1-\frac{{{1}}}{{{2}}}")
+def shear_loss_of(heat: CycleHeat, eta: Array, still: Array) -> Array:
+    """Return the share of the viscosity that shear takes [-]; NaN where the viscosity is.
+
+    By Cross's law, so that it is never below 0: 1 less the ratio of both viscosities [Pa s] is it but for
+    the residual of the balance.
+    """
+    return _where_known(eta, heat.taken)
 
 
 @units(None, "Pa*s", returns="W", latex=r"\text{{by the heat balance}}")
 def loss_of(heat: CycleHeat, eta: Array) -> Array:
-    """Return the power loss [W]; NaN where the viscosity is."""
+    """Return the power loss [W]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.loss)
 
 
 @units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
 def side_flow_of(heat: CycleHeat, eta: Array) -> Array:
-    """Return the flow that the journal's motion displaces [m³/s]; NaN where the viscosity is."""
+    """Return the flow displaced by the journal's motion [m³/s]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.side_flow)
 
 
 @units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
 def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
-    """Return the flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
+    """Return the flow driven by the supply pressure [m³/s]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.feed_flow)
 
 
 @units("m**3/s", "m**3/s", returns="m**3/s", latex="{0}+{1}")
 def all_flow(side: Array, feed: Array) -> Array:
-    """Return the flow out of the ends [m³/s]: side flow plus feed flow; NaN counts as no feed flow."""
+    """Return the flow out of the ends [m³/s]: side flow plus feed flow, with NaN as no feed flow."""
     return side + np.nan_to_num(feed)
 
 
@@ -296,7 +299,7 @@ def viscosity_at_150(
     Parameters
     ----------
     law
-        Whose constants count.
+        The law whose constants are used.
     A, B
         Walther's intercept and slope [-].
     a, b, offset
@@ -312,7 +315,9 @@ def viscosity_at_150(
 
 @units("Pa*s", "Pa*s", "1", None, returns="1", latex=r"\frac{{{0}-{2}\,{1}}}{{(1-{2})\,{1}}}")
 def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
-    """Share of the shear-dependent viscosity left at 150 °C and 1e6 1/s; NaN without shear thinning [-].
+    """Return the fraction of the shear-dependent viscosity that remains at 150 °C and 1e6 1/s [-].
+
+    The result is NaN without shear thinning.
 
     Parameters
     ----------
@@ -321,9 +326,9 @@ def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
     hot
         Viscosity at low shear and 150 °C [Pa s].
     endless
-        Share that endless shear leaves [-].
+        Fraction of the viscosity that remains at infinite shear rate [-].
     eta
-        The viscosity of the film, if it is given: then it does not thin [Pa s].
+        The viscosity of the film, if it is given: it then has no shear thinning [Pa s].
     """
     left = (hths - endless * hot) / ((1 - endless) * hot)
     return np.where(np.isnan(eta), left, np.nan)[()]

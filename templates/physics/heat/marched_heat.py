@@ -1,14 +1,14 @@
 """The heat balance over a cycle with the mass-conserving film of level `supplied`.
 
-Its side flow is all the oil that leaves at the ends, displaced by the journal or driven by the supply against
-the film's own pressure, including the oil from groove ends and holes. A march takes a second or more, so the
-balance starts from the result of a cheap level and continues by the secant method; three or four marches are
-enough.
+The side flow of this level is all the oil that leaves at the ends, displaced by the journal or driven by the
+supply against the film's own pressure, including oil from groove ends and holes. A march takes a second or
+more, so the balance starts from the result of a cheap level and continues by the secant method; three or four
+marches are enough.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -27,23 +27,20 @@ from templates.physics.heat.cycle_heat import (
 
 MARCHED_LEVELS = (*LEVELS, "supplied")
 SETTLED, ROUNDS = 2e-3, 12
-"""What ln(viscosity) may lack, as a march repeats to 1e-3; marches at most."""
+"""Accepted residual of ln(viscosity), since a march repeats to 1e-3; largest number of marches."""
 FARTHEST = float(np.log(4))
 """Largest step of ln(viscosity)."""
 
 
 @on_paper("solved numerically by secants of the viscosity in the heat balance over the cycle")
 def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """Return the viscosity at which heat and viscosity agree, at any level.
-
-    At level supplied of one point.
-    """
+    """Return the viscosity that satisfies the heat balance, at any level; level supplied takes one point."""
     if bearing.level != "supplied":
         return cycle_heat(bearing, oil)
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"
     first = cycle_heat(replace(bearing, level=cheap), oil)
     shape = np.shape(first.eta)
-    start = first.eta if np.all(np.isfinite(first.eta)) else oil.still(oil.supply) / 2
+    start = first.eta if np.all(np.isfinite(first.eta)) else oil.viscosity(oil.supply) / 2
     rounds: list[tuple[float, float]] = [(float(np.log(np.ravel(start)[0])), np.nan)]
     while len(rounds) <= ROUNDS:
         x = rounds[-1][0]
@@ -55,11 +52,11 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return _balanced(oil, film, np.full(shape, np.exp(x)), lack)
         rounds.append((following(rounds), np.nan))
     none = np.full(shape, np.nan)
-    return CycleHeat(np.full(shape, np.inf), *(none for _ in range(6)))
+    return CycleHeat(np.full(shape, np.inf), *(none for _ in fields(CycleHeat)[1:]))
 
 
 def following(rounds: list[tuple[float, float]]) -> float:
-    """Return the next ln(viscosity), by a secant, from those with what each lacks.
+    """Return the next ln(viscosity) by a secant, from pairs of earlier values and their residuals.
 
     Examples
     --------
@@ -76,7 +73,7 @@ def following(rounds: list[tuple[float, float]]) -> float:
 
 
 def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, float]:
-    """Return the film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
+    """Return the film at a viscosity, and the residual of its heat balance in ln; NaN without a film."""
     film = heated_film(bearing, eta)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
         lack = np.log(oil.sheared(temperature(oil, film), film.rate) / eta)
@@ -85,6 +82,7 @@ def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, 
 
 def _balanced(oil: CycleOil, film: FilmState, eta: Array, lack: float) -> CycleHeat:
     unknown = np.full(np.shape(eta), np.nan)
-    values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
+    T = temperature(oil, film)
+    values = (eta, T, oil.taken(T, film.rate), film.rate, film.loss, film.side_flow, unknown)
     residual = np.full(np.shape(eta), np.expm1(lack))
     return CycleHeat(*(np.asarray(value)[()] for value in (*values, residual)))

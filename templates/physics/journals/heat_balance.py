@@ -1,12 +1,12 @@
-r"""Temperature of a journal bearing's film by the global heat balance of ISO 7902-1, bracketed.
+r"""Temperature of a journal bearing's film from the heat balance of ISO 7902-1, by bracketed search.
 
 .. math:: P(T) = \rho c\,Q(T)\,(T_{out} - T_{supply}) + kA\,(T - T_{ambient}), \quad
     T = (T_{supply}+T_{out})/2
 
 Every level of fidelity uses the power loss P and the side flow Q of the film map (`film_map`) at the
-viscosity of T, so the temperature and the viscosity are the same for all levels. A term that is not given is
-left out. P falls with T and the removed heat rises, so there is at most one root; it lies between the colder
-of the two surroundings and 500 °C.
+viscosity of T, so temperature and viscosity are the same at all levels. A term that is not given is omitted.
+P decreases with T and the removed heat increases, so there is at most one root; it lies between the colder of
+the two surroundings and 500 °C.
 
 References
 ----------
@@ -22,19 +22,19 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 from templates.core.language.declare import on_paper
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_load
-from templates.physics.journals.oil import density, vogel, walther
+from templates.physics.journals.oil import ViscousOil
 from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.roots import bracketed_root
 
 HOTTEST = 773.15
-"""Highest film temperature that is looked for [K]."""
+"""Highest film temperature that is sought [K]."""
 _ACCURACY = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
-class OperatingPoint:
-    """A bearing at work, in SI; arrays that broadcast together."""
+class OperatingPoint(ViscousOil):
+    """A bearing in operation, in SI; arrays that broadcast together."""
 
     F: Array
     """Load [N]."""
@@ -45,27 +45,11 @@ class OperatingPoint:
     psi: Array
     """Relative clearance [-]."""
     omega_m: Array
-    """Size of the hydrodynamic speed [rad/s]."""
+    """Magnitude of the hydrodynamic speed [rad/s]."""
     omega_s: Array
-    """Speed of sliding in its sense [rad/s]."""
-    A: Array
-    """Walther's intercept [-]."""
-    B: Array
-    """Walther's slope [-]."""
-    a: Array
-    """Vogel's factor, if the viscosity follows from his law, else NaN [Pa s]."""
-    b: Array
-    """Vogel's slope [K]."""
-    offset: Array
-    """Vogel's offset [K]."""
-    eta: Array
-    """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    """Density at T_ref [kg/m³]."""
-    T_ref: Array
-    """Temperature of rho_ref [K]."""
+    """Sliding speed, positive with the hydrodynamic speed [rad/s]."""
     heat_capacity: Array
-    """Of the oil per volume, rho c [J/(m³ K)]."""
+    """Heat capacity of the oil per volume, rho c [J/(m³ K)]."""
     T_supply: Array
     """Temperature of the oil supplied, else NaN [K]."""
     T_ambient: Array
@@ -73,15 +57,8 @@ class OperatingPoint:
     kA: Array
     """Heat transfer coefficient times area, else NaN [W/K]."""
 
-    def viscosity(self, T: Array) -> Array:
-        """Return the dynamic viscosity [Pa s] at T [K]."""
-        of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
-        of_vogel = vogel(self.a, self.b, self.offset, T)
-        thin = np.where(np.isnan(self.a), of_walther, of_vogel)
-        return np.where(np.isnan(self.eta), thin, self.eta)
-
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:
-        """Return the power loss [W] and side flow [m³/s] at T [K]; at the limit of the map beyond it."""
+        """Return power loss [W] and side flow [m³/s] at T [K]; beyond the film map, those at its limit."""
         eta, ratio = self.viscosity(T), self.W / self.D
         scale = self.W * self.D * eta * self.omega_m / self.psi**2
         inside = (ratio >= NARROWEST) & (ratio <= WIDEST)
@@ -93,13 +70,14 @@ class OperatingPoint:
         return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
 
     def coldest(self) -> Array:
-        """Return the colder of supply and ambient air, where given [K]."""
+        """Return the lower of supply and ambient temperature, as far as they are given [K]."""
         return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
 
     def heat(self, rise: Array) -> tuple[Array, Array, Array]:
-        """Power, and heat that oil and air carry off, at a rise above the coldest surrounding [K], each [W].
+        """Return power, heat to oil and heat to air [W] at a rise above the coldest surrounding [K].
 
-        Differences are taken before the rise is added: a small one would drown in the rounding of T.
+        Differences are formed before the rise is added, because a small rise would be lost in the rounding of
+        T.
         """
         coldest = self.coldest()
         power, flow = self.power_and_flow(coldest + rise)
@@ -108,12 +86,12 @@ class OperatingPoint:
         return power, np.nan_to_num(by_oil, nan=0.0), np.nan_to_num(by_air, nan=0.0)
 
     def excess(self, rise: Array) -> Array:
-        """Return the share of the power that is not carried off [-]."""
+        """Return the fraction of the power that is not removed [-]."""
         power, by_oil, by_air = self.heat(rise)
         return 1 - (by_oil + by_air) / power
 
     def residual(self, rise: Array) -> Array:
-        """Return the heat imbalance over the largest of power and heat to oil and air [-]."""
+        """Return the heat imbalance over the largest of power, heat to oil and heat to air [-]."""
         power, by_oil, by_air = self.heat(rise)
         largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
         return (power - by_oil - by_air) / largest
@@ -126,14 +104,14 @@ class HeatBalance:
     T: Array
     """Film temperature [K]; infinite where there is no balance below 500 °C."""
     T_out: Array
-    """Temperature of the oil that leaves; NaN too without a supply [K]."""
+    """Temperature of the outflowing oil; NaN also without a supply [K]."""
     residual: Array
-    """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
+    """Heat imbalance over the largest of power, heat to oil and heat to air [-]."""
 
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
 def heat_balance(running: OperatingPoint) -> HeatBalance:
-    """Find the film temperature of every point that has a supply, or air to cool it."""
+    """Return the film temperature of every point that has oil supply or air for cooling."""
     names = [field.name for field in fields(running)]
     parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
     everything = OperatingPoint(**dict(zip(names, parts, strict=True)))
@@ -146,14 +124,14 @@ def heat_balance(running: OperatingPoint) -> HeatBalance:
 
 
 def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
-    """Return whether a supply temperature, or air and its heat transfer, is given."""
+    """Return whether a supply temperature, or air temperature and heat transfer, is given."""
     return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
 
 
 def _balance(point: OperatingPoint) -> tuple[Array, Array]:
-    """Return the temperature and residual of points in a row.
+    """Return the temperature and residual of a one-dimensional array of points.
 
-    Infinite and NaN where there is none, NaN unknown.
+    They are infinite and NaN where there is no balance, and both NaN where data are missing.
     """
     coldest = point.coldest()
     most = HOTTEST - coldest

@@ -1,8 +1,8 @@
 """The eight linear coefficients of a journal film at every fidelity that has them, also without load.
 
-K = k c psi²/(B D eta omega_h) and B = b c psi²/(B D eta): the usual stiffness and damping multiplied by So,
-so that both stay finite as the load vanishes. Axes: x along the load, y ahead of x in the sense of rotation.
-c is the radial clearance, psi = c/R.
+K = k c psi²/(B D eta omega_h) and B = b c psi²/(B D eta) are the usual stiffness and damping multiplied by
+So, so that both stay finite as the load vanishes. Axes: x along the load, y ahead of x in the sense of
+rotation. c is the radial clearance, psi = c/R.
 """
 
 from collections.abc import Callable
@@ -18,12 +18,12 @@ from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.films.short_dynamics import coefficients_Holmes_1960
 
 _CENTRED = 1e-6
-"""Eccentricity at which a centred journal's coefficients are taken: their limit [-]."""
+"""Eccentricity used for the limit of the coefficients of a centred journal [-]."""
 
 
 @dataclass(frozen=True)
 class Linear:
-    """The coefficients one by one, dimensionless as above; M_c is the largest stable mass."""
+    """The individual coefficients, dimensionless as above; M_c is the largest stable mass."""
 
     K_xx: Array
     K_xy: Array
@@ -34,7 +34,7 @@ class Linear:
     B_yx: Array
     B_yy: Array
     M_c: Array
-    """M omega² c psi²/(B D eta omega_h), M of the rotor's share; infinite where every mass is stable."""
+    """M omega² c psi²/(B D eta omega_h), with M the rotor mass per film; infinite if every mass is stable."""
 
 
 def coefficients_at(
@@ -45,7 +45,7 @@ def coefficients_at(
     pressure: Array | float = 0.0,
     grooves: tuple[tuple[float, float], ...] = (),
 ) -> tuple[Array, Array]:
-    """Return the stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at level fit [-].
+    """Return stiffness and damping, (..., 2, 2) each; NaN at points without a film and at level fit [-].
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def coefficients_at(
     ratio
         Width over diameter B/D [-].
     attitude
-        Angle from the load to the narrowest gap; mass_conserving places grooves by it [rad].
+        Angle from the load to the narrowest gap, by which mass_conserving positions grooves [rad].
     pressure
-        Supply pressure above ambient; likewise [-].
+        Supply pressure above ambient, used by mass_conserving [-].
     grooves
-        (angle from the load, width) of each; likewise [rad].
+        (angle from the load, width) of each groove, used by mass_conserving [rad].
     """
     points = np.broadcast_arrays(*(np.asarray(a, float) for a in (eps, ratio, attitude, pressure)))
     valid = np.isfinite(points).all(axis=0) & (level in SOLVERS)

@@ -17,7 +17,7 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 
 @units("rad/s", "rad/s", "rad/s", returns="rad/s", latex=r"\left|{0}+{1}-2\,{2}\right|")
 def hydrodynamic_speed(journal: Array, sleeve: Array, load: Array) -> Array:
-    """Return the magnitude of the hydrodynamic speed [rad/s] from the three speeds [rad/s]."""
+    """Return the magnitude of the hydrodynamic speed [rad/s] from three angular speeds [rad/s]."""
     return np.abs(journal + sleeve - 2 * load)
 
 
@@ -26,21 +26,21 @@ def hydrodynamic_speed(journal: Array, sleeve: Array, load: Array) -> Array:
     latex=r"\left({0}-{1}\right)\operatorname{{sgn}}\left({0}+{1}-2\,{2}\right)",
 )  # fmt: skip
 def sliding_speed(journal: Array, sleeve: Array, load: Array) -> Array:
-    """Return the speed of the journal over the sleeve, in the sense in which the film is carried [rad/s]."""
+    """Return the journal's speed relative to the sleeve, positive with the hydrodynamic speed [rad/s]."""
     return (journal - sleeve) * np.sign(journal + sleeve - 2 * load)
 
 
 @units("N", returns="kg", latex=r"\frac{{{0}}}{{g}}")
 def mass_of_weight(F: Array) -> Array:
-    """Return the mass [kg] whose weight is F [N], at standard gravity."""
+    """Return the mass [kg] whose weight is F [N] at standard gravity."""
     return F / STANDARD_GRAVITY
 
 
 @units("1", "N/m", "kg", returns="rad/s", latex=r"\sqrt{{\frac{{{0}\,{1}}}{{{2}}}}}")
 def whirl_speed(threshold: Array, stiffness: Array, mass: Array) -> Array:
-    """Return the speed [rad/s] at which a rotor of a mass [kg] begins to whirl; NaN where it does not at any.
+    """Return the speed [rad/s] at which a rotor of a mass [kg] begins to whirl; NaN if it never does.
 
-    threshold is the largest stable mass M omega²/stiffness [1], infinite where every mass is stable.
+    threshold is the largest stable mass M omega²/stiffness [1], infinite if every mass is stable.
     """
     whirls = np.isfinite(threshold) & (np.asarray(mass) > 0)
     squared = np.where(whirls, threshold, 1.0) * stiffness / np.where(whirls, mass, 1.0)

@@ -1,4 +1,4 @@
-"""The temperature of a journal bearing's film: a mean, the result of a heat balance, or none."""
+"""The temperature of a journal bearing's film: a mean, the result of a heat balance, or unknown."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from templates.physics.journals.heat_balance import HeatBalance, asked_for
 
 @units("K", None, returns="K", latex=r"{0}\ \text{{or that of the heat balance}}")
 def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
-    """Return the heat balance's temperature where there is one, else the mean.
+    """Return the temperature from the heat balance if there is one, else the mean temperature [K].
 
-    NaN if there is neither [K].
+    The result is NaN if there is neither.
     """
     return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
 
@@ -21,28 +21,28 @@ def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
 @units(None, returns="K")
 def outlet_temperature(balance: HeatBalance) -> Array:
-    """Return the temperature of the oil that leaves, by the heat balance.
+    """Return the temperature of the outflowing oil from the heat balance [K].
 
-    NaN without one or without a supply [K].
+    The result is NaN without a balance or a supply.
     """
     return balance.T_out
 
 
 @units("K", "K", returns="K", latex=r"{0}")
 def or_reference(T: Array, T_ref: Array) -> Array:
-    """Return the temperature T, or where there is none the reference, which leaves a density as it is [K]."""
+    """Return T, or the reference temperature if T is NaN, so that a density remains unchanged [K]."""
     return np.where(np.isnan(T), T_ref, T)[()]
 
 
 def viscosity_known(
     eta: Array, T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array
 ) -> Mask:
-    """Return whether the viscosity is given (NaN: not) or some temperature from which it follows."""
+    """Return whether the viscosity is given (not NaN) or follows from some temperature."""
     means = np.isfinite(T_in) & np.isfinite(T_out)
     return np.asarray(np.isfinite(eta) | means | asked_for(T_supply, T_ambient, kA))[()]
 
 
 def mean_is_used(T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
-    """Return whether inlet and outlet temperature, where given, make the film's temperature."""
+    """Return whether given inlet and outlet temperatures determine the film's temperature."""
     given = np.isfinite(T_in) | np.isfinite(T_out)
     return np.asarray(~(given & asked_for(T_supply, T_ambient, kA)))[()]

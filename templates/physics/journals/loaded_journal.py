@@ -1,7 +1,7 @@
-"""Effect of a load on the friction of a journal: Petrov's concentric film against the Reynolds solution.
+"""Effect of a load on the friction of a journal: Petrov's concentric film and the Reynolds solution.
 
 The film is the converged static film of `film_map`: full circle without grooves, Swift–Stieber rupture, shear
-over the whole circle as in DIN 31652 and ISO 7902.
+over the full circle as in DIN 31652 and ISO 7902.
 """
 
 import numpy as np
@@ -30,9 +30,9 @@ def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array,
     omega
         Angular velocity of the journal relative to bearing and load [rad/s].
     width
-        B [m].
+        Width B [m].
     diameter
-        D [m].
+        Diameter D [m].
     """
     return load * psi**2 / (width * diameter * eta * np.where(omega > 0, omega, np.nan))
 
@@ -40,7 +40,7 @@ def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array,
 @on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def eccentricity_of_load(So: Array, ratio: Array) -> Array:
-    """Return relative eccentricity at a load; NaN where So is, and beyond the film map (B/D 0.01 … 100) [-].
+    """Return the relative eccentricity at a load; NaN without So and outside B/D 0.01 … 100 [-].
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
 @on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
-    """Return the friction on the journal in the loaded film over Petrov's, 1 or more; NaN where eps is [-].
+    """Return the friction on the loaded journal over Petrov's, 1 or more; NaN where eps is NaN [-].
 
     Parameters
     ----------

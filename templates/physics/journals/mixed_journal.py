@@ -1,4 +1,4 @@
-r"""A journal whose film and roughness share its load, and its friction over the speed (Stribeck curve).
+r"""A journal whose load is shared by film and asperity contact, and its friction over speed (Stribeck curve).
 
 The film force F_f acts at its attitude beta to the line of centres, the contact force F_c along that line,
 and the contact friction mu F_c across it, against the rotation:
@@ -6,10 +6,10 @@ and the contact friction mu F_c across it, against the rotation:
 .. math::
     F^2 = (F_f\cos\beta + F_c)^2 + (F_f\sin\beta - \mu F_c)^2
 
-Both grow with the eccentricity, so exactly one eccentricity carries a load. The film of smooth faces comes
-from `film_map`, that of rough faces from the average Reynolds equation: this is solved at some
-eccentricities, and its difference from the map is interpolated. Only the journal turns. The friction is the
-sum of the shear over the full circle at the mean gap, the couple of the film force, and the contact friction.
+Both grow with the eccentricity, so exactly one eccentricity carries a load. The film of smooth surfaces comes
+from `film_map`, that of rough surfaces from the average Reynolds equation, which is solved at some
+eccentricities; its difference from the map is interpolated. Only the journal rotates. The friction is the sum
+of the shear over the full circle at the mean gap, the couple of the film force, and the contact friction.
 """
 
 from dataclasses import dataclass, fields
@@ -27,26 +27,28 @@ from templates.physics.roughness.asperities import contact_integrals, splined_su
 from templates.physics.roughness.flow_factors import rough_journal
 
 Indices = NDArray[np.int64]
-"""Numbers of bearings in a row."""
+"""Indices into a one-dimensional array of bearings."""
 
 MAP, AVERAGED = "map", "averaged"
 LEVELS = (MAP, AVERAGED)
-"""The film of smooth faces, or of rough ones by the average Reynolds equation."""
+"""The film of smooth surfaces, or of rough ones by the average Reynolds equation."""
 MULTIPLES = np.geomspace(1e-3, 1e2, 41)
 """Speeds of the Stribeck curve over that of the bearing [-]."""
 FULL_FILM = 3.0
-"""Gap over roughness from which on a film counts as full [-]."""
+"""Gap over roughness above which a film counts as full [-]."""
 
 _DEEPEST = float(-np.log1p(-ECCENTRICITY_LIMIT))
 _NODES = 20
 _ABOUT_LOWEST = 21
 _FROM_EPS = 0.05
-_TO_GAP = 0.5  # of the roughness: where the tables end the average equation is solved last
+_TO_GAP = (
+    0.5  # relative to the roughness: the end of the tables, and the last gap at which the equation is solved
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoughJournal:
-    """A journal bearing with rough faces, in SI; arrays that broadcast together."""
+    """A journal bearing with rough surfaces, in SI; arrays that broadcast together."""
 
     F: Array
     """Load [N]."""
@@ -61,7 +63,7 @@ class RoughJournal:
     roughness: Array
     """Composite roughness over radial clearance; 0 is smooth [-]."""
     asymmetry: Array
-    """Share of the journal in the square of the roughness less that of the bearing [-]."""
+    """Squared roughness of the journal minus that of the bearing, over their sum [-]."""
     contact: Array
     """Contact pressure over F_{5/2} [Pa]."""
     mu: Array
@@ -70,44 +72,47 @@ class RoughJournal:
 
 @dataclass(frozen=True)
 class MixedFilm:
-    """What bears the load; dimensionless, NaN where nothing does."""
+    """The results of film and contact; dimensionless, NaN where they cannot carry the load."""
 
     eps: Array
     """Relative eccentricity."""
     attitude: Array
-    """From the load to the narrowest gap in the sense of rotation [rad]."""
+    """Angle from the load to the narrowest gap in the sense of rotation [rad]."""
     film_share: Array
     """Force of the film over the load."""
     contact_share: Array
     """Force of the contact along the line of centres over the load."""
     contact_sum: Array
-    """Contact pressure summed over the surface, over the load."""
+    """Integral of the contact pressure over the surface, over the load."""
     shear: Array
     """Friction force of the film on the journal over the load."""
     friction: Array
-    """Friction coefficient, of film and contact."""
+    """Friction coefficient of film and contact together."""
 
     def admitted(self, eps: Array) -> "MixedFilm":
-        """Return the same with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is NaN."""
         values = (getattr(self, field.name) for field in fields(MixedFilm))
         return MixedFilm(*(np.where(np.isnan(eps), np.nan, value)[()] for value in values))
 
 
 @dataclass(frozen=True)
 class SmoothFilms:
-    """The Sommerfeld number and attitude of smooth films of bearings in a row, at any eccentricities."""
+    """Sommerfeld number and attitude of smooth films of a 1-D array of bearings, at any eccentricity."""
 
     ratio: Array
-    """B/D of each (N,) [-]."""
+    """B/D of each bearing (N,) [-]."""
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
-        """Return So and attitude [rad] at eccentricities of the bearings of these numbers."""
+        """Return So and attitude [rad] at eccentricities of the bearings with these indices."""
         film = mapped_film(eps, self.ratio[point])
         return film["So"], film["attitude"]
 
 
 class AveragedFilms:
-    """Those of rough films by the average Reynolds equation, solved once at some eccentricities."""
+    """Sommerfeld number and attitude of rough films, from solutions at some eccentricities.
+
+    They are solutions of the average Reynolds equation.
+    """
 
     def __init__(self, ratio: Array, roughness: Array, asymmetry: Array) -> None:
         self.smooth, self.low = SmoothFilms(ratio), np.full_like(roughness, -np.log1p(-_FROM_EPS))
@@ -122,7 +127,7 @@ class AveragedFilms:
         self.load, self.turn = np.log(film[..., 0] / So), film[..., 1] - attitude
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
-        """Return So and attitude [rad] at eccentricities of the bearings of these numbers."""
+        """Return So and attitude [rad] at eccentricities of the bearings with these indices."""
         So, attitude = self.smooth.at(eps, point)
         low, high = self.low[point], self.high[point]
         t = np.clip((-np.log1p(-eps) - low) / (high - low), 0, 1)[..., None]
@@ -132,17 +137,17 @@ class AveragedFilms:
 
 @dataclass(frozen=True)
 class MixedJournal:
-    """Bearings in a row with their films, of points of some shape."""
+    """A one-dimensional array of bearings with their films, and the shape of the points."""
 
     bearing: RoughJournal
-    """Those of which all is known (N,)."""
+    """The bearings whose data are complete (N,)."""
     films: SmoothFilms | AveragedFilms
-    """Their films."""
+    """The films of these bearings."""
     number: Indices
-    """Which of them each point is (...); −1 where it is none."""
+    """Index of the bearing of each point (...); −1 where data are missing."""
 
     def shares(self, eps: Array, speed: Array, i: Indices) -> tuple[Array, ...]:
-        """Return forces along and across the line of centres, and what they are made of, of bearings i."""
+        """Return the forces along and across the line of centres, and their components, for bearings i."""
         bearings = self.bearing
         So, attitude = self.films.at(np.minimum(eps, ECCENTRICITY_LIMIT), i)
         along, around = contact_integrals(eps, bearings.roughness[i])
@@ -159,7 +164,7 @@ class MixedJournal:
         return np.asarray((force - self.bearing.F[i]) / (force + self.bearing.F[i]))
 
     def film(self, omega: Array, i: Indices) -> MixedFilm:
-        """Return the films of bearings i at speeds, both in a row."""
+        """Return the films of bearings i at speeds, both one-dimensional."""
         deepest = np.full(omega.shape, _DEEPEST)
         deep = root_between(self.excess, np.zeros(omega.shape), deepest, omega, i.astype(float))
         eps = -np.expm1(-np.asarray(deep).reshape(omega.shape))
@@ -195,14 +200,14 @@ def mixed_journal(level: str, bearing: RoughJournal) -> MixedJournal:
     }
 )
 def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """Return the balance of film and contact at each speed, arrays of the same shape.
+    """Return the equilibrium of film, contact and load at each speed, arrays of the same shape.
 
     Parameters
     ----------
     journal
         The bearings.
     omega
-        Speeds of every point (..., speeds) [rad/s].
+        Speeds for every point (..., speeds) [rad/s].
     """
     number = np.broadcast_arrays(journal.number[..., None], omega)[0]
     speeds = np.broadcast_to(omega, number.shape)
@@ -216,7 +221,7 @@ def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
 
 
 def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """Return the balances that carry the load at one speed for each point, arrays (...).
+    """Return the equilibrium that carries the load at one speed for each point, arrays (...).
 
     See `mixed_films`.
     """
@@ -227,14 +232,14 @@ def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
 @on_paper("the speed at which film and contact bear the load with this gap: the root of a square")
 @units(None, "1", returns="rad/s")
 def speed_at_gap(journal: MixedJournal, gap: Array) -> Array:
-    """Return speed at which the smallest gap over the radial clearance is this; NaN where none is [rad/s].
+    """Return the speed at which the smallest gap has a given value; NaN where there is none [rad/s].
 
     Parameters
     ----------
     journal
         The bearings.
     gap
-        Smallest gap over the radial clearance of every point [-].
+        Smallest gap over the radial clearance for every point [-].
     """
     number, eps = np.broadcast_arrays(journal.number, 1 - np.asarray(gap))
     usable = (number >= 0) & (eps > 0) & (eps <= ECCENTRICITY_LIMIT)
@@ -252,17 +257,17 @@ def speed_at_gap(journal: MixedJournal, gap: Array) -> Array:
 
 @dataclass(frozen=True)
 class LeastFriction:
-    """The lowest point of a Stribeck curve; NaN where an end of it is the lowest."""
+    """The minimum of a Stribeck curve; NaN if it lies at an end of the curve."""
 
     multiple: Array
-    """Its speed over that of the bearing."""
+    """Speed of the minimum over that of the bearing."""
     friction: Array
-    """Friction coefficient there."""
+    """Friction coefficient at the minimum."""
 
 
 @on_paper("by a parabola through the lowest of 21 points about the lowest one of the curve")
 def least_friction(journal: MixedJournal, omega: Array, films: MixedFilm) -> LeastFriction:
-    """Return the lowest point of the curve over `MULTIPLES`, from a closer look at its neighbourhood.
+    """Return the minimum of the curve over `MULTIPLES`, refined between the neighbouring points.
 
     Parameters
     ----------
@@ -271,7 +276,7 @@ def least_friction(journal: MixedJournal, omega: Array, films: MixedFilm) -> Lea
     omega
         Their speeds [rad/s].
     films
-        What bears the load at the speeds of the curve.
+        Equilibria at the speeds of the curve.
     """
     last = MULTIPLES.size - 1
     lowest = np.nan_to_num(films.friction, nan=np.inf).argmin(axis=-1)
@@ -290,20 +295,20 @@ def least_friction(journal: MixedJournal, omega: Array, films: MixedFilm) -> Lea
 
 @units("Pa", "m", "m", returns="Pa", latex=r"{0}\,F_{{5/2}}\left({1}/{2}\right)")
 def contact_pressure(scale: Array, gap: Array, roughness: Array) -> Array:
-    """Return the contact pressure at a gap of rough faces, 0 of smooth ones [Pa]."""
+    """Return the contact pressure at a gap of rough surfaces, 0 for smooth ones [Pa]."""
     thick = np.where(roughness > 0, gap / np.where(roughness > 0, roughness, 1.0), gap * np.inf)
     return (scale * splined_summit_integral(np.maximum(thick, 0)) + 0 * gap)[()]
 
 
 @units("m", "m", returns="m", latex=r"\sqrt{{{0}^2+{1}^2}}")
 def composite_roughness(R_1: Array, R_2: Array) -> Array:
-    """Return the root mean square of the heights of two faces together [m]."""
+    """Return the root mean square roughness of both surfaces together [m]."""
     return np.hypot(R_1, R_2)
 
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}^2-{1}^2}}{{{0}^2+{1}^2}}")
 def roughness_asymmetry(R_1: Array, R_2: Array) -> Array:
-    """Asymmetry of the squared roughness of both faces, 0 if both are smooth [-]."""
+    """Return the asymmetry of the squared roughness of both surfaces, 0 if both are smooth [-]."""
     total = np.hypot(R_1, R_2)
     return ((R_1 - R_2) / np.where(total > 0, total, 1.0) * ((R_1 + R_2) / np.where(total > 0, total, 1.0)))[
         ()

@@ -1,10 +1,10 @@
 """Density and viscosity of lubricating oil over temperature, after Walther (ASTM D341) or Vogel.
 
-Walther: lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point
-and about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
+Walther: lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. It is intended for mineral oils between
+pour point and about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
 
-Vogel: eta = a exp(b/(t + c)), t in °C: an oil is defined by the three constants, or by two viscosities and c
-= 95 K, which Cameron found suitable for mineral oils. The law has a pole at t = −c and is invalid below.
+Vogel: eta = a exp(b/(t + c)), t in °C. An oil is defined by the three constants, or by two viscosities and c
+= 95 K, which Cameron found suitable for mineral oils. The law has a pole at t = −c and is invalid below it.
 
 References
 ----------
@@ -13,6 +13,8 @@ A. Cameron: The Principles of Lubrication, 1966, chapter 1.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,7 +27,7 @@ _CELSIUS = 273.15  # K
 
 @units("kg/m**3", "K", "K", returns="kg/m**3")
 def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
-    """Return the density [kg/m³] at T [K]: rho_ref less 0.07 % per kelvin above T_ref.
+    """Return the density [kg/m³] at T [K]: rho_ref reduced by 0.07 % per kelvin above T_ref.
 
     References
     ----------
@@ -38,7 +40,7 @@ def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
 def double_logarithm(nu: Array) -> Array:
     """Return Walther's ordinate lg lg(nu + 0.7) of the kinematic viscosity nu [m²/s].
 
-    NaN from 0.3 mm²/s down.
+    It is NaN at and below 0.3 mm²/s.
     """
     return np.log10(np.log10(nu / MM2_PER_S + 0.7))
 
@@ -68,22 +70,22 @@ def walther(A: Array, B: Array, T: Array) -> Array:
 
 @units("Pa*s", "K", "K", "K", returns="Pa*s", latex=r"{0}\,e^{{{1}/\left({3}/\mathrm{{°C}}+{2}\right)}}")
 def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
-    """Return the dynamic viscosity [Pa s] at T [K] by Vogel's a [Pa s], b, c [K].
+    """Return the dynamic viscosity [Pa s] at T [K] from Vogel's a [Pa s], b, c [K].
 
-    Infinite from the pole −c °C down.
+    It is infinite at and below the pole −c °C.
 
     References
     ----------
     H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
     """
     above = T - _CELSIUS + c
-    with np.errstate(over="ignore"):  # just above the pole it is as good as infinite
+    with np.errstate(over="ignore"):  # just above the pole it overflows to infinity
         return np.where(above > 0, a * np.exp(b / np.where(above > 0, above, np.inf)), np.inf)[()]
 
 
 @units("Pa*s", "K", "Pa*s", "K", "K", returns="K")
 def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) -> Array:
-    """Return Vogel's b [K] through two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below its pole."""
+    """Return Vogel's b [K] from two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below the pole."""
     return np.log(eta_1 / eta_2) / (1 / _above_pole(T_1, c) - 1 / _above_pole(T_2, c))
 
 
@@ -91,21 +93,21 @@ def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) ->
 def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
     """Return Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K].
 
-    NaN from the pole down, or if too small.
+    It is NaN at and below the pole, or if it underflows.
     """
     a = eta_1 * np.exp(-b / _above_pole(T_1, c))
     return np.where(a > 0, a, np.nan)[()]
 
 
 def _above_pole(T: Array, c: Array) -> Array:
-    """Return the distance from Vogel's pole −c °C [K]; NaN below."""
+    """Return the distance from Vogel's pole −c °C [K]; NaN below it."""
     above = T - _CELSIUS + c
     return np.where(above > 0, above, np.nan)
 
 
 @units(None, "Pa*s", "Pa*s", returns="Pa*s", latex=r"{1}\ \text{{(Walther) or}}\ {2}\ \text{{(Vogel)}}")
 def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
-    """Return the value [Pa s] that belongs to the law `walther` or `vogel`."""
+    """Return the value [Pa s] for the given law, `walther` or `vogel`."""
     return of_vogel if law == "vogel" else np.asarray(of_walther)[()]
 
 
@@ -114,7 +116,7 @@ def viscosity_at(
 ) -> Array:
     """Return the dynamic viscosity [Pa s] at T [K].
 
-    The one given, or by Vogel's law where its factor is, or Walther's.
+    It is the given one, else that of Vogel's law if its factor is given, else that of Walther's law.
 
     Parameters
     ----------
@@ -125,9 +127,33 @@ def viscosity_at(
     a, b, c
         Vogel's factor [Pa s], slope and offset [K]; a is NaN for Walther's law.
     eta
-        The viscosity, if it does not follow from the temperature, else NaN [Pa s].
+        The viscosity, if it does not depend on temperature, else NaN [Pa s].
     rho_ref, T_ref
         Density [kg/m³] at a temperature [K].
     """
     thin = np.where(np.isnan(a), walther(A, B, T) * density(rho_ref, T, T_ref), vogel(a, b, c, T))
     return np.where(np.isnan(eta), thin, eta)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViscousOil:
+    """The viscosity of an oil over temperature, in SI; arrays that broadcast together."""
+
+    A: Array
+    B: Array
+    """Walther's intercept and slope [-]."""
+    a: Array
+    b: Array
+    offset: Array
+    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
+    eta: Array
+    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
+    rho_ref: Array
+    T_ref: Array
+    """Density [kg/m³] at a temperature [K]."""
+
+    def viscosity(self, T: Array) -> Array:
+        """Return the dynamic viscosity at low shear [Pa s] at T [K]."""
+        return viscosity_at(
+            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
+        )

@@ -1,8 +1,8 @@
 """Oils by grade: SAE J300 engine oils and ISO 3448 industrial oils, from `oil_grades.csv`.
 
-A grade limits the viscosity at one temperature only; the table states the assumption for the other. At the
-shear rates of a bearing a multigrade oil is thinner than its kinematic viscosity suggests, by up to a third:
-give `dynamic_viscosity` where that matters.
+A grade specifies the viscosity at one temperature only; the table states the assumption for the other. At the
+shear rates of a bearing a multigrade oil is thinner than its kinematic viscosity suggests, by up to a third;
+give `dynamic_viscosity` if that matters.
 
 References
 ----------
@@ -30,13 +30,13 @@ def _table() -> dict[str, tuple[float, float]]:
 
 
 def _rows() -> list[list[str]]:
-    """Return the cells of the table, without its head."""
+    """Return the cells of the table, without its header."""
     lines = _DATA.read_text(encoding="utf-8").splitlines()
     return [line.split(",") for line in lines if not line.startswith("#")][1:]
 
 
 def grades() -> tuple[str, ...]:
-    """Return every grade of the table."""
+    """Return all grades in the table."""
     return tuple(_table())
 
 

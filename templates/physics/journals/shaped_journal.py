@@ -1,9 +1,9 @@
 """One journal bearing under static load with any bore, aligned or tilted, at every level that supports it.
 
 A plain, aligned bearing has the levels of `static_journal`. `shaped_balance` solves a bore with lobes or bell
-mouth, a tilted journal, and a plain bearing with grooves or supply pressure: at level `reynolds` with rupture
-after Swift and Stieber, at level `mass_conserving` with cavities that conserve mass. Everything is
-dimensionless as there, based on the smallest clearance; angles are measured from the load.
+mouth, a tilted journal, and a plain bearing with grooves or supply pressure: at level `reynolds` with
+Swift–Stieber rupture, at level `mass_conserving` with mass-conserving cavities. Everything is dimensionless
+as there, based on the smallest clearance; angles are measured from the load.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from templates.physics.journals.static_journal import FED, WIDTHS, JournalFilm, 
 from templates.physics.journals.whirl import threshold_mass
 
 BORES = ("plain", "lemon", "offset", "multi_lobe")
-"""Shapes of a bore around."""
+"""Circumferential shapes of a bore."""
 START_LINES = ("fixed", "moving")
-"""What the line of supply at the widest gap does while the journal is displaced from where it lies."""
+"""Behaviour of the supply line at the widest gap while the journal is displaced."""
 MOVABLE = ("short_bearing", "map", "reynolds")
-"""Levels that know the coefficients of a plain film whose line of supply moves with the journal."""
+"""Levels with coefficients of a plain film whose supply line rotates with the journal."""
 
 Grooves = tuple[tuple[float, float], ...]
 
@@ -43,20 +43,20 @@ class Shape:
     preload: Array
     """1 − c_b/c_p of each lobe [-]."""
     angle: Array
-    """Where the middle of a lobe is, from the load [rad]."""
+    """Angle of the middle of a lobe from the load [rad]."""
     offset: Array
-    """Which share of a lobe's arc lies before its least gap [-]."""
+    """Fraction of a lobe's arc before its least gap [-]."""
     mouth: Array
     """Return the opening of the bell mouth at the ends [-]."""
     mouth_length: Array
     """Axial length of each mouth over half the width [-]."""
     tilt_x: Array
-    """What the journal's end is displaced beyond its middle along the load [-]."""
+    """Displacement of the journal's end relative to its middle, along the load [-]."""
     tilt_y: Array
-    """The same ahead of the load [-]."""
+    """The same displacement, ahead of the load [-]."""
 
     def numbers(self) -> list[Array]:
-        """Return all but the first two."""
+        """Return all values except the first two."""
         return [np.asarray(getattr(self, field.name), float) for field in fields(self)[2:]]
 
     def at(self, preload: float, angle: float, offset: float, mouth: float, mouth_length: float) -> Bore:
@@ -67,43 +67,47 @@ class Shape:
 
 @dataclass(frozen=True)
 class StaticFilm:
-    """What a static film does; dimensionless arrays of one shape, but the matrices (..., 2, 2)."""
+    """The results of a static film; dimensionless arrays of one shape, except the matrices (..., 2, 2)."""
 
     eps: Array
-    """Displacement of the journal's middle over the radial clearance; infinite where none bears the load."""
+    """Displacement of the journal at mid-width over the radial clearance; infinite if no film carries the
+    load.
+    """
     attitude: Array
-    """Its direction from the load [rad]."""
+    """Direction of the displacement from the load [rad]."""
     least: Array
     """Smallest gap over the radial clearance."""
     P_max: Array
     """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
     peak: Array
-    """Its angle from the load [rad]; likewise."""
+    """Angle of the largest pressure from the load [rad]; NaN at level fit."""
     shear: Array
     """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
     load_couple: Array
-    """What pressure adds to that with the hydrodynamic speed; So eps sin(attitude)/2 in a plain bearing."""
+    """Friction due to pressure, which is added with the hydrodynamic speed; So eps sin(attitude)/2 in a plain
+    bearing.
+    """
     side_flow: Array
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
     couple_x: Array
     """Moment against a tilt along the load, over psi²/(B D eta omega_h) and B/2."""
     couple_y: Array
-    """The same ahead of the load."""
+    """Moment against a tilt ahead of the load, in the same unit."""
     mesh_error: Array
-    """How far the smallest gap may be off by its meshes, relative; NaN of a plain film."""
+    """Relative error of the smallest gap due to the meshes; NaN for a plain film."""
     place_error: Array
-    """How far the journal may lie from where it is said to, over its displacement; NaN of a plain film."""
+    """Error of the journal's position over its displacement; NaN for a plain film."""
     pressure_error: Array
-    """How far the largest pressure may be off by its meshes, relative; NaN of a plain film."""
+    """Relative error of the largest pressure due to the meshes; NaN for a plain film."""
     flow_error: Array
-    """The same of the side flow."""
+    """Relative error of the side flow due to the meshes; NaN for a plain film."""
     K: Array
-    """Stiffness in the units of So; NaN of a plain film, see `linear_of`."""
+    """Stiffness in units of So; NaN for a plain film, see `linear_of`."""
     B: Array
-    """Damping likewise."""
+    """Damping in units of So; NaN for a plain film, see `linear_of`."""
 
     def admitted(self, eps: Array) -> StaticFilm:
-        """Return the same film with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is NaN."""
         none = np.isnan(eps)
         values = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
         wide = {name: none[..., None, None] if name in ("K", "B") else none for name in values}
@@ -112,9 +116,9 @@ class StaticFilm:
 
 @units(None, returns="1")
 def middle_of_least_gap(bore: str) -> Array:
-    """Return the share of a lobe's arc before its least gap.
+    """Return the fraction of a lobe's arc before its least gap [-].
 
-    All if halves are offset, else half [-].
+    It is 1 if halves are offset, else 1/2.
     """
     return np.asarray(1.0 if bore == "offset" else 0.5)
 
@@ -126,7 +130,7 @@ def is_shaped(shape: Shape) -> bool:
 
 @units("1", "1", "1", "1", returns="1", latex=r"\max\left({0},\,{1},\,|{2}|,\,|{3}|\right)")
 def departure(preload: Array, mouth: Array, tilt_x: Array, tilt_y: Array) -> Array:
-    """Return the largest departure of bore and journal from plain and aligned [-]."""
+    """Return the largest deviation of bore and journal from plain and aligned [-]."""
     return np.asarray(np.maximum(np.maximum(preload, mouth), np.maximum(np.abs(tilt_x), np.abs(tilt_y))))[()]
 
 
@@ -149,17 +153,17 @@ def journal_film_at(
     level
         A key of `static_journal.WIDTHS`; a shaped bearing needs reynolds or mass_conserving.
     So
-        Sommerfeld number of the smallest clearance, 0 or more [-].
+        Sommerfeld number based on the smallest clearance, 0 or more [-].
     ratio
         Width over diameter B/D [-].
     pressure
         Supply pressure above ambient, P = p psi²/(eta omega_h) [-].
     grooves
-        (angle from the load, width) of each [rad].
+        (angle from the load, width) of each groove [rad].
     shape
         Bore and tilt.
     away
-        Their `departure` from plain and aligned, NaN where the level does not know it [-].
+        Their `departure` from plain and aligned, NaN where the level cannot calculate it [-].
     """
     parts = np.broadcast_arrays(
         *(np.asarray(a, float) for a in (So, ratio, pressure, away)), *shape.numbers()
@@ -184,7 +188,7 @@ def journal_film_at(
 
 
 def plain_film(film: JournalFilm) -> StaticFilm:
-    """Return the film of a plain, aligned bearing that is fed along its widest gap, as that of any bore."""
+    """Return the film of a plain, aligned bearing fed along its widest gap, as a `StaticFilm`."""
     nought, matrix = np.zeros_like(film.eps), np.full((*np.shape(film.eps), 2, 2), np.nan)
     unknown = np.full_like(nought, np.nan)
     with np.errstate(invalid="ignore"):
@@ -200,7 +204,7 @@ def _solved(
 ) -> dict[str, Array | float]:
     """Return the fields of `StaticFilm` of one point by `shaped_balance`.
 
-    Eps is infinite where no film carries the load.
+    eps is infinite if no film carries the load.
     """
     bore, tilt, conserving = shape.at(*numbers[:5]), np.array(numbers[5:]), level == FED
     if level not in ("reynolds", FED):
@@ -222,10 +226,11 @@ def _unborne() -> dict[str, Array | float]:
 
 
 def measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
-    """Return the fields of `StaticFilm`, extrapolated by Richardson where the meshes are in their asymptote.
+    """Return the fields of `StaticFilm`, by Richardson extrapolation in the asymptotic range of the meshes.
 
-    With order 2, or 1 where they see a front or the ends' pressure. Elsewhere those of the finest mesh. The
-    share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
+    The order is 2, or 1 for results that depend on a re-formation front or on the pressure at the ends.
+    Outside the asymptotic range the results are those of the finest mesh. `share` is the force over the load:
+    below 1 the journal lies closer to the middle in proportion.
     """
     coarse, fine, at_fine = balanced.coarse.film, balanced.fine.film, balanced.fine.lie
     third = 1 / 3 if balanced.is_asymptotic else 0.0
@@ -257,11 +262,11 @@ def measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[s
 def linear_of(
     level: str, film: StaticFilm, So: Array, ratio: Array, start_line: str, pressure: Array, grooves: Grooves
 ) -> Linear:
-    """Return the stiffness, damping and threshold mass; NaN at points without and at level fit [-].
+    """Return stiffness, damping and threshold mass; NaN at points without a film and at level fit [-].
 
-    With start line fixed the line of supply stays where it is while the journal is displaced; with moving it
-    turns with the journal's displacement: the film then turns as a whole, which changes the stiffness against
-    displacement across the line of centres. Damping is the same. Lobes and grooves stand still.
+    With a fixed supply line, the line stays in place while the journal is displaced. With a moving line, it
+    rotates with the journal's displacement; the film then rotates as a whole, which changes the stiffness
+    against displacement across the line of centres. Damping is the same. Lobes and grooves are stationary.
     """
     K, B = (np.array(matrix, float) for matrix in (film.K, film.B))
     plain = np.isfinite(film.eps) & np.isnan(K).all(axis=(-1, -2))
@@ -283,9 +288,10 @@ def linear_of(
 
 
 def _turning(K: Array, film: StaticFilm, So: Array) -> Array:
-    """The stiffness with the second column, across the line of centres, that of a film turned as a whole.
+    """Return the stiffness with the column across the line of centres for a film that rotates as a whole.
 
-    A displacement across by eps d(gamma) turns the force by d(gamma): it changes by So/eps at right angles.
+    A displacement across by eps d(gamma) rotates the force by d(gamma), so it changes by So/eps at right
+    angles.
     """
     cos, sin = np.cos(film.attitude), np.sin(film.attitude)
     turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)

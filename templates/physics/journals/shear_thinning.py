@@ -21,7 +21,7 @@ from templates.core.language.declare import units
 HTHS_RATE = 1e6
 """Shear rate of the HTHS viscosity [1/s]."""
 HTHS_TEMPERATURE = 423.15
-"""Its temperature, 150 °C [K]."""
+"""Temperature of the HTHS viscosity, 150 °C [K]."""
 
 
 @units("1/s", "Pa*s", "Pa*s", "1/s", "1", returns="Pa*s")
@@ -31,11 +31,11 @@ def viscosity_Cross_1965(rate: Array, eta_0: Array, eta_inf: Array, critical: Ar
     Parameters
     ----------
     rate
-        Size of the shear rate, 0 or more [1/s].
+        Magnitude of the shear rate, 0 or more [1/s].
     eta_0, eta_inf
-        Viscosities at low and at endless shear [Pa s].
+        Viscosities at low and at infinite shear rate [Pa s].
     critical
-        Shear rate gamma_c at which half of what can be lost is lost [1/s].
+        Shear rate gamma_c at which the viscosity is the mean of eta_0 and eta_inf [1/s].
     n
         Exponent, above 0 [-].
 
@@ -44,23 +44,23 @@ def viscosity_Cross_1965(rate: Array, eta_0: Array, eta_inf: Array, critical: Ar
     >>> float(viscosity_Cross_1965(1e6, 0.012, 0.008, 1e6, 1.0))
     0.01
     """
-    with np.errstate(over="ignore"):  # endless shear keeps nothing
+    with np.errstate(over="ignore"):  # at infinite shear rate nothing of the difference remains
         kept = 1 / (1 + (np.asarray(rate, float) / critical) ** n)
     return (eta_0 * kept + eta_inf * (1 - kept))[()]
 
 
 @units("Pa*s", "Pa*s", "Pa*s", "1", returns="1/s")
 def critical_rate_of_HTHS(hths: Array, eta_0: Array, eta_inf: Array, n: Array) -> Array:
-    """Return the critical shear rate with which Cross's law gives the HTHS viscosity.
+    """Return the critical shear rate at which Cross's law gives the HTHS viscosity [1/s].
 
-    NaN where none does [1/s].
+    The result is NaN if there is none.
 
     Parameters
     ----------
     hths
         Viscosity at 150 °C and 1e6 1/s [Pa s].
     eta_0, eta_inf
-        Viscosities at low and at endless shear at 150 °C; hths lies between [Pa s].
+        Viscosities at low and at infinite shear rate at 150 °C; hths lies between them [Pa s].
     n
         Exponent, above 0 [-].
     """
@@ -71,13 +71,13 @@ def critical_rate_of_HTHS(hths: Array, eta_0: Array, eta_inf: Array, n: Array) -
 
 @units("1/s", "Pa*s", "Pa*s", returns="1/s")
 def critical_rate_at(critical: Array, eta_there: Array, eta_0: Array) -> Array:
-    """Return the critical shear rate where the viscosity at low shear is another: their product stays [1/s].
+    """Return the critical shear rate for another low-shear viscosity; their product is constant [1/s].
 
     Parameters
     ----------
     critical
-        Where it is known [1/s].
+        The known critical shear rate [1/s].
     eta_there, eta_0
-        Viscosity at low shear there, and here [Pa s].
+        Low-shear viscosity for the known rate, and for the wanted rate [Pa s].
     """
     return critical * eta_there / eta_0

@@ -24,7 +24,7 @@ _WIDEST = 2.5  # m
 
 @cache
 def _table() -> tuple[Array, Array, Array]:
-    """Lower ends of diameters [m] and speeds [m/s], and the film for each [m]."""
+    """Return the lower ends of the ranges of diameter [m] and speed [m/s], and the film for each [m]."""
     header, *rows = [
         line.split(",") for line in _DATA.read_text(encoding="utf-8").splitlines() if not line.startswith("#")
     ]
@@ -35,9 +35,9 @@ def _table() -> tuple[Array, Array, Array]:
 
 @units("m", "m/s", returns="m")
 def smallest_film_ISO_7902(d: Array, U: Array) -> Array:
-    """Return the smallest permissible film [m] for a journal of diameter d [m] that slides at U [m/s].
+    """Return the smallest permissible film [m] for a journal of diameter d [m] with sliding speed U [m/s].
 
-    NaN for journals up to 24 mm and above 2500 mm, of which the table says nothing.
+    The result is NaN for journals up to 24 mm and above 2500 mm, which the table does not cover.
     """
     diameters, speeds, films = _table()
     row = np.searchsorted(diameters, d, side="left") - 1

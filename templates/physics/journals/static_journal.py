@@ -43,7 +43,7 @@ WIDTHS = {
     "reynolds": (0.01, 100.0),
     "mass_conserving": (0.01, 100.0),
 }
-"""Width ratios B/D that each level takes [-]."""
+"""Range of width ratios B/D of each level [-]."""
 
 _SWIFT_STIEBER = "Swift-Stieber: p = 0 at the ends and along the widest gap; rupture where p = dp/dn = 0"
 BOUNDARY = {
@@ -54,35 +54,35 @@ BOUNDARY = {
     "mass_conserving": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply "
     "pressure in the grooves, or along the widest gap where there are none",
 }
-"""What each level takes for the pressure at the film's borders."""
+"""Boundary condition of each level for the pressure."""
 
 
 _CENTRED = 1e-6
-"""Eccentricity below which a full solution is taken in proportion [-]."""
+"""Eccentricity below which a full solution is scaled linearly [-]."""
 
 
 FED = "mass_conserving"
-"""The level that knows grooves and supply pressure."""
+"""The level that models grooves and supply pressure."""
 
 
 def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
-    """Return whether there is any supply pressure, or a groove."""
+    """Return whether there is a supply pressure above 0, or a groove."""
     return bool(grooves) or bool(np.any(np.asarray(pressure) > 0))
 
 
 def ladder(
     levels: tuple[str, ...], pressure: Array, grooves: tuple[tuple[float, float], ...]
 ) -> tuple[str, ...]:
-    """Return the levels that know how the bearing is fed: all but FED, or only that."""
+    """Return the levels that can model the oil supply: all but FED, or only FED."""
     return (FED,) if is_fed(pressure, grooves) else tuple(level for level in levels if level != FED)
 
 
 @dataclass(frozen=True)
 class JournalFilm:
-    """What a static film does; dimensionless arrays of one shape."""
+    """The results of a static film; dimensionless arrays of one shape."""
 
     eps: Array
-    """Relative eccentricity; infinite where no film bears the load."""
+    """Relative eccentricity; infinite if no film carries the load."""
     So: Array
     """Sommerfeld number F psi²/(B D eta omega_h)."""
     attitude: Array
@@ -90,14 +90,15 @@ class JournalFilm:
     P_max: Array
     """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
     peak: Array
-    """Its place, from the narrowest gap in the sense of rotation [rad]; likewise."""
+    """Angle of the largest pressure from the narrowest gap in the sense of rotation [rad]; NaN at level fit.
+    """
     shear: Array
     """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
     side_flow: Array
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
 
     def admitted(self, eps: Array) -> "JournalFilm":
-        """Return the same film with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is NaN."""
         return self._each(lambda values: np.where(np.isnan(eps), np.nan, values)[()])
 
     def _each(self, change: Callable[[Array], Array]) -> "JournalFilm":
@@ -125,15 +126,15 @@ def static_film_at(
     Parameters
     ----------
     level
-        a key of `WIDTHS`.
+        A key of `WIDTHS`.
     So
         Sommerfeld number, 0 or more; any shape that broadcasts with the others [-].
     ratio
         Width over diameter B/D [-].
     pressure
-        Supply pressure above ambient, P = p psi²/(eta omega_h); mass_conserving uses it [-].
+        Supply pressure above ambient, P = p psi²/(eta omega_h); used by mass_conserving [-].
     grooves
-        (angle from the load, width) of each [rad]; mass_conserving uses them.
+        (angle from the load, width) of each groove [rad]; used by mass_conserving.
 
     Examples
     --------
@@ -151,14 +152,14 @@ def static_film_at(
 
 
 def _scattered(values: Array, valid: Mask) -> Array:
-    """Return the values of the valid points among NaN; a single one as a number."""
+    """Return the values of the valid points in arrays with NaN elsewhere; for a single point as a number."""
     whole = np.full(valid.shape, np.nan)
     whole[valid] = values
     return whole[()]
 
 
 def short_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Return Ocvirk's film; where no film bears the load NaN."""
+    """Return Ocvirk's film; NaN where no film carries the load."""
     eps = eccentricity(load_Ocvirk_1952, So, ratio)
     e = np.where(np.isnan(eps), 0.0, eps)
     return JournalFilm(
@@ -168,7 +169,7 @@ def short_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
 
 
 def fitted_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Return the standard's film; shear over the full circle as there."""
+    """Return the film of the standard's fit, with shear over the full circle as in the standard."""
     eps = eccentricity(load_ISO_7902, So, ratio)
     e, none = np.where(np.isnan(eps), 0.0, eps), np.full_like(eps, np.nan)
     shear = np.pi / np.sqrt((1 - e) * (1 + e))
@@ -189,13 +190,13 @@ def _mapped(eps: Array, ratio: Array) -> JournalFilm:
 
 
 def solved_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Return the film by film solved at the map's eccentricity, and moved from there to the load."""
+    """Return the film solved point by point at the map's eccentricity, corrected to the load."""
     start = mapped_eccentricity(np.maximum(So, mapped_load(np.full_like(So, _CENTRED), ratio)), ratio)
     return _moved(So, ratio, np.array([_solved(e, b) for e, b in zip(start, ratio, strict=True)]))
 
 
 def _solved(eps: float, ratio: float) -> list[float]:
-    """Return the fields of `JournalFilm` by full solutions; an eps of NaN gives NaN."""
+    """Return the fields of `JournalFilm` from full solutions; an eps of NaN gives NaN."""
     if np.isnan(eps):
         return [np.nan] * 7
     film = extrapolated_film(eps, ratio)[0]
@@ -204,9 +205,9 @@ def _solved(eps: float, ratio: float) -> list[float]:
 
 
 def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
-    """Return the film by film with cavities; shear as there is oil.
+    """Return the film with cavities, point by point; in cavities only the oil is sheared.
 
-    Measures moved to the load as the map's would.
+    The results are corrected to the load as the map's would change.
     """
     films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
     film = {
@@ -220,7 +221,7 @@ def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:
-    """Return the films near the load wanted, (N, 7), moved there as the map's film would."""
+    """Return films near the wanted load, (N, 7), corrected to it as the map's film would change."""
     film = JournalFilm(*near.reshape(-1, 7).T)
     valid = np.isfinite(film.eps)
     at = np.where(valid, film.eps, 0.5)

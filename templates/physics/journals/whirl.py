@@ -11,7 +11,7 @@ from templates.core.arrays import Array
 
 
 def whirl_stiffness(K: Array, B: Array) -> Array:
-    r"""Return the stiffness of the film for a journal that whirls at the threshold, in the unit of K.
+    r"""Return the effective film stiffness of a journal that whirls at the threshold, in the unit of K.
 
     .. math:: k_0 = \frac{K_{xx}B_{yy} + K_{yy}B_{xx} - K_{xy}B_{yx} - K_{yx}B_{xy}}{B_{xx} + B_{yy}}
 
@@ -28,7 +28,7 @@ def whirl_stiffness(K: Array, B: Array) -> Array:
 
 
 def whirl_ratio_squared(K: Array, B: Array) -> Array:
-    r"""Return the square of whirl frequency over speed at the threshold; 0 or less: stable at every mass [-].
+    r"""Return the squared whirl frequency ratio at the threshold; 0 or less if every mass is stable [-].
 
     .. math:: \gamma^2 = \frac{(K_{xx}-k_0)(K_{yy}-k_0) - K_{xy}K_{yx}}{B_{xx}B_{yy} - B_{xy}B_{yx}}
 
@@ -44,7 +44,7 @@ def whirl_ratio_squared(K: Array, B: Array) -> Array:
 
 
 def threshold_mass(K: Array, B: Array) -> Array:
-    r"""Return the largest stable mass a film, M c omega²/W = k_0/gamma²; infinite where no mass whirls [-].
+    """Return the largest stable mass per film, M c omega²/W = k_0/gamma²; infinite if none whirls [-].
 
     Parameters
     ----------

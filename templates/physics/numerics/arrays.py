@@ -1,4 +1,4 @@
-"""The array type of the physics functions, the domain check of values, points and curves."""
+"""The array type of the physics functions, and domain checks of values, points and curves."""
 
 import numpy as np
 
@@ -10,19 +10,19 @@ ECCENTRICITY_LIMIT = 1 - 1e-7
 
 
 def require(accepted: Mask, complaint: str) -> None:
-    """Refuse unless every element is accepted; a NaN never is.
+    """Raise an error unless every element is accepted; a NaN never is.
 
     Raises
     ------
     ValueError
-        With the complaint, which names the argument and its limit.
+        With the given complaint, which names the argument and its limit.
     """
     if not np.all(accepted):
         raise ValueError(complaint)
 
 
 def require_film(eps: Array, ratio: Array) -> None:
-    """Refuse an eccentricity outside [0, 1 − 1e-7] or a width ratio that is not positive and finite.
+    """Raise an error for an eccentricity outside [0, 1 − 1e-7] or a width ratio not positive and finite.
 
     Raises
     ------
@@ -35,11 +35,11 @@ def require_film(eps: Array, ratio: Array) -> None:
 
 
 def spread(scale: Array, profile: Array) -> Array:
-    """Return a profile for every point, (..., places): the scale of each times its profile."""
+    """Return a profile for every point, (..., places): the scale of each point times its profile."""
     return scale[..., None] * profile
 
 
 @units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
 def largest_load(x: Array, y: Array) -> Array:
-    """Return the largest size of a load over the cycle [N]."""
+    """Return the largest magnitude of a load over the cycle [N]."""
     return np.asarray(np.sqrt((x * x + y * y).max(axis=-1)))[()]

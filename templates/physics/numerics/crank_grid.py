@@ -1,8 +1,8 @@
 """Crank angles at which an engine is calculated: a uniform grid of at most 1°, with both sides of each jump.
 
 The user's step selects which of these angles are returned. Maxima and integrals use all angles, so that they
-do not depend on that step. Where the pressure jumps, as at an ideal combustion or when an exhaust valve opens
-late, one angle lies just before the jump and one at it.
+do not depend on that step. At a pressure jump, such as an ideal combustion or a late exhaust opening, one
+angle lies just before the jump and one at it.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ T = TypeVar("T", bound=np.generic)
 FINEST = np.pi / 180
 """The largest step of the internal grid [rad]."""
 COARSE = 5.000001 * np.pi / 180
-"""The largest step [rad] of returned curves that shows their peaks, 5° but for rounding."""
-_BEFORE = 1e-7  # [rad] before a jump
+"""The largest step [rad] at which returned curves show their peaks: 5° plus rounding."""
+_BEFORE = 1e-7  # distance of an angle before a jump [rad]
 
 
 @dataclass(frozen=True)
 class CrankGrid:
-    """Angles of one cycle [rad], (…, K): `uniform` equal steps first, then those beside jumps."""
+    """Angles of one cycle [rad], (…, K): `uniform` equal steps first, then those next to jumps."""
 
     theta: Array
     uniform: int
@@ -40,7 +40,7 @@ class CrankGrid:
 
     @cached_property
     def order(self) -> NDArray[np.intp]:
-        """Return the indices by which angles ascend, (…, K)."""
+        """Return the indices that sort the angles in ascending order, (…, K)."""
         return np.argsort(self.theta, axis=-1, kind="stable")
 
     @cached_property
@@ -50,24 +50,24 @@ class CrankGrid:
 
     @cached_property
     def widths(self) -> Array:
-        """Return the intervals between ascending angles [rad], to the first of the next cycle, (…, K)."""
+        """Return the intervals between ascending angles [rad], up to the start of the next cycle, (…, K)."""
         first = self.ascending[..., :1] + self.cycle
         return np.diff(self.ascending, axis=-1, append=first)
 
     def sorted(self, values: Array) -> Array:
-        """Return values at all angles in ascending order of angles, (…, K)."""
+        """Return values at all angles, sorted by angle, (…, K)."""
         order = np.broadcast_to(self.order, (*values.shape[:-1], self.order.shape[-1]))
         return np.take_along_axis(values, order, axis=-1)
 
     def swing(self, values: Array) -> Array:
-        """Return ascending values less their mean over the cycle by the trapezoidal rule, (…, K)."""
+        """Return values, sorted by angle, minus their trapezoidal mean over the cycle, (…, K)."""
         ascending = self.sorted(values)
         return ascending - self._parts(ascending).sum(axis=-1, keepdims=True) / self.cycle
 
     def running(self, values: Array) -> Array:
-        """Return the integral from the first angle of values less their mean, (…, K), in the grid's order.
+        """Return the integral from the first angle of values minus their mean, (…, K), in grid order.
 
-        The mean is that of the same rule on the same grid, so the integral closes over the cycle.
+        The mean is computed by the same rule on the same grid, so the integral closes over the cycle.
         """
         parts = self._parts(self.swing(values))
         sums = np.concatenate([np.zeros_like(parts[..., :1]), np.cumsum(parts, axis=-1)[..., :-1]], axis=-1)
@@ -81,12 +81,12 @@ class CrankGrid:
 
 
 def angles_in(strokes: Array, step: Array) -> float:
-    """Return the number of equal steps of a grid whose returned step is that [rad]."""
+    """Return the number of equal grid steps for a returned step [rad]."""
     return float(np.pi * strokes / np.minimum(step, FINEST))
 
 
 def crank_grid(strokes: Array, step: Array, jumps: Array) -> CrankGrid:
-    """Return the grid of a cycle for a returned step [rad], with angles of jumps [rad], (…, J)."""
+    """Return the grid of a cycle for a returned step [rad] and jumps at the angles [rad], (…, J)."""
     cycle = float(np.pi * strokes)
     returned = round(cycle / float(step))
     every = max(1, int(np.ceil(float(step) / FINEST - 1e-9)))

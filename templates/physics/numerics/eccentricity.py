@@ -1,7 +1,7 @@
-"""Relative eccentricity from load, for any load function that rises with eccentricity.
+"""Relative eccentricity from load, for any load function that increases with eccentricity.
 
 The unknown is logit(eps), bracketed from eps 1e-20 to 1 − 1e-7, and the residual is the logarithm of the
-load. So both ends are resolved equally well, and the search cannot leave its bracket.
+load. Both ends are therefore resolved equally well, and the search cannot leave its bracket.
 """
 
 from collections.abc import Callable
@@ -17,12 +17,12 @@ _LOWEST = 1e-20
 
 
 def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> Array:
-    """Find eps with load(eps, *parameters) = So [-].
+    """Return eps with load(eps, *parameters) = So [-].
 
     Parameters
     ----------
     load
-        a function of eps and the parameters that rises strictly with eps, elementwise.
+        A function of eps and the parameters, elementwise and strictly increasing with eps.
     So
         Sommerfeld number, 0 or more; any shape that broadcasts with the parameters [-].
     parameters
@@ -30,7 +30,7 @@ def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> A
 
     Returns
     -------
-    eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
+    eps; 0 where So is 0, NaN where So is more than the film carries at eps 1 − 1e-7.
 
     Raises
     ------

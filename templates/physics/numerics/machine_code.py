@@ -1,8 +1,8 @@
 """Functions compiled to machine code by numba when they are first called.
 
-The machine code is kept beside the module, or, where that folder cannot be written, in numba's folder for the
-user (`NUMBA_CACHE_DIR` sets another); where neither can be written, every process compiles it. Numba looks
-for changes only in the file of the function: functions that call each other belong in one module. Importing
+The machine code is cached next to the module, or, if that folder is not writable, in numba's folder for the
+user (`NUMBA_CACHE_DIR` sets another). If neither is writable, every process compiles it again. Numba detects
+changes only in the file of the function, so functions that call each other belong in one module. Importing
 numba takes a second, so a module of compiled functions is imported by the function that needs it.
 """
 
@@ -18,11 +18,11 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _REORDERED = {"contract", "reassoc", "arcp", "nsz"}
-"""Freedom of the compiler with sums and products; infinity and NaN keep their meaning."""
+"""Permission to reorder sums and products; infinity and NaN keep their meaning."""
 
 
 class _Spare(FunctionCache):
-    """Machine code on disk that a calculation can do without: a full disk, a damaged file mean compiling."""
+    """An optional cache of machine code on disk: if the disk is full or a file is damaged, numba compiles."""
 
     @contextmanager
     def _guard_against_spurious_io_errors(self) -> Iterator[None]:
@@ -33,6 +33,6 @@ class _Spare(FunctionCache):
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Return the function as machine code; arguments are arrays, numbers and named tuples of these."""
     result: Callable[P, R] = njit(fastmath=_REORDERED, error_model="numpy")(function)
-    with suppress(RuntimeError):  # numba has no folder that it can write
+    with suppress(RuntimeError):  # numba has no writable folder
         result._cache = _Spare(function)  # type: ignore[attr-defined, no-untyped-call]
     return result

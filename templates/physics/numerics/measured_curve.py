@@ -1,7 +1,7 @@
 """Compare a measured curve with a calculated one: measured values at calculated angles, and the differences.
 
-Both are periodic. Between its points, and from the last to the first, a measurement is linear. Means are
-taken over the calculated angles with equal weights.
+Both are periodic. A measurement is interpolated linearly between its points, and from the last to the first.
+Means are taken over the calculated angles with equal weights.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 
 _NONE = np.array(np.nan)
-_SAME = 1e-9  # of a cycle
+_SAME = 1e-9  # tolerance as a fraction of a cycle
 
 
 def periodic(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
-    """Return values (…, M) at places [rad], (M,), moved by a shift [rad], read at theta [rad], (K,).
+    """Return values (…, M) at places [rad], (M,), shifted by an angle and interpolated at theta, (…, K).
 
-    (…, K).
+    All angles are in rad.
     """
     if not np.ndim(values):
         return _NONE
@@ -47,13 +47,13 @@ def _largest(difference: Array) -> Array:
 
 @units("rad", returns="1")
 def rises(angles: Array) -> Truth:
-    """Return whether these are one list of three angles or more that rise."""
+    """Return whether the angles are a single ascending list of three or more."""
     return np.ndim(angles) == 1 and np.size(angles) > 2 and bool(np.all(np.diff(angles) > 0))
 
 
 @units("rad", "rad", returns="1")
 def covers(angles: Array, cycle: Array) -> Truth:
-    """Return whether angles lie within one cycle and leave no gap above a quarter of it."""
+    """Return whether angles lie within one cycle and leave no gap larger than a quarter of it."""
     if np.ndim(angles) != 1 or np.size(angles) < 3:
         return True  # another rule reports it
     gaps = np.diff(angles, append=angles[0] + cycle)
@@ -68,7 +68,7 @@ def film_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Arr
 
 @units("m", returns="m", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_film(difference: Array) -> Array:
-    """Return the root of the mean square of a difference [m]."""
+    """Return the root mean square of a difference [m]."""
     return _root_mean_square(difference)
 
 
@@ -80,7 +80,7 @@ def mean_film(difference: Array) -> Array:
 
 @units("m", returns="m", latex=r"\max\left|{0}\right|")
 def largest_film(difference: Array) -> Array:
-    """Return the largest size of a difference [m]."""
+    """Return the largest magnitude of a difference [m]."""
     return _largest(difference)
 
 
@@ -92,7 +92,7 @@ def speed_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Ar
 
 @units("rad/s", returns="rad/s", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_speed(difference: Array) -> Array:
-    """Return the root of the mean square of a difference [rad/s]."""
+    """Return the root mean square of a difference [rad/s]."""
     return _root_mean_square(difference)
 
 
@@ -104,7 +104,7 @@ def mean_speed(difference: Array) -> Array:
 
 @units("rad/s", returns="rad/s", latex=r"\max\left|{0}\right|")
 def largest_speed(difference: Array) -> Array:
-    """Return the largest size of a difference [rad/s]."""
+    """Return the largest magnitude of a difference [rad/s]."""
     return _largest(difference)
 
 
@@ -116,7 +116,7 @@ def strain_at(theta: Array, places: Array, values: Array, cycle: Array, shift: A
 
 @units("1", returns="1", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_strain(difference: Array) -> Array:
-    """Return the root of the mean square of a difference [1]."""
+    """Return the root mean square of a difference [1]."""
     return _root_mean_square(difference)
 
 
@@ -128,5 +128,5 @@ def mean_strain(difference: Array) -> Array:
 
 @units("1", returns="1", latex=r"\max\left|{0}\right|")
 def largest_strain(difference: Array) -> Array:
-    """Return the largest size of a difference [1]."""
+    """Return the largest magnitude of a difference [1]."""
     return _largest(difference)

@@ -1,12 +1,12 @@
-r"""Newton steps for two coordinates that obey a periodic differential equation.
+"""Newton steps for two coordinates that obey a periodic differential equation.
 
-Backward differences of second order at all nodes of the cycle at once (BDF2, variable steps):
+Second-order backward differences at all nodes of the cycle at once (BDF2, variable steps):
 
 .. math:: a_0 e_k + a_1 e_{k-1} + a_2 e_{k-2} = f_k(e_k)
 
 A step solves the linearised equations of many cases together: one banded triangular system for all, in which
-the last two nodes of the previous cycle are unknown, and a system of four equations for these. Its solutions
-decay as those of a stiff equation should (L-stable for equal steps), and no run-in cycles are needed.
+the last two nodes of the previous cycle are unknown, and a system of four equations for these. The method is
+L-stable for equal steps, so stiff solutions decay as they should, and no run-in cycles are needed.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from scipy.linalg.lapack import dtbtrs
 from templates.core.arrays import Array
 
 _NEARLY = 1 + 1e-15
-"""Keeps a cycle that brings every disturbance back unchanged from being exactly singular."""
+"""Prevents an exactly singular matrix for a cycle that returns every disturbance unchanged."""
 
 
 def differences(steps: Array) -> Array:
@@ -25,25 +25,25 @@ def differences(steps: Array) -> Array:
 
 
 def imbalance(a: Array, e: Array, f: Array) -> Array:
-    """Return the residual of the equations, (2, C, K)."""
+    """Return the residuals of the equations, (2, C, K)."""
     return np.asarray(a[0] * e + a[1] * np.roll(e, 1, axis=-1) + a[2] * np.roll(e, 2, axis=-1) - f)
 
 
 def newton_step(a: Array, left: Array, slopes: Array) -> Array:
-    """Change of all nodes that removes an imbalance, (2, C, K).
+    """Return the change of all nodes that removes the residuals, (2, C, K).
 
     Parameters
     ----------
     a
-        (3, K) of `differences`.
+        (3, K) coefficients of `differences`.
     left
-        (2, C, K) of `imbalance`.
+        (2, C, K) residuals of `imbalance`.
     slopes
-        (2, 2, C, K) of f by e.
+        (2, 2, C, K) derivatives of f by e.
 
     Returns
     -------
-    (2, C, K); not finite for cases that have no such change.
+    (2, C, K); not finite for cases in which the system is singular.
     """
     inverse = _inverse(a[0], slopes)
     change = _solved(a, inverse, left)
@@ -63,7 +63,7 @@ def _inverse(a_0: Array, slopes: Array) -> Array:
 def _solved(a: Array, inverse: Array, left: Array) -> Array:
     """Return e_k = G_1 e_(k−1) + G_2 e_(k−2) + q_k.
 
-    Run through from unit values before the cycle, then closed.
+    The recurrence is run from unit values before the cycle, then closed.
     """
     G_1, G_2 = -a[1] * inverse, -a[2] * inverse
     cases, nodes = left.shape[1:]
@@ -81,7 +81,7 @@ def _solved(a: Array, inverse: Array, left: Array) -> Array:
 
 
 def _closed(end: Array) -> Array:
-    """Return the values before the cycle that come back at its end, (C, 4, 1)."""
+    """Return the values before the cycle that recur at its end, (C, 4, 1)."""
     return np.asarray(np.linalg.solve(_NEARLY * np.eye(4) - end[:, :, 1:], end[:, :, :1]))
 
 
@@ -91,7 +91,7 @@ def _of_node(G: Array, node: int) -> Array:
 
 
 def _bands(G_1: Array, G_2: Array) -> Array:
-    """Return the lower triangular matrix of all cases, as LAPACK stores bands: (6, 2 C K)."""
+    """Return the lower triangular matrix of all cases in LAPACK's band storage: (6, 2 C K)."""
     cases, nodes = G_1.shape[2:]
     bands = np.zeros((6, cases, nodes, 2))
     bands[0] = 1

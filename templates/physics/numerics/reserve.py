@@ -1,4 +1,4 @@
-"""Reserves to limits that a user may set."""
+"""Margins to limits that a user may set."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from templates.core.arrays import Array, Truth
 
 
 def above(limit: Array, value: Callable[[], Array]) -> Truth:
-    """Return whether a value is not below a limit; without a limit the rule holds."""
+    """Return whether a value is at or above a limit; true without a limit."""
     none = np.isnan(limit)
     return True if np.all(none) else none | (value() >= limit)
 
 
 def below(limit: Array, value: Callable[[], Array]) -> Truth:
-    """Return whether a value is not above a limit; without a limit the rule holds."""
+    """Return whether a value is at or below a limit; true without a limit."""
     none = np.isnan(limit)
     return True if np.all(none) else none | (value() <= limit)

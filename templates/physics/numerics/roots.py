@@ -1,7 +1,7 @@
 """Roots of many equations at once, each inside its bracket.
 
-New versions use `root_between`, which calls SciPy. Released versions keep `bracketed_root`, which uses the
-same method, because their results are frozen to the last digits.
+New versions use `root_between`, which calls SciPy. Released versions use `bracketed_root` with the same
+method, because their results are frozen to the last digits.
 
 References
 ----------
@@ -20,13 +20,13 @@ _STEPS = 200
 
 
 def root_between(f: Callable[..., Array], low: Array, high: Array, *parameters: Array) -> Array:
-    """Find x in [low, high] with f(x, *parameters) = 0 by SciPy's `find_root`, elementwise.
+    """Return x in [low, high] with f(x, *parameters) = 0, elementwise, by SciPy's `find_root`.
 
     Parameters
     ----------
     f
-        A function of arrays, elementwise. It is called for the elements that are not solved yet, so what
-        differs between elements must come in as a parameter, not by a closure.
+        An elementwise function of arrays. It is called only for elements that are not solved yet, so values
+        that differ between elements must be passed as parameters, not by a closure.
     low, high
         The brackets; f has opposite signs at their ends.
     parameters
@@ -34,19 +34,19 @@ def root_between(f: Callable[..., Array], low: Array, high: Array, *parameters: 
 
     Returns
     -------
-    x; NaN where the bracket holds no change of sign or f is not finite.
+    x; NaN where the bracket contains no change of sign or f is not finite.
     """
     result = find_root(f, (np.asarray(low, float), np.asarray(high, float)), args=parameters)
     return np.where(result.success, result.x, np.nan)[()]
 
 
 def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, tolerance: float = 4e-16) -> Array:
-    """Find x in [low, high] with f(x) = 0 by inverse quadratic interpolation or bisection, elementwise.
+    """Return x in [low, high] with f(x) = 0, elementwise, by inverse quadratic interpolation or bisection.
 
     Parameters
     ----------
     f
-        a function of an array like low, elementwise.
+        An elementwise function of an array with the shape of low.
     low, high
         The brackets; f has opposite signs at their ends.
     tolerance
@@ -54,7 +54,7 @@ def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, toleran
 
     Returns
     -------
-    x; NaN where the bracket holds no change of sign.
+    x; NaN where the bracket contains no change of sign.
     """
     a, b = np.array(high, float), np.array(low, float)
     fa, fb = f(a), f(b)
@@ -79,7 +79,7 @@ def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, toleran
 
 
 def _interpolation(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) -> Array:
-    """Share of the way from a to b at which the inverse parabola vanishes, or half if it is not trusted."""
+    """Return the fraction from a to b at which the inverse parabola vanishes, or 1/2 if unreliable."""
     with np.errstate(all="ignore"):
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
         trusted = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)

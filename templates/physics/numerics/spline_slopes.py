@@ -1,6 +1,6 @@
-"""Values and slopes of cubic splines over two coordinates, where each point uses its own surface.
+"""Values and derivatives of cubic splines over two coordinates, where each point uses its own surface.
 
-These are the splines of `uniform_spline` with slopes added for Newton's method.
+These are the splines of `uniform_spline`, with derivatives for Newton's method.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ _OFFSETS = np.arange(4)
 
 
 def at_thirds(coefficients: Array, third: Axis, places: Array) -> Array:
-    """Coefficients of the surfaces that are left of a volume at places of its third axis, (places, ...)."""
+    """Return the coefficients of the surfaces of a volume at places on its third axis, (places, ...)."""
     cells, weights = third.weights(places)
     pieces = coefficients[:, :, cells[:, None] + _OFFSETS]
     return np.asarray(np.einsum("ijpkf,pk->pijf", pieces, weights))
@@ -25,22 +25,22 @@ def at_thirds(coefficients: Array, third: Axis, places: Array) -> Array:
 def surfaces_with_slopes(
     coefficients: Array, which: NDArray[np.intp], first: Axis, second: Axis, x: Array, y: Array
 ) -> Array:
-    """Evaluate all functions and their slopes at points.
+    """Return all functions and their derivatives at points.
 
     Parameters
     ----------
     coefficients
         (surfaces, n + 2, m + 2, functions).
     which
-        (N,) surface of each point.
+        (N,) index of the surface of each point.
     first, second
         The nodes along the two axes.
     x, y
-        (N,) places.
+        (N,) coordinates of the points.
 
     Returns
     -------
-    (3, functions, N): values, slopes by x, slopes by y.
+    (3, functions, N): values, derivatives by x, derivatives by y.
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
     values = np.empty((3, flat.shape[1], x.size))
@@ -59,7 +59,7 @@ def _block(
     x: Array,
     y: Array,
 ) -> Array:
-    """Return sixteen products of B-splines a point and function, as the rows of sparse matrices."""
+    """Return the sixteen products of B-splines for each point and function as rows of sparse matrices."""
     row, weight_x = first.weights(x)
     column, weight_y = second.weights(y)
     slope_x, slope_y = _slopes(first, x, row), _slopes(second, y, column)
@@ -74,7 +74,7 @@ def _block(
 
 
 def _slopes(axis: Axis, x: Array, cell: NDArray[np.int32]) -> Array:
-    """Return the slopes of the four B-splines at x, (N, 4)."""
+    """Return the derivatives of the four B-splines at x, (N, 4)."""
     t = (x - axis.first) / axis.step - cell
     u = 1 - t
     inner = t * (1.5 * t - 2), u * (2 - 1.5 * u)

@@ -30,9 +30,9 @@ class Axis:
         return np.linspace(self.first, self.first + self.step * (self.nodes - 1), self.nodes)
 
     def weights(self, x: Array, cell: NDArray[np.int32] | None = None) -> tuple[NDArray[np.int32], Array]:
-        """Return the first of the four B-splines at x, and their values, (N, 4).
+        """Return the index of the first of the four B-splines at x, and their values, (N, 4).
 
-        Beyond a cell its cubic goes on.
+        Outside the axis, the cubic of the last cell is continued.
         """
         place = (x - self.first) / self.step
         if cell is None:
@@ -47,7 +47,7 @@ class Axis:
 
 
 def spline_coefficients(values: Array) -> Array:
-    """Return B-spline coefficients, two more than values along the first axis, that interpolate them."""
+    """Return the B-spline coefficients, two more than values along the first axis, that interpolate."""
     n = len(values)
     system = np.zeros((n + 2, n + 2))
     for k in range(n):
@@ -59,12 +59,12 @@ def spline_coefficients(values: Array) -> Array:
 
 
 def surface_coefficients(values: Array) -> Array:
-    """Return the same along the first two axes of (n, m, functions)."""
+    """Return the B-spline coefficients along the first two axes of (n, m, functions)."""
     return spline_coefficients(spline_coefficients(values).swapaxes(0, 1)).swapaxes(0, 1)
 
 
 def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) -> Array:
-    """Evaluate all functions at points.
+    """Return all functions at points.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) 
     first, second
         The nodes along the two axes.
     x, y
-        (N,) places.
+        (N,) coordinates of the points.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) 
 
 
 def line(coefficients: Array, second: Axis, y: Array) -> Array:
-    """B-spline coefficients along the first axis of one function at places of the second, (N, n + 2)."""
+    """Return the coefficients along the first axis of one function at places on the second, (N, n + 2)."""
     column, weight = second.weights(y)
     indices = (column[:, None] + np.arange(4)).ravel()
     shape = y.size, second.nodes + 2
@@ -98,7 +98,7 @@ def line(coefficients: Array, second: Axis, y: Array) -> Array:
 
 
 def _block(flat: Array, first: Axis, second: Axis, x: Array, y: Array) -> Array:
-    """Return sixteen products of B-splines a point, as the rows of a sparse matrix."""
+    """Return the sixteen products of B-splines for each point as rows of a sparse matrix."""
     row, weight_x = first.weights(x)
     column, weight_y = second.weights(y)
     width = second.nodes + 2

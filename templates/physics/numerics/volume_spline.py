@@ -14,7 +14,7 @@ Axes = tuple[Axis, Axis, Axis]
 
 
 def volume(coefficients: Array, axes: Axes, places: Array) -> Array:
-    """Evaluate all functions at points.
+    """Return all functions at points.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def volume(coefficients: Array, axes: Axes, places: Array) -> Array:
     axes
         The nodes along the three axes.
     places
-        (3, N).
+        (3, N) coordinates of the points.
 
     Returns
     -------
@@ -39,13 +39,13 @@ def volume(coefficients: Array, axes: Axes, places: Array) -> Array:
 
 
 def at_third(coefficients: Array, third: Axis, place: float) -> Array:
-    """Return the coefficients of the surface that is left of a volume at one place of its third axis."""
+    """Return the coefficients of the surface of a volume at one place on its third axis."""
     cell, weight = third.weights(np.array([place]))
     return np.asarray(np.einsum("ijkf,k->ijf", coefficients[:, :, cell[0] : cell[0] + 4], weight[0]))
 
 
 def _block(flat: Array, shape: tuple[int, ...], axes: Axes, places: Array) -> Array:
-    """Return sixty-four products of B-splines a point, as the rows of a sparse matrix."""
+    """Return the sixty-four products of B-splines for each point as rows of a sparse matrix."""
     (i, u), (j, v), (k, w) = (axis.weights(x) for axis, x in zip(axes, places, strict=True))
     size = i.size
     offsets = (_FOUR[:, None, None] * shape[1] + _FOUR[:, None]) * shape[2] + _FOUR

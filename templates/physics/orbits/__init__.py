@@ -1,1 +1,1 @@
-"""Journals under loads that change over a cycle."""
+"""Journals under loads that vary over a cycle."""

@@ -13,14 +13,14 @@ from templates.core.language.declare import units
 from templates.physics.numerics.arrays import largest_load as largest_load
 
 FEWEST, MOST = 12, 3600
-"""Angles of a cycle."""
+"""Smallest and largest number of angles in a cycle."""
 NEARLY_HALF = 0.3
-"""By how much a speed may differ from half the crank's, over that [-]."""
+"""Accepted difference of a speed from half the crank's, relative to that [-]."""
 
 
 @dataclass(frozen=True)
 class Duty:
-    """What a bearing has to do over a cycle, SI; axes before that of the cycle are points."""
+    """Loads and speeds of a bearing over a cycle, in SI; the axes before that of the cycle are points."""
 
     angle: Array
     """(N,) crank angles [rad]."""
@@ -48,20 +48,21 @@ class Duty:
 
 @dataclass(frozen=True)
 class CycleFilm:
-    """What the film does."""
+    """The results of the film over the cycle."""
 
     P: Array
     """Largest pressure over the bearing, (..., N)."""
     P_max: Array
     """The same over the cycle, (...)."""
     P_angle: Array
-    """Its crank angle [rad]."""
+    """Crank angle of the largest pressure [rad]."""
     loss: Array
     """Power 2 psi/(eta Omega² B D²), mean over the cycle, (...)."""
     side_flow: Array
-    """Oil that leaves at both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
+    """Oil flow out of both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
     feed_flow: Array
-    """What the supply pressure drives from a groove besides, likewise; 0 where `side_flow` has it."""
+    """Additional flow from a groove driven by the supply pressure, same unit; 0 if `side_flow` includes it.
+    """
 
 
 def weights(angle: Array, period: float) -> Array:
@@ -71,10 +72,10 @@ def weights(angle: Array, period: float) -> Array:
 
 
 def cycle_of(angle: Array) -> float:
-    """Return the cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi; NaN if neither, or not rising.
+    """Return the cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi.
 
-    The last angle is not the first one again, and from it to the end of the cycle is no farther than twice
-    the largest other step.
+    The result is NaN if they cover neither or do not ascend. The last angle must not repeat the first, and
+    its distance to the end of the cycle must be at most twice the largest other step.
     """
     if angle.ndim != 1 or not FEWEST <= angle.size <= MOST:
         return float("nan")
@@ -88,25 +89,26 @@ def cycle_of(angle: Array) -> float:
 
 @units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
-    """Return the same as a number for a formula."""
+    """Return the result of `cycle_of` as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]
 
 
 @dataclass(frozen=True)
 class LoadCourse:
-    """How a load varies over the cycle; dimensionless, (...)."""
+    """Measures of how a load varies over the cycle; dimensionless, (...)."""
 
     peak: Array
-    """Its largest size over its mean size."""
+    """Largest magnitude over mean magnitude."""
     steadiness: Array
-    """Size of its mean over its mean size: 1 where it keeps its direction."""
+    """Magnitude of the mean vector over the mean magnitude: 1 if the direction is constant."""
     at_half_speed: Array
-    """Share of the cycle in which its direction turns at 0.2 to 0.8 of the crank's speed, about half of it: a
-    film bears no load that does so for ever."""
+    """Fraction of the cycle in which the load rotates at 0.2 to 0.8 of the crank's speed, about half of it:
+    no film carries a load that does so permanently.
+    """
 
 
 def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:
-    """Return how a load [N], (..., N), varies over crank angles (N,) [rad]."""
+    """Return measures of how a load [N], (..., N), varies over crank angles (N,) [rad]."""
     period = cycle_of(angle)
     weight, size = weights(angle, period) / period, np.hypot(F_x, F_y)
     mean = size @ weight
@@ -122,5 +124,5 @@ def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:
 
 @units("rad/s", returns="rad/s", latex=r"\left|\overline{{{0}}}\right|")
 def mean_speed(speed: Array) -> Array:
-    """Return the size of the mean of a speed over the cycle [rad/s]."""
+    """Return the magnitude of the mean of a speed over the cycle [rad/s]."""
     return np.abs(speed if np.ndim(speed) == 0 else np.mean(speed, axis=-1))

@@ -1,8 +1,8 @@
-"""The journal velocity under a load, by the full solution: pressure, film and velocity solved together.
+"""The journal velocity under a load, by the full solution: pressure, film extent and velocity together.
 
 The film and its boundary condition are those of `moving_film`; there the motion is given and the load
-follows, here the load is given. On an assumed film extent the pressure is linear in the velocity, so the load
-gives the velocity, and the pressure then determines the extent. The range of validity is that of
+follows, here the load is given. For an assumed film extent the pressure is linear in the velocity, so the
+load gives the velocity, and the pressure then determines the extent. The range of validity is that of
 `moving_film`. The mesh is graded to the gap in the direction of the load, so that separating motion is
 resolved as well as closing motion.
 """
@@ -24,38 +24,38 @@ _MOST_STEPS = 200
 
 @dataclass(frozen=True)
 class Motion:
-    """What a film does under a load of one unit, F psi²/(B D eta) = 1."""
+    """The motion of a journal and its film under a unit load, F psi²/(B D eta) = 1."""
 
     velocity: Array
     """(2,) mobility M: d(eps)/dt along the line of centres and ahead of it [-]."""
     P_max: float
     """Largest pressure over the mean one, p_max B D/F [-]."""
     side_flow: float
-    """Oil that leaves at both ends over what the journal displaces, Q/(B D v) [-]."""
+    """Oil flow out of both ends over the displaced flow, Q/(B D v) [-]."""
     film: Mask
     """(n + 1, m + 1) nodes inside the film."""
 
 
 @dataclass(frozen=True)
 class _UnitVelocityFilm:
-    """The discrete film of unit velocities along the line of centres and ahead of it."""
+    """The discrete film for unit velocities along the line of centres and ahead of it."""
 
     mesh: Mesh
     equations: Equations
-    """Balances of flow, their source still to be given."""
+    """Flow balances without their source."""
     matrix: BandedMatrix
     sources: Array
-    """(n + 1, 2) what each velocity brings to a node, per unit zeta."""
+    """(n + 1, 2) flow that each unit velocity brings to a node, per unit zeta."""
     brought: Array
     """(n + 1, m + 1, 2) the same over the nodes' cells."""
     may: Mask
-    """(n + 1, m + 1) nodes that may bear pressure."""
+    """(n + 1, m + 1) mask of nodes that may have pressure."""
 
 
 def film_mobility(
     eps: float, ratio: float, load_direction: float, around: int = 128, across: int = 16
 ) -> Motion:
-    """Solve for the motion.
+    """Return the motion of the journal.
 
     Parameters
     ----------
@@ -66,9 +66,9 @@ def film_mobility(
     load_direction
         Angle of the load on the journal from the narrowest gap, −pi … pi [rad].
     around
-        Intervals around, even.
+        Number of circumferential intervals, even.
     across
-        Intervals across half the width.
+        Number of intervals over half the width.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def film_mobility(
 
 
 def _nested(eps: float, ratio: float, load_direction: float, mesh: Mesh) -> Motion:
-    """Solve with the film taken from the next coarser mesh, or at first as the half that faces the load."""
+    """Return the solution, started from the next coarser mesh, or first from the half that faces the load."""
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
     if min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 4 == m % 2 == 0:
         start = finer(_nested(eps, ratio, load_direction, mesh.coarser()).film)
@@ -95,7 +95,7 @@ def _nested(eps: float, ratio: float, load_direction: float, mesh: Mesh) -> Moti
 
 
 def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _UnitVelocityFilm:
-    """Set up the balances of flow."""
+    """Return the flow balances for unit velocities."""
     H, H_mid = gap(mesh.phi, eps), gap(midpoints(mesh.phi), eps)
     equations = replace(film_equations(mesh, ratio, H, H_mid, np.zeros_like(mesh.phi)), ring=True)
     matrix = banded(equations)
@@ -108,7 +108,7 @@ def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _UnitVelocityFilm:
 
 
 def _settled(system: _UnitVelocityFilm, load_direction: float, film: Mask) -> Motion:
-    """Alternate between the velocity that bears the load and the film of that velocity until both agree."""
+    """Return the converged pair of velocity and film: each is computed from the other in turn."""
     film = system.may & film
     load = np.array([np.cos(load_direction), np.sin(load_direction)])
     for _ in range(_MOST_STEPS):
@@ -133,7 +133,7 @@ def _forces(mesh: Mesh, pressures: Array) -> Array:
 
 
 def _crest(P: Array) -> float:
-    """Return the largest pressure on the ring, by a parabola through the three nodes about it."""
+    """Return the largest pressure on the ring, from a parabola through the three nodes around it."""
     k = int(P.argmax())
     before, top, after = P[k - 1], P[k], P[(k + 1) % P.size]
     bend = 2 * top - before - after

@@ -1,11 +1,11 @@
-r"""Mobility of a bearing with a circumferential groove in its sleeve, over which two lands carry the load.
+r"""Mobility of a bearing with a circumferential groove in its sleeve, with two lands that carry the load.
 
 .. math:: \vec M = (1-s)\,\vec M(b) + s\,\frac{\vec M\left(b(1-g)/2\right)}{1-g}
 
-b is the width ratio, g the groove's width over the bearing's, and s the share of the 90° around the load's
-direction that the groove covers. M is the finite bearing's mobility (`mobility_map`). With s = 1 this is
-exact: two bearings side by side, each with half of the land width, carry half the load each. For s between 0
-and 1 the formula is a blend.
+b is the width ratio, g the groove's width over that of the bearing, and s the fraction of the 90° sector
+around the load's direction that the groove covers. M is the mobility of the finite bearing (`mobility_map`).
+With s = 1 this is exact: two adjacent bearings, each as wide as a land, carry half the load each. For s
+between 0 and 1 the formula is a blend.
 
 The film is always full of oil, so starvation cannot occur. `benchmarks/film_cycle_ensemble.py` compares it
 with level `supplied`.
@@ -30,30 +30,30 @@ from templates.physics.orbits.mobility_map import mapped_film_under_load
 from templates.physics.orbits.rotation import PartRotation
 
 SECTOR = np.pi / 4
-"""Half of the sector about the load's direction in which the groove counts [rad]."""
+"""Half of the sector around the load's direction in which the groove has an effect [rad]."""
 _FINENESSES = 1, 4
-"""Factors by which the finest rings of `periodic_orbit` are finer than usual."""
+"""Refinement factors of the finest rings of `periodic_orbit`."""
 _HALVINGS = 12
-"""Limit on how often such a ring is thinned to every other node."""
+"""Largest number of times that a ring may be reduced to every other node."""
 
 
 @dataclass(frozen=True)
 class Groove:
-    """A circumferential groove in the sleeve midway across, of some cases."""
+    """A circumferential groove in the sleeve, centred axially, for some cases."""
 
     share: Array
-    """(C,) its width over that of the bearing; 0 is none [-]."""
+    """(C,) width of the groove over that of the bearing; 0 without a groove [-]."""
     start: Array
-    """(C,) where it begins, from the sleeve's axis in the sense x to y [rad]."""
+    """(C,) angle at which the groove begins, from the sleeve's axis in the sense x to y [rad]."""
     extent: Array
-    """(C,) how far it goes in that sense; 2 pi goes all around [rad]."""
+    """(C,) extent of the groove in that sense; 2 pi for a full circle [rad]."""
 
     def of(self, cases: Mask) -> "Groove":
         """Return the same object for a subset of the cases."""
         return Groove(self.share[cases], self.start[cases], self.extent[cases])
 
     def covers(self, direction: Array, half: float = SECTOR) -> Array:
-        """Return the share of a sector about directions in the sleeve, (C, K) [rad], that it covers [-]."""
+        """Return the covered fraction of a sector around directions in the sleeve, (C, K) [rad]; [-]."""
         extent = self.extent[:, None]
 
         def up_to(angle: Array) -> Array:
@@ -65,13 +65,13 @@ class Groove:
         return np.where(self.share[:, None] > 0, covered, 0.0)
 
     def land(self, ratio: Array) -> Array:
-        """Return the width over diameter of each of the two lands beside it, (C,) [-]."""
+        """Return the width over diameter of each of the two lands, (C,) [-]."""
         return np.asarray(ratio * (1 - self.share) / 2)
 
 
 @dataclass(frozen=True)
 class GroovePassage:
-    """A load that passes a groove: the load of some cases, the groove, and how the sleeve turns."""
+    """A load that passes a groove: the loads of some cases, the groove, and the rotation of the sleeve."""
 
     load: CyclicLoad
     sleeve: PartRotation
@@ -84,9 +84,8 @@ class GroovePassage:
     def with_distinct_rings(self) -> tuple["GroovePassage", NDArray[np.intp]]:
         """Return the same at angles whose rings differ in their number of nodes.
 
-        And where the old angles are.
-
-        With equal steps they do. With others the angles are divided until the finest ring is the only one.
+        The second result are the indices of the old angles. Equal steps need no change. Otherwise the angles
+        are divided until the finest ring is the only one.
         """
         steps = np.diff(self.load.angle, append=self.load.angle[0] + self.load.period)
         if np.ptp(steps) < 1e-9:
@@ -96,15 +95,15 @@ class GroovePassage:
         return GroovePassage(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
 
     def ring(self, finer: int) -> tuple[Ring, NDArray[np.intp]]:
-        """Return the finest nodes, the sleeve's swing as the third row of their load.
+        """Return the finest nodes, with the swing of the sleeve as the third row of their load.
 
-        Which are the load's own.
+        The second result marks the load's own angles.
         """
         rows = np.concatenate([self.load.S, self.sleeve.swing[None]])
         return ring_of(replace(self.load, S=rows), finer)
 
     def covered(self, nodes: int) -> Array:
-        """Return the share s on the ring of `periodic_orbit` that has this number of nodes, (C, nodes) [-].
+        """Return the fraction s on the ring of `periodic_orbit` with this number of nodes, (C, nodes) [-].
 
         Raises
         ------
@@ -122,31 +121,31 @@ class GroovePassage:
 
 
 class GroovedLaw:
-    """The mobility beside a groove; a `MobilityLaw`.
+    """The mobility with a groove; a `MobilityLaw`.
 
-    It recognises the ring on which it is asked by the number of nodes: `GroovePassage.with_distinct_rings`.
+    It identifies the ring of nodes of a call by the number of nodes: see `GroovePassage.with_distinct_rings`.
     """
 
     def __init__(self, ratio: Array, passing: GroovePassage) -> None:
-        """Take the widths B/D of the cases, (C,), those of their lands within the map [-]."""
+        """Store the widths B/D of the cases, (C,), whose lands must be within the map [-]."""
         self.ratio, self.passing = ratio, passing
         self.whole, self.lands = MapLaw(ratio), MapLaw(passing.groove.land(ratio))
         self._covered: dict[int, Array] = {}
 
     def of(self, cases: Mask) -> "GroovedLaw":
-        """Return the same law of fewer cases."""
+        """Return the same law for a subset of the cases."""
         fewer = GroovedLaw(self.ratio[cases], self.passing.of(cases))
         fewer._covered = {nodes: covered[cases] for nodes, covered in self._covered.items()}
         return fewer
 
     def covered(self, nodes: int) -> Array:
-        """Return the share s on a ring, kept."""
+        """Return the fraction s on a ring, cached."""
         if nodes not in self._covered:
             self._covered[nodes] = self.passing.covered(nodes)
         return self._covered[nodes]
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """Return M and its slopes on a ring of the orbit."""
+        """Return M and its derivatives on a ring of the orbit."""
         s, left = self.covered(xi.shape[-1]), 1 - self.passing.groove.share[:, None]
         (M, slopes), (M_land, slopes_land) = self.whole(xi, eta), self.lands(xi, eta)
         return (1 - s) * M + s / left * M_land, (1 - s) * slopes + s / left * slopes_land
@@ -155,17 +154,16 @@ class GroovedLaw:
 def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
     """Return the load number that a supply pressure supports at rest in a groove and over its lands.
 
-    0 without one.
-
-    Over the lands the pressure falls evenly to that of the ends: the groove counts with its width and half of
-    theirs. Of an arc only the part along its middle is left, P (1 + g)/2 sin(extent/2).
+    It is 0 without a groove. Over the lands the pressure falls linearly to that of the ends, so the groove
+    counts with its width and half that of the lands. For an arc only the component along its middle remains,
+    P (1 + g)/2 sin(extent/2).
 
     Parameters
     ----------
     share
-        Width of the groove over that of the bearing, g, 0 where there is none [-].
+        Width of the groove over that of the bearing, g, 0 without a groove [-].
     extent
-        How far it goes around [rad].
+        Circumferential extent of the groove [rad].
     pressure
         P = p psi²/(eta Omega) [-].
 
@@ -179,16 +177,16 @@ def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
 
 
 def lifting(lift: Array, sleeve: PartRotation, groove: Groove, angle: Array) -> Array:
-    """Return the force of the supply pressure on the journal, against which the load presses, (2, C, N) [-].
+    """Return the force of the supply pressure on the journal, against the load, (2, C, N) [-].
 
     Parameters
     ----------
     lift
-        (C,) its size, a load number [-].
+        (C,) magnitude of the force, a load number [-].
     sleeve
-        How the sleeve turns.
+        Rotation of the sleeve.
     groove
-        Its middle is where the force comes from.
+        The groove; the force comes from its middle.
     angle
         (N,) crank angles [rad].
     """
@@ -199,7 +197,7 @@ def lifting(lift: Array, sleeve: PartRotation, groove: Groove, angle: Array) -> 
 
 
 def grooved_orbit(passing: GroovePassage, ratio: Array) -> Orbit:
-    """Return the periodic orbit of each case by the mobility beside its groove; NaN where none was found.
+    """Return the periodic orbit of each case by the mobility with its groove; NaN where none was found.
 
     Parameters
     ----------
@@ -216,7 +214,7 @@ def grooved_orbit(passing: GroovePassage, ratio: Array) -> Orbit:
 def grooved_film_under_load(
     xi: Array, eta: Array, ratio: Array, passing: GroovePassage
 ) -> tuple[Array, Array]:
-    """Return what the film beside a groove does, at the load's angles (C, N), in Booker's frame [-].
+    """Return the results of the film with a groove at the load's angles (C, N), in Booker's frame [-].
 
     Parameters
     ----------
@@ -229,8 +227,8 @@ def grooved_film_under_load(
 
     Returns
     -------
-    Mobility M, (2, C, N), and as `mapped_film_under_load` largest pressure p_max B D/F and side flow
-    Q/(B D v), (2, C, N); the groove's own flow is left out.
+    Mobility M, (2, C, N), and as in `mapped_film_under_load` largest pressure p_max B D/F and side flow
+    Q/(B D v), (2, C, N); the flow from the groove itself is excluded.
     """
     x, y = passing.load.S
     turned = passing.sleeve.at(passing.load.angle, passing.sleeve.swing)

@@ -4,12 +4,12 @@ r"""The orbit of a journal under a periodic load, by the mobility method; many c
     \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
 
 theta is the crank angle, which increases with Omega; the load on the journal is linear between its points.
-The film is massless and always full where it carries, so its history does not matter. All nodes of the cycle
-are solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
-of Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and
-a quarter of that where the error bound of the smallest gap is above 0.2 per cent. The intervals of the load
-are halved until they are short enough: the nodes, the answer and its bound do not change if the same load is
-given at twice as many angles.
+The film is massless and always full where it carries load, so it has no memory. All nodes of the cycle are
+solved at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance of
+Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and a
+quarter of that if the error bound of the smallest gap exceeds 0.2 per cent. The intervals of the load are
+halved until they are short enough: nodes, result and bound do not change if the same load is given at twice
+as many angles.
 
 References
 ----------
@@ -29,33 +29,33 @@ from templates.physics.orbits.step_bound import least_between, step_bound
 LARGEST_STEP = np.radians(1.0)
 """The largest step of the finest ring of nodes [rad]."""
 TOLERANCE = 1e-5
-"""Largest change over the gap by the last Newton step; it leaves the square, 1e-9 or so [-]."""
+"""Largest change over the gap by the last Newton step; by quadratic convergence about 1e-9 is left [-]."""
 _ROUGH = 1e-3
-"""The same on coarser rings, which only give a start."""
+"""The same limit on coarser rings, which only give an initial guess [-]."""
 THINNEST = 2e-6
-"""Gap 1 − eps below which a film is taken to bear nothing: the mobility map ends at half of it [-]."""
+"""Gap 1 − eps below which a film counts as carrying no load: the mobility map ends at half of it [-]."""
 
 _COARSEST = 64
 _LAST = 2
-"""Stride up to which a case that has not settled on a coarser ring is tried again from the start."""
+"""Stride up to which a case that has not converged on a coarser ring is tried again from the start."""
 _MOST_STEPS = 60
 _THINNER, _LONGEST = 0.25, 0.7
-"""A Newton step leaves this share of the gap, and is no longer than this eccentricity."""
+"""Fraction of the gap that a Newton step must leave, and its largest length in eccentricity."""
 _STUCK = 0.1
-"""A journal at the wall that moves less than this, over its gap, stays there."""
+"""A journal at the wall that moves by less than this, relative to its gap, is stuck."""
 ROUGHEST = 2e-3
-"""Bound of the relative error of the smallest gap, beyond which the steps are shortened [-]."""
+"""Bound of the relative error of the smallest gap above which the steps are shortened [-]."""
 UNKNOWN = 0.1
-"""The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
+"""The same bound above which there is no orbit: its film may be an artefact of the steps [-]."""
 _FINER = 4
-"""Factor on the number of steps: where the film is thin, a degree is a long time."""
+"""Factor on the number of steps where the film is thin."""
 _BLOCK = 1 << 16
-"""Nodes of all cases solved together."""
+"""Most nodes of all cases that are solved together."""
 
 
 @dataclass(frozen=True)
 class CyclicLoad:
-    """A load on the journal over one cycle, in a frame that may turn itself."""
+    """A load on the journal over one cycle, in a frame that may rotate."""
 
     angle: Array
     """(N,) rising crank angles [rad]."""
@@ -80,19 +80,20 @@ class Orbit:
     least_gap: Array
     """(C,) smallest 1 − |eps| over the cycle, between the load's angles too [-]."""
     least_angle: Array
-    """(C,) its crank angle [rad]."""
+    """(C,) crank angle of the smallest gap [rad]."""
     step_error: Array
-    """(C,) relative error of the smallest gap by the step, from its change at the nodes that two rings share;
-    no bound, see `step_bound`; NaN where it is not measured [-]."""
+    """(C,) relative error of the smallest gap due to the step, from its change at the nodes that two rings
+    share; not a bound, see `step_bound`; NaN if not measured [-].
+    """
     between: Array
     """(C,) smallest gap between the nodes, by a parabola through three of them [-]."""
     step_bound: Array
-    """(C,) bound of the relative error of `between` by the step, see `step_bound`; NaN where unknown [-]."""
+    """(C,) bound of the relative error of `between` due to the step, see `step_bound`; NaN if unknown [-]."""
 
 
 @dataclass(frozen=True)
 class Ring:
-    """Nodes over the cycle, with load and speed there."""
+    """Nodes over the cycle, with the load and speed at each."""
 
     place: Array
     """(K,) crank angles [rad]."""
@@ -112,7 +113,7 @@ class Ring:
         return Ring(self.place[part], self.period, self.S[..., part], self.w[..., part])
 
     def of(self, cases: Mask) -> "Ring":
-        """Return the same nodes of fewer cases."""
+        """Return the same nodes for a subset of the cases."""
         return Ring(self.place, self.period, self.S[:, cases], self.w[cases])
 
 
@@ -122,7 +123,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
     Parameters
     ----------
     load
-        The cycle; a case without any load has no orbit of its own and is NaN.
+        The cycle; a case with zero load has no unique orbit and gives NaN.
     law
         Mobility of the same cases.
     """
@@ -148,14 +149,14 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
 
 
 def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
-    """Return the number of steps into which each interval between the load's angles is halved, (N,)."""
+    """Return the number of steps into which each interval between the load's angles is divided, (N,)."""
     widths = np.diff(load.angle, append=load.angle[0] + load.period)
     halvings = np.ceil(np.log2(finer * widths / LARGEST_STEP) - 1e-6)
     return (1 << np.maximum(0, halvings).astype(np.intp)).astype(np.intp)
 
 
 def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
-    """Return the finest nodes, and which of them are the load's own."""
+    """Return the finest nodes, and a mask of those at the load's own angles."""
     counts = node_counts(load, finer)
     own = np.cumsum(counts) - counts
     interval = np.repeat(np.arange(counts.size), counts)
@@ -171,7 +172,7 @@ def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
 
 
 def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: int) -> None:
-    """Enter the orbits of those cases of a part that settle."""
+    """Store the orbits of those cases of a part that converge."""
     if not part.any():
         return
     ring, own = ring_of(load.of(part), finer)
@@ -188,11 +189,10 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:
-    """Return orbits on the finest ring, from coarser ones.
+    """Return the orbits on the finest ring, started from coarser ones, and further results.
 
-    Which settled, and the error of the gap at the nodes.
-
-    And the smallest gaps between the nodes of every ring, NaN where it did not settle, the finest last.
+    These are a mask of converged cases, the error of the gap at the nodes, and the smallest gaps between the
+    nodes of every ring, the finest last; NaN where a ring did not converge.
     """
     stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
     tolerance = _ROUGH if stride > 1 else TOLERANCE
@@ -220,7 +220,7 @@ def _between(ring: Ring, e: Array, settled: Mask) -> Array:
 
 
 def _halved(e: Array, nodes: int) -> Array:
-    """Return the values on a ring with a node midway in every step."""
+    """Return the values on a ring with an additional node in the middle of every step."""
     finer = np.empty((*e.shape[:-1], nodes))
     finer[..., ::2] = e
     finer[..., 1::2] = ((e + np.roll(e, -1, axis=-1)) / 2)[..., : nodes // 2]
@@ -228,7 +228,7 @@ def _halved(e: Array, nodes: int) -> Array:
 
 
 def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
-    """Return Newton's method from a start, for the cases tried; which have settled away from the wall."""
+    """Return the result of Newton's method from a start, and a mask of cases converged away from the wall."""
     left, settled = tried.copy(), np.zeros(tried.shape, bool)
     a = differences(ring.steps())
     for _ in range(_MOST_STEPS if left.any() else 0):
@@ -247,9 +247,9 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """Return the change applied, each node held within its bearing.
+    """Return the applied change, limited so that each node stays within its bearing.
 
-    And its largest size over the gap, (C,).
+    The second result is its largest magnitude over the gap, (C,).
     """
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
@@ -262,7 +262,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """Return d(eps)/d(theta), (2, C, K), and its slopes by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its derivatives by eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])

@@ -1,7 +1,7 @@
-"""Mobility with its slopes, for the orbits of many journals at once: the form that Newton's method needs.
+"""Mobility with its derivatives, for the orbits of many journals at once, as Newton's method needs it.
 
 In Booker's frame, xi is along the load on the journal and eta ahead of it. Points are (cases, places), and
-every case has its own width. Two laws: Booker's closed form, and the map of the finite bearing.
+every case has its own width. There are two laws: Booker's closed form, and the map of the finite bearing.
 
 References
 ----------
@@ -21,25 +21,25 @@ class MobilityLaw(Protocol):
     """A mobility M(xi, eta) of some cases."""
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """Return M, (2, C, K), and its slopes by xi and eta, (2, 2, C, K) [-]."""
+        """Return M, (2, C, K), and its derivatives by xi and eta, (2, 2, C, K) [-]."""
 
     def of(self, cases: Mask) -> "MobilityLaw":
-        """Return the same law of fewer cases."""
+        """Return the same law for a subset of the cases."""
 
 
 class ShortLaw:
     """Booker's closed form for the half film of the short bearing (1971); valid for every eps below 1."""
 
     def __init__(self, ratio: Array) -> None:
-        """Take the widths B/D of the cases, (C,) [-]."""
+        """Store the widths B/D of the cases, (C,) [-]."""
         self.ratio = ratio
 
     def of(self, cases: Mask) -> "ShortLaw":
-        """Return the same law of fewer cases."""
+        """Return the same law for a subset of the cases."""
         return ShortLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """Return M and its slopes; see `short_mobility`."""
+        """Return M and its derivatives; see `short_mobility`."""
         area, h = self.ratio[:, None] ** 2, 1 - xi
         root = np.sqrt(h)
         along, across = h * h * root / (np.pi * area), 4 * h * root / (np.pi**2 * area)
@@ -52,17 +52,17 @@ class MapLaw:
     """The finite bearing's mobility from `mobility_map`, within the range of that map."""
 
     def __init__(self, ratio: Array) -> None:
-        """Take the widths B/D of the cases, (C,), each within the map [-]."""
+        """Store the widths B/D of the cases, (C,), each within the map [-]."""
         self.ratio = ratio
         widths, self.width = np.unique(ratio, return_inverse=True)
         self.surfaces = at_thirds(mobility_map().motion, mobility_map().axes[2], np.log(widths))
 
     def of(self, cases: Mask) -> "MapLaw":
-        """Return the same law of fewer cases."""
+        """Return the same law for a subset of the cases."""
         return MapLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """Return M and its slopes, through the coordinates and the encoded values of the map."""
+        """Return M and its derivatives, through the coordinates and the encoded values of the map."""
         x, v = coordinates(xi, eta)
         width = np.repeat(self.width, xi.shape[1])
         axes = mobility_map().axes

@@ -42,18 +42,18 @@ class MobilityMap:
     """The map's data."""
 
     axes: Axes
-    """Nodes over gap, chord and width: see `coordinates`."""
+    """Nodes over gap, chord and width; see `coordinates`."""
     motion: Array
     """Spline coefficients of the first two values of `encode`."""
     film: Array
-    """Spline coefficients of the last two."""
+    """Spline coefficients of the last two values of `encode`."""
     error: Array
-    """(cells over gap, chord, width, 4) largest error measured in each cell: see `mobility_error`."""
+    """(cells over gap, chord, width, 4) largest error measured in each cell; see `mobility_error`."""
 
 
 @cache
 def mobility_map() -> MobilityMap:
-    """Read the data, once."""
+    """Return the map's data, which are read once."""
     with np.load(_DATA) as data:
         gap, chord, width = (Axis(float(a), float(h), int(n)) for a, h, n in data["axes"])
         values, error = data["values"].astype(float), data["error"].astype(float)
@@ -61,7 +61,7 @@ def mobility_map() -> MobilityMap:
 
 
 def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
-    """Return the mobility M: the velocity that a load gives the journal in a film that does not turn [-].
+    """Return the mobility M: the journal velocity under a load if the film does not rotate [-].
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
 
 
 def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Return the same in Booker's frame, without angles: the form for integrating an orbit [-].
+    """Return the mobility M in Booker's frame, without angles, for the integration of an orbit [-].
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
     Returns
     -------
     (2, ...) largest pressure p_max B D/F, and side flow Q/(B D v), where v = c |M| F psi²/(B D eta),
-    c the radial clearance, is the speed that the load gives the journal in the turning frame. Side
-    flow is rough, to 10 per cent and worse, where 1 − xi < 0.01 and the load meets the thinnest film.
+    c the radial clearance, is the speed that the load gives the journal in the rotating frame. The side
+    flow has errors of 10 per cent and more where 1 − xi < 0.01 and the load meets the thinnest film.
 
     Raises
     ------
@@ -143,11 +143,11 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Return the largest error [-] measured about a point between the map and new, finer solutions.
+    """Return the largest error [-] measured near a point between the map and new, finer solutions.
 
     Returns
     -------
-    (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max, of side flow.
+    (..., 4): errors of ln M along the load, of M as a vector over its magnitude, of ln P_max, of side flow.
     """
     data = mobility_map()
     cells = np.array(data.error.shape[:3])
@@ -158,21 +158,21 @@ def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def cell_of(axes: Axes, places: Array, cells: Array) -> Array:
-    """Return the indices (..., 3) of the error's cells at places (..., 3) in the map's coordinates."""
+    """Return the indices (..., 3) of the error table's cells at points (..., 3) in the map's coordinates."""
     first = np.array([axis.first for axis in axes])
     length = np.array([axis.step * (axis.nodes - 1) for axis in axes])
     return np.asarray(np.floor((places - first) / length * cells).astype(int))
 
 
 def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
-    """Return the coordinates of the gap and of the place on its chord [-]."""
+    """Return the coordinates of the gap and of the position on its chord [-]."""
     h = ECCENTRICITY_LIMIT - xi
     chord = np.sqrt(np.maximum(h * (ECCENTRICITY_LIMIT + xi), 1e-30))
     return np.log(h) + h, np.minimum(np.abs(eta) / chord, 1.0)
 
 
 def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
-    """The smooth values that are interpolated, (4,), of a solution with its velocity along the load."""
+    """Return the smooth interpolated values, (4,), of a solution with its velocity along the load."""
     h = 1 - xi
     along, ahead = motion.velocity
     return np.array([
@@ -191,7 +191,7 @@ def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
 
 
 def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]:
-    """Return arrays within the map's range.
+    """Return the arguments as arrays; they must lie within the map's range.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]
 
 
 def _look_up(part: str, xi: Array, eta: Array, ratio: Array) -> Array:
-    """Interpolate motion or film at points of any shape, (functions, ...); one width costs a third."""
+    """Return interpolated motion or film at points of any shape, (functions, ...); one width is fastest."""
     axes = mobility_map().axes
     x, v = np.broadcast_arrays(*coordinates(xi, eta))
     if ratio.size == 1:
@@ -219,5 +219,5 @@ def _look_up(part: str, xi: Array, eta: Array, ratio: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _at_width(part: str, ratio: float) -> Array:
-    """Return the spline coefficients over gap and chord at one width, kept for the steps of an orbit."""
+    """Return the spline coefficients over gap and chord at one width, cached for the steps of an orbit."""
     return at_third(getattr(mobility_map(), part), mobility_map().axes[2], float(np.log(ratio)))

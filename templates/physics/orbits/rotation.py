@@ -1,8 +1,8 @@
 """Angles of sleeve and journal in the frame of the load, from their speeds over the cycle.
 
 The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. A part returns to its
-position after each cycle only if it makes whole turns in the frame; a groove in any other part is elsewhere
-in every cycle.
+position after each cycle only if it makes whole revolutions in the frame; a groove in any other part has a
+different position in every cycle.
 """
 
 from dataclasses import dataclass
@@ -12,31 +12,31 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 
 CLOSED = np.radians(2.0)
-"""Largest angle by which a sum of speeds between angles may miss whole turns [rad]."""
+"""Largest angle by which a sum of speeds may differ from whole revolutions [rad]."""
 
 
 @dataclass(frozen=True)
 class PartRotation:
-    """The angle of a part in the frame of some cases: even turning, and a swing that repeats."""
+    """The angle of a part in the frame, for some cases: uniform rotation plus a periodic swing."""
 
     turns: Array
-    """(C,) turns in the frame over the cycle; NaN where these are not whole [-]."""
+    """(C,) revolutions in the frame per cycle; NaN if this is not an integer [-]."""
     period: float
     """The cycle [rad]."""
     swing: Array
-    """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
+    """(C, N) angle at the load's angles minus the uniform rotation, 0 at crank angle 0 [rad]."""
 
     def of(self, cases: Mask) -> "PartRotation":
         """Return the same object for a subset of the cases."""
         return PartRotation(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:
-        """Return the angle at crank angles, with the swing there, (C, K) [rad]."""
+        """Return the angle at crank angles from the swing there, (C, K) [rad]."""
         return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
 
 
 def turning(angle: Array, period: float, speed: Array) -> PartRotation:
-    """Return the turning of a part by its speed in the frame over that of the crank.
+    """Return the rotation of a part from its speed in the frame over that of the crank.
 
     Parameters
     ----------

@@ -17,11 +17,11 @@ import numpy as np
 from templates.core.arrays import Array
 
 _BLOCK = 4096
-"""Points whose pressure is sought together."""
+"""Most points that are solved together."""
 
 
 def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    r"""Return what the half film does under a load that moves the journal by the mobility of Booker 1971 [-].
+    r"""Return the results of the half film under a load, with the journal velocity of Booker 1971 [-].
 
     .. math:: p_{max} = \tfrac32\frac{\eta B^2 v}{h^3}\cos(\varphi-\alpha) \text{ at its largest},\quad
         \sin(\varphi-\alpha)+\epsilon\sin(2\varphi-\alpha)+2\epsilon\sin\alpha = 0
@@ -37,8 +37,8 @@ def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
     Returns
     -------
-    (2, ...) as `mobility_map.mapped_film_under_load`: largest pressure p_max B D/F, and side flow
-    Q/(B D v), which is all that the journal displaces, 1.
+    (2, ...) as in `mobility_map.mapped_film_under_load`: largest pressure p_max B D/F, and side flow
+    Q/(B D v), which is 1, because all the displaced oil leaves at the sides.
     """
     xi, eta, ratio = np.broadcast_arrays(*(np.asarray(x, float) for x in (xi, eta, ratio)))
     eps = np.hypot(xi, eta)
@@ -55,7 +55,7 @@ def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 def _steepest(eps: Array, direction: Array) -> Array:
     """Return the largest cos(phi − alpha)/H³ over the half film.
 
-    The best of some places, then by Newton's method.
+    Newton's method starts from the best of some angles.
     """
     start, end = _sommerfeld_angle(direction - np.pi / 2, eps), _sommerfeld_angle(direction + np.pi / 2, eps)
     gamma = start + np.linspace(0, 1, 49)[:, None] * (end - start)

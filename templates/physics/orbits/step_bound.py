@@ -1,15 +1,15 @@
-"""Bound of the error of an orbit's smallest gap by the step: from rings of nodes, each twice as fine.
+"""Error bound of an orbit's smallest gap due to the step, from rings of nodes that are each twice as fine.
 
-The nodes rarely meet the smallest gap: it lies between them, at the vertex of a parabola through the lowest
-three. The error of that gap falls with the square of the step, once the step is small enough: a change from
-ring to ring is then a quarter of the change before. The bound is
+The nodes rarely coincide with the smallest gap: it lies between them, at the vertex of a parabola through the
+lowest three. The error of that gap decreases with the square of the step, once the step is small enough: a
+change from ring to ring is then a quarter of the previous change. The bound is
 
     LEAST + MARGIN · max(d0, d1/4, d2/16) / gap
 
-with d0 the last change, d1 and d2 those before. Where the order is seen it is 3.75 times the error. A change
-that is small by chance does not make the bound small, and a small change of the load changes it little: it
-has no steps. There is none where the coarse ring has no orbit. It is an estimate with a margin, not a proof;
-`python -m benchmarks.step_bound` compares it with steps sixteen times as fine on random duties.
+with d0 the last change, d1 and d2 the two before. In the asymptotic range it is 3.75 times the error. A
+change that is small by chance does not make the bound small, and the bound varies continuously with the load.
+There is no bound if the coarse ring has no orbit. It is an estimate with a margin, not a proof; `python -m
+benchmarks.step_bound` compares it with steps sixteen times as fine on random duties.
 """
 
 from collections.abc import Sequence
@@ -21,28 +21,28 @@ import numpy as np
 from templates.core.arrays import Array
 
 MARGIN = 1.25
-"""Bound over the largest change from ring to ring, each brought to the finest ring [-]."""
+"""Bound over the largest change from ring to ring, each extrapolated to the finest ring [-]."""
 LEAST = 5e-4
-"""What is stated at least: where the changes are smaller, kinks of the load decide the error [-]."""
+"""Smallest stated bound: below it, kinks of the load determine the error [-]."""
 RINGS = 4
-"""Rings of which the changes count, the finest and those before it."""
+"""Number of rings whose changes are used: the finest and those before it."""
 
 
 def least_between(place: Array, period: float, gap: Array) -> Array:
-    """Return the smallest gap around a ring, by a parabola through its lowest node and neighbours.
+    """Return the smallest gap on a ring, by a parabola through its lowest node and both neighbours.
 
     Parameters
     ----------
     place
-        (K,) rising angles [rad].
+        (K,) ascending angles [rad].
     period
-        After which the ring repeats [rad].
+        The period of the ring [rad].
     gap
         (C, K) gaps at the nodes [-].
 
     Returns
     -------
-    (C,) never above the lowest node, and above zero [-].
+    (C,) at or below the lowest node, and above zero [-].
     """
     lowest, cases = gap.argmin(axis=-1), np.arange(gap.shape[0])
     count = place.size
@@ -57,16 +57,16 @@ def least_between(place: Array, period: float, gap: Array) -> Array:
 
 
 def step_bound(films: Sequence[Array]) -> Array:
-    """Return the bound of the relative error of the last of several gaps, by rings each twice as fine.
+    """Return the bound of the relative error of the last gap in a sequence of rings, each twice as fine.
 
     Parameters
     ----------
     films
-        (C,) smallest gaps between the nodes of each ring, the finest last, NaN where a ring has none [-].
+        (C,) smallest gaps between the nodes of each ring, the finest last, NaN without an orbit [-].
 
     Returns
     -------
-    (C,) relative error; NaN where the last two rings have no gap, or there are fewer than two [-].
+    (C,) relative error; NaN if the last two rings have no gap, or there are fewer than two [-].
     """
     fine = films[-1]
     if len(films) < 2:

@@ -17,12 +17,13 @@ from templates.physics.films.film_equations import dual_widths
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit
 
 MOST_CYCLES = 8
-"""Cycles after which an orbit that does not repeat is given up."""
+"""Largest number of cycles for an orbit to repeat."""
 REPEATS = 0.02
-"""Largest difference between two cycles, over the gap, of an orbit that repeats; where the journal is
-nearly centred, the node at which oil is fed may change from cycle to cycle [-]."""
+"""Largest difference between two cycles, over the gap, of an orbit that repeats; if the journal is nearly
+centred, the feed node may change from cycle to cycle [-].
+"""
 MOST_NODES = 2000
-"""Steps of a cycle that are taken at most."""
+"""Most steps in a cycle."""
 
 _SUBSTEPS = 4
 _REPORTED = 30  # steps between two reports of progress
@@ -48,22 +49,22 @@ class TransientOrbit:
     P_max: Array
     """(K,) largest pressure p psi²/(eta Omega)."""
     side_flow: Array
-    """(K,) oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+    """(K,) oil flow out of both ends, Q/(B D c Omega), c the radial clearance."""
     shear: Array
-    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    """(K,) shear of the existing oil; pi/sqrt(1 − eps²) for a full film."""
     cycles: int
-    """Cycles run."""
+    """Number of marched cycles."""
 
 
 def transient_orbit(
     load: CyclicLoad, ratio: float, start: Array, marching: MarchSettings
 ) -> TransientOrbit | None:
-    """March one case until it repeats; None where the search for the film fails or the orbit does not repeat.
+    """Return the orbit of one case, marched until it repeats; None if a step fails or it does not repeat.
 
     Parameters
     ----------
     load
-        One case.
+        The load of one case.
     ratio
         Width over diameter B/D [-].
     start
@@ -108,7 +109,7 @@ def sampled_orbit(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
 
 
 def along_march(marched: TransientOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, side flow, shear and the load's work on the film, (1, N) each."""
+    """Return pressure, side flow, shear, and the work of the load on the film, (1, N) each."""
     P, flow, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.side_flow, marched.shear))
     step = load.period / marched.place.size
     rate = [_at(marched, (np.roll(e, -1) - np.roll(e, 1)) / (2 * step), load) for e in marched.eps]
@@ -127,7 +128,7 @@ def _report(cycle: int, part: float, difference: float) -> None:
 
 
 def _full(journal: Journal, eps: Array) -> State:
-    """Return a full film that carries no load yet."""
+    """Return a full film that does not carry load yet."""
     nothing = np.zeros((journal.phi.size, journal.zeta.size - 1))
     return State(
         eps, nothing, nothing, np.broadcast_to(journal.gap(eps, journal.phi)[:, None], nothing.shape)
@@ -135,7 +136,10 @@ def _full(journal: Journal, eps: Array) -> State:
 
 
 def _next(journal: Journal, states: list[State], S: Array, w: float, step: float) -> State | None:
-    """Return one step; where it fails, or at first, of first order, and then in several."""
+    """Return the state after one step; None if the step fails.
+
+    The first step, and a step that fails with second order, is repeated with first order in several parts.
+    """
     here = states[-1]
     if len(states) > 1:
         before = (states[-2].content / 2 - 2 * here.content) / step
@@ -152,7 +156,7 @@ def _next(journal: Journal, states: list[State], S: Array, w: float, step: float
 
 
 def _measured(journal: Journal, place: Array, states: list[State], cycles: int) -> TransientOrbit:
-    """Return the measures of the films of a cycle."""
+    """Return the results of the films of a cycle."""
     step = 2 * np.pi / journal.phi.size
     width, last = dual_widths(journal.zeta)[:-1], np.diff(journal.zeta)[-1]
     gaps = [journal.gap(state.eps, journal.phi) for state in states]

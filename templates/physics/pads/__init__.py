@@ -1,1 +1,1 @@
-"""Slider pads."""
+"""Slider pads, thrust collars and hydrostatic pads."""

@@ -1,8 +1,8 @@
-r"""Hydrostatic pads: a deep recess, fed through a restrictor and bounded by circular lands of uniform film.
+"""Hydrostatic pads: a deep recess, fed through a restrictor and bounded by circular lands of uniform film.
 
 In the land the pressure falls with ln r from the recess to the edge: (1/r) d/dr(r h³ dp/dr) = 0. The outer
-land spans R_0 … R. An annular pad has an inner land r … r_0 too; a circular pad has none, and its inner radii
-are NaN.
+land spans R_0 … R. An annular pad also has an inner land r … r_0; a circular pad has none, and its inner
+radii are NaN.
 
 References
 ----------
@@ -17,12 +17,12 @@ from templates.core.language.declare import units
 
 CAPILLARY, ORIFICE, CONSTANT_FLOW = "capillary", "orifice", "constant_flow"
 RESTRICTORS = (CAPILLARY, ORIFICE, CONSTANT_FLOW)
-"""What feeds the recess."""
+"""The restrictors that can feed a recess."""
 
 
 @units("m", "m", returns="1", latex=r"\ln\frac{{{1}}}{{{0}}}")
 def logarithm_of_land(inner: Array, outer: Array) -> Array:
-    """Ln(outer/inner) of a land between two radii or diameters [m], to rounding for narrow ones [-]."""
+    """Return ln(outer/inner) of a land between two radii or diameters [m], accurate for narrow lands [-]."""
     return np.log1p((outer - inner) / inner)
 
 
@@ -35,7 +35,7 @@ def logarithm_of_land(inner: Array, outer: Array) -> Array:
     latex=r"\frac{{\pi}}{{8}}\left(\frac{{{0}^2-{1}^2}}{{\ln({0}/{1})}}-\frac{{{2}^2-{3}^2}}{{\ln({2}/{3})}}\right)",
 )
 def effective_area(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    r"""Return the load over recess pressure [m²].
+    r"""Return the effective area, load over recess pressure [m²].
 
     .. math:: A_e = \frac{\pi}{2}\left[\frac{R^2-R_0^2}{\ln(R/R_0)} - \frac{r_0^2-r^2}{\ln(r_0/r)}\right]
 
@@ -89,7 +89,7 @@ def land_conductance(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
     latex=r"\frac{{\pi}}{{32}}\left({0}^4-{1}^4+{2}^4-{3}^4\right)",
 )
 def polar_moment_of_lands(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    """Return the integral of r² over the lands, by which a turning collar shears their film [m⁴].
+    """Return the integral of r² over the lands [m⁴], which gives the friction torque of a rotating collar.
 
     Parameters
     ----------
@@ -126,15 +126,15 @@ def restrictor_flow(
     drop
         Pressure drop along the restrictor [Pa].
     diameter, length
-        Of the capillary; an orifice has no length [m].
+        Diameter and length of the capillary; an orifice has no length [m].
     discharge
-        Coefficient of the orifice [-].
+        Discharge coefficient of the orifice [-].
     eta
         Dynamic viscosity [Pa s].
     rho
         Density [kg/m³].
     pump_flow
-        What a pump of constant flow delivers [m³/s].
+        Flow of a constant-flow pump [m³/s].
     """
     if kind == CAPILLARY:
         return np.pi * diameter**4 * drop / (128 * eta * length)
@@ -145,7 +145,7 @@ def restrictor_flow(
 
 @units(None, "1", returns="1")
 def stiffness_factor(kind: str, beta: Array) -> Array:
-    """Return the stiffness −dW/dh over W/h, from the balance of the restrictor's and the lands' flows [-].
+    """Return the stiffness −dW/dh over W/h, from the balance of restrictor and land flows [-].
 
     Parameters
     ----------
@@ -165,7 +165,8 @@ def stiffness_factor(kind: str, beta: Array) -> Array:
 def stiffest_ratio(kind: str) -> Array:
     """Return the recess over supply pressure at which a pad of given film and supply is stiffest [-].
 
-    1/2 with a capillary, 2 − √2 with an orifice; with a constant flow the stiffness has no maximum: NaN.
+    It is 1/2 with a capillary and 2 − √2 with an orifice. With constant flow the stiffness has no maximum,
+    and the result is NaN.
 
     Parameters
     ----------
@@ -178,21 +179,21 @@ def stiffest_ratio(kind: str) -> Array:
 
 @units(None, "Pa", "Pa", returns="Pa")
 def pump_pressure(kind: str, supply: Array, recess: Array) -> Array:
-    """Return the pressure against which the pump works: the recess's where it feeds a constant flow [Pa].
+    """Return the pressure against which the pump works; with constant flow, the recess pressure [Pa].
 
     Parameters
     ----------
     kind
         One of `RESTRICTORS`.
     supply, recess
-        Pressures before and behind the restrictor [Pa].
+        Pressures upstream and downstream of the restrictor [Pa].
     """
     return recess if kind == CONSTANT_FLOW else supply
 
 
 @units("m", "m", returns="m**2", latex=r"\frac{{\pi}}{{4}}\left({0}^2-{1}^2\right)")
 def pad_area(D: Array, d: Array) -> Array:
-    """Return the area of the pad, its recess included [m²].
+    """Return the area of the pad including its recess [m²].
 
     Parameters
     ----------
@@ -204,19 +205,20 @@ def pad_area(D: Array, d: Array) -> Array:
 
 @units("W", "W", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def power_ratio(friction: Array, pumping: Array) -> Array:
-    """Return the friction over pumping power; NaN without friction [-].
+    """Return the ratio of friction power to pumping power; NaN without friction [-].
 
-    At a given film and load the least power is spent with the viscosity at which it is 1; at a given
-    viscosity and load with the film at which it is 3, because pumping goes with h³ and friction with 1/h.
+    For a given film and load, the total power is least at the viscosity that makes the ratio 1. For a given
+    viscosity and load, it is least at the film that makes the ratio 3, because pumping power is proportional
+    to h³ and friction power to 1/h.
     """
     return np.where(friction > 0, friction / pumping, np.nan)[()]
 
 
 @units(None, "kg/m**3", "m**3/s", "m", "Pa*s", returns="1", latex=r"\frac{{4\,{1}\,{2}}}{{\pi\,{3}\,{4}}}")
 def capillary_Reynolds_number(kind: str, rho: Array, Q: Array, diameter: Array, eta: Array) -> Array:
-    """Return Reynolds number in a capillary, from its mean velocity and diameter.
+    """Return the Reynolds number in a capillary, from mean velocity and diameter [-].
 
-    NaN in other restrictors [-].
+    It is NaN for other restrictors.
 
     Parameters
     ----------
@@ -227,7 +229,7 @@ def capillary_Reynolds_number(kind: str, rho: Array, Q: Array, diameter: Array, 
     Q
         Flow [m³/s].
     diameter
-        Of the capillary [m].
+        Diameter of the capillary [m].
     eta
         Dynamic viscosity [Pa s].
     """

@@ -1,7 +1,7 @@
 """Flow balances of converging pads of finite width, solved for many pads together.
 
 The balances are those of `film_equations` on the mesh of `pad_mesh`. A converging film does not rupture, so
-they separate: each eigenvector across the pad leaves one tridiagonal system along it.
+the equations are separable: each eigenvector across the pad leaves one tridiagonal system along it.
 
 References
 ----------
@@ -15,7 +15,7 @@ from templates.physics.pads.pad_mesh import across, grading
 
 
 def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
-    """Solve converging pads on one mesh.
+    """Return the solutions of converging pads on one mesh.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
     width
         (N,) b/l [-].
     along
-        Intervals n along the pad.
+        Number of intervals n along the pad.
     across_half
-        Intervals across half the width.
+        Number of intervals over half the width.
 
     Returns
     -------
@@ -44,7 +44,9 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
     line = np.einsum("inm,nm->ni", p, shares**2)
     load = cells[:, 1:-1] * line
     inlet = H_mid[:, 0] / 2 - conductance[:, 0] * line[:, 0] / 2
-    edge = 1 - np.sum(shares**2, axis=-1)  # the half cells at the sides, where P = 0, pass on all they get
+    edge = 1 - np.sum(
+        shares**2, axis=-1
+    )  # at the sides P = 0, so the half cells there pass on all their inflow
     side = np.einsum("inm,nm,ni->n", p, eigenvalues * shares**2, leak[:, 1:-1]) + edge * source.sum(-1)
     measures = np.stack([load.sum(-1), (load * x[:, 1:-1]).sum(-1), inlet, side / 2], axis=-1)
     return measures, np.pad(np.einsum("inm,nm->ni", p, shares * centre), ((0, 0), (1, 1)))
@@ -57,7 +59,7 @@ def cell_lengths(nodes: Array) -> Array:
 
 
 def _modes(zeta: Array) -> tuple[Array, Array, Array]:
-    """Eigenvalues of the flow across (N, m), what of a constant each mode holds, and its mid-width value."""
+    """Return eigenvalues of the flow across (N, m), the modes' shares of a constant, and mid-width values."""
     step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, :-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])
@@ -69,18 +71,18 @@ def _modes(zeta: Array) -> tuple[Array, Array, Array]:
 
 
 def eliminated(conductance: Array, leak: Array, eigenvalues: Array, source: Array) -> Array:
-    """Solve the balances along the pad for every mode by Gaussian elimination, (n − 1, N, m).
+    """Return the balances solved along the pad for every mode by Gaussian elimination, (n − 1, N, m).
 
     Parameters
     ----------
     conductance
-        (N, n) between neighbours.
+        (N, n) conductance between neighbours.
     leak
-        (N, n − 1) across, to be multiplied by the modes' eigenvalues.
+        (N, n − 1) conductance across, to be multiplied by the modes' eigenvalues.
     eigenvalues
-        (N, m).
+        (N, m) eigenvalues of the modes.
     source
-        (N, n − 1), the same for all modes but for their share.
+        (N, n − 1) source, the same for all modes except for the share of each.
     """
     g = conductance.T[:, :, None]
     pivot = leak.T[:, :, None] * eigenvalues + (g[:-1] + g[1:])

@@ -1,9 +1,9 @@
-r"""Meshes for the films of plane pads, many at once, refined towards the thin film and all edges.
+"""Meshes for the films of plane pads, many at once, refined towards the thin film and all edges.
 
 x = 0 (inlet) … 1 (outlet) along the pad, H = a − (a − 1) x; zeta = 2z/b = 0 (middle) … 1 (side). The nodes
 are equally spaced in t, 0 … 1, which maps smoothly to x, so that differences and Richardson's extrapolation
 keep their order. From t to s, tanh concentrates the nodes in the two end layers, which are as thick as the
-pad is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share of nodes.
+pad is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film the same number of nodes.
 
 References
 ----------
@@ -17,7 +17,7 @@ import numpy as np
 from templates.core.arrays import Array
 
 _FLATTEST = 1e-9
-"""The smallest ln(a) in the map; below it the film is even to rounding."""
+"""Smallest ln(a) in the map; below it the film is uniform to rounding."""
 _NEWTON_STEPS = 12
 
 
@@ -28,12 +28,12 @@ class NodeMap:
     logarithm: Array
     """L = ln a [-]."""
     skew: Array
-    """Vinokur's A, the root of the ratio of the end slopes [-]."""
+    """Vinokur's A, the square root of the ratio of the end slopes [-]."""
     stretch: Array
     """Vinokur's Delta, 0 for no stretching [-]."""
 
     def place(self, t: Array) -> Array:
-        """Return X at t [-]."""
+        """Return x at t [-]."""
         u = 0.5 * (1 + np.tanh(self.stretch * (t - 0.5)) / np.tanh(self.stretch / 2))
         s = u / (self.skew + (1 - self.skew) * u)
         return np.expm1(-s * self.logarithm) / np.expm1(-self.logarithm)
@@ -47,7 +47,7 @@ class NodeMap:
         return -self.logarithm * np.exp(-s * self.logarithm) / np.expm1(-self.logarithm) * ds * du
 
     def coordinate(self, x: Array) -> Array:
-        """Return T at x, the inverse of `place` [-]."""
+        """Return t at x, the inverse of `place` [-]."""
         s = -np.log1p(x * np.expm1(-self.logarithm)) / self.logarithm
         u = s * self.skew / (1 - s * (1 - self.skew))
         return np.clip(0.5 + np.arctanh((2 * u - 1) * np.tanh(self.stretch / 2)) / self.stretch, 0, 1)
@@ -71,12 +71,12 @@ def grading(a: Array, width: Array) -> NodeMap:
 
 
 def _layer_slope(layer: Array) -> Array:
-    """Return slope at its end of a map that gives every decade from the layer to the whole its share [-]."""
+    """Return the slope at its end of a map with equal numbers of nodes per decade down to the layer [-]."""
     return layer * np.arcsinh(1 / layer)
 
 
 def _stretch(logarithm: Array) -> Array:
-    """Return delta of ln(sinh(Delta)/Delta) = the logarithm, which is convex, by Newton's method [-]."""
+    """Return delta from its logarithm ln(sinh(delta)/delta), which is convex, by Newton's method [-]."""
     delta = 1e-3 + np.sqrt(6 * np.maximum(logarithm, 0))
     for _ in range(_NEWTON_STEPS):
         excess = delta + np.log(-np.expm1(-2 * delta) / (2 * delta)) - logarithm
@@ -85,16 +85,16 @@ def _stretch(logarithm: Array) -> Array:
 
 
 def across(a: Array, width: Array, m: int) -> Array:
-    """Return the nodes from the middle to the side, graded to its layer, as thick as the pad is long [-].
+    """Return nodes from the middle to the side, graded to its edge layer, as thick as the pad is long [-].
 
     Parameters
     ----------
     a
-        Film ratio h_i/h_o; of a steep pad the outlet's thin film makes the layer thinner [-].
+        Film ratio h_i/h_o; the thin outlet film of a steep pad makes the layer thinner [-].
     width
         b/l [-].
     m
-        Intervals.
+        Number of intervals.
     """
     layer = (1 / (width * np.sqrt(a)))[..., None]
     return 1 - layer * np.sinh(np.arcsinh(1 / layer) * (1 - np.arange(m + 1) / m))

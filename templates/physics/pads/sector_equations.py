@@ -19,20 +19,20 @@ from templates.physics.pads.pad_mesh import across, grading
 
 
 def solved_sectors(a: Array, angle: Array, reach: Array, along: int, across_half: int) -> Array:
-    """Solve converging sector pads on one mesh.
+    """Return the solutions of converging sector pads on one mesh.
 
     Parameters
     ----------
     a
         (N,) film ratio h_i/h_o, above 1 [-].
     angle
-        (N,) of a pad [rad].
+        (N,) angle of a pad [rad].
     reach
         (N,) outer over inner radius, above 1 [-].
     along
-        Intervals along the pad.
+        Number of intervals along the pad.
     across_half
-        Intervals across half the width.
+        Number of intervals over half the width.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def solved_sectors(a: Array, angle: Array, reach: Array, along: int, across_half
 
 
 def _modes(zeta: Array, logarithm: Array, reach: Array) -> tuple[Array, Array, Array]:
-    """Eigenvalues of the flow across (N, m), and what each mode holds of a constant and of (r/r_m)²."""
+    """Return eigenvalues of the flow across (N, m), the modes' shares of a constant and of (r/r_m)²."""
     step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, 1:-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])

@@ -17,28 +17,28 @@ _NEAR = 0.1
 
 
 def _require_ratio(a: Array) -> None:
-    """Refuse a film ratio that is not positive and finite."""
+    """Raise an error for a film ratio that is not positive and finite."""
     a = np.asarray(a)
     require((a > 0) & np.isfinite(a), "film ratio h_i/h_o must be positive and finite")
 
 
 def _near_one(a: Array) -> Mask:
-    """Return the film ratios at which the closed forms lose digits by cancellation."""
+    """Return a mask of the film ratios at which the closed forms lose digits by cancellation."""
     return np.abs(np.asarray(a) - 1) < _NEAR
 
 
 def _ratio_away_from_one(a: Array) -> Array:
-    """Return the film ratio, moved off 1 so that a closed form which is not used there stays finite."""
+    """Return the film ratio, moved off 1 so that an unused closed form stays finite there."""
     return np.where(_near_one(a), 2.0, a)
 
 
 def _shape(x: Array, a: Array) -> Array:
-    """Return the pressure over a − 1, which does not vanish at a = 1."""
+    """Return the pressure divided by a − 1, which does not vanish at a = 1."""
     return x * (1 - x) / ((a + 1) * (a - (a - 1) * x) ** 2)
 
 
 def _moment_near_one(a: Array, power: int) -> Array:
-    """Return the integral of the pressure's shape times x^power, exact for film ratios near 1."""
+    """Return the integral of the pressure's shape times x^power, accurate for film ratios near 1."""
     x, weight = np.polynomial.legendre.leggauss(12)
     x, weight = (1 + x) / 2, weight / 2
     near = np.where(_near_one(a), a, 1.0)[..., None]
@@ -53,7 +53,7 @@ def pressure_incline_Rayleigh_1918(x: Array, a: Array) -> Array:
     Parameters
     ----------
     x
-        Place along the pad over its length, 0 (inlet) … 1 (outlet) [-].
+        Position along the pad over its length, 0 (inlet) … 1 (outlet) [-].
     a
         Film ratio h_i/h_o; below 1 the pressure is negative: the film would cavitate [-].
 
@@ -75,7 +75,7 @@ def load_incline_Rayleigh_1918(a: Array) -> Array:
     Parameters
     ----------
     a
-        Film ratio h_i/h_o; 1 gives 0, the best is 2.1889 [-].
+        Film ratio h_i/h_o; 1 gives 0, and the load is largest at 2.1889 [-].
 
     Examples
     --------
@@ -89,7 +89,7 @@ def load_incline_Rayleigh_1918(a: Array) -> Array:
 
 
 def centre_of_pressure_Rayleigh_1918(a: Array) -> Array:
-    r"""Return the distance of the pressure's centre from the inlet, over the length [-].
+    r"""Return the distance of the centre of pressure from the inlet, over the length [-].
 
     .. math:: x_c = \frac{a(a+2)\ln a - \frac{1}{2}(a-1)(5a+1)}{(a-1)\left[(a+1)\ln a - 2(a-1)\right]}
 
@@ -125,7 +125,7 @@ def friction_incline_Rayleigh_1918(a: Array) -> tuple[Array, Array]:
 
 
 def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
-    r"""Return velocity across the film between a still face at z = 0 and a face that moves with u_a [m/s].
+    r"""Return the velocity across the film between a fixed face at z = 0 and a face moving at u_a [m/s].
 
     .. math:: u(z) = \frac{1}{2\eta}\frac{dp}{dx}(z^2 - z h) + u_a\frac{z}{h}
 
@@ -134,7 +134,7 @@ def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a:
     Parameters
     ----------
     z
-        Height above the still face, 0 … h [m].
+        Height above the fixed face, 0 … h [m].
     h
         Film thickness [m].
     pressure_gradient
@@ -153,33 +153,33 @@ def reduced_Reynolds_number(density: Array, speed: Array, h: Array, eta: Array, 
     Parameters
     ----------
     density
-        Rho [kg/m³].
+        Density rho [kg/m³].
     speed
-        u along that length [m/s].
+        Velocity u along that length [m/s].
     h
         Film thickness [m].
     eta
         Dynamic viscosity [Pa s].
     length
-        l along the film, or h itself for the number across it [m].
+        Length l along the film, or h itself for the number across it [m].
     """
     return density * speed * h**2 / (eta * length)
 
 
 def squeeze_number(density: Array, h: Array, eta: Array, time: Array) -> Array:
-    """Return local inertia over viscous force, rho h²/(eta t).
+    """Return local inertia over viscous force, rho h²/(eta t) [-].
 
-    Erratum: the course prints l² or b² for h² [-].
+    Erratum: the course prints l² or b² for h².
 
     Parameters
     ----------
     density
-        Rho [kg/m³].
+        Density rho [kg/m³].
     h
         Film thickness [m].
     eta
         Dynamic viscosity [Pa s].
     time
-        Duration over which the film changes [s].
+        Duration of the film's change [s].
     """
     return density * h**2 / (eta * time)

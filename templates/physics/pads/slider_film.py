@@ -5,9 +5,9 @@ r"""Plane slider pads with a fixed incline, of infinite or finite width, for any
     \quad H = a - (a-1)x, \quad P = \frac{p\,h_o^2}{\eta U l}
 
 x = 0 (inlet) … 1 (outlet), zeta = 2z/b = −1 … 1; P = 0 (ambient) at all four edges. Isothermal,
-incompressible, rigid, laminar. A diverging film (a < 1) gains oil nowhere, so P = 0 satisfies the
-complementarity conditions of `complementarity`: the whole film is ruptured and carries no load, and only
-streamers that fill h_i/h of it are sheared. A parallel film (a = 1) carries no load either.
+incompressible, rigid, laminar. Motion brings oil to no node of a diverging film (a < 1), so P = 0 satisfies
+the conditions of `complementarity`: the whole film is ruptured and carries no load, and only streamers that
+fill h_i/h of it are sheared. A parallel film (a = 1) carries no load either.
 
 `pad_equations` solves pads of finite width with second order, extrapolated by Richardson from 32 × 8 and 64 ×
 16 intervals. Errors measured by `benchmarks/slider_bearing.py`: load 2e-5 up to a film ratio of 10 and 2e-4
@@ -39,35 +39,35 @@ from templates.physics.pads.slider import (
 )
 
 STEEPEST = 1000.0
-"""The largest film ratio h_i/h_o that the mesh resolves [-]."""
+"""Largest film ratio h_i/h_o that the mesh resolves [-]."""
 NARROWEST, WIDEST = 0.01, 100.0
-"""Widths b/l that the mesh resolves [-]."""
+"""Smallest and largest width b/l that the mesh resolves [-]."""
 STATIONS = np.linspace(0, 1, 101)
-"""Places x/l at which the pressure along a pad is reported [-]."""
+"""Positions x/l at which the pressure along a pad is reported [-]."""
 HEIGHTS = np.linspace(0, 1, 41)
-"""Places z/h at which the velocity across the film is reported [-]."""
+"""Positions z/h at which the velocity across the film is reported [-]."""
 
 _BLOCK = 512
 
 
 @dataclass(frozen=True)
 class PadFilm(ABC):
-    """What the film under a pad does; every value dimensionless, of the shape of the pads."""
+    """The results of the film under a pad; every value is dimensionless, in the shape of the pads."""
 
     a: Array
     """Film ratio h_i/h_o."""
     load: Array
     """W h_o²/(6 eta U l² b)."""
     centre: Array
-    """Centre of pressure from the inlet over l; NaN where the pad bears nothing."""
+    """Distance of the centre of pressure from the inlet over l; NaN where the pad supports no load."""
     P_max: Array
     """Largest pressure p h_o²/(6 eta U l)."""
     peak: Array
-    """Its place from the inlet over l; NaN where the pad bears nothing."""
+    """Distance of the largest pressure from the inlet over l; NaN where the pad supports no load."""
     inlet_flow: Array
-    """Flow in at the inlet q/(U h_o b)."""
+    """Flow in at the inlet over U h_o b."""
     side_flow: Array
-    """Flow out at both sides, likewise."""
+    """Flow out at both sides over U h_o b."""
 
     @property
     def friction_moving(self) -> Array:
@@ -76,12 +76,12 @@ class PadFilm(ABC):
 
     @property
     def friction_fixed(self) -> Array:
-        """Return the friction on the pad in the same way; the pressure on the incline reduces it."""
+        """Return the friction on the pad F h_o/(eta U l b); the pressure on the incline reduces it."""
         return shear_of_wedge(self.a) - 3 * (self.a - 1) * self.load
 
     @property
     def friction_coefficient(self) -> Array:
-        """Return the friction on the moving face over load, times l/h_o; NaN where the pad bears nothing."""
+        """Return the friction on the moving face over load, times l/h_o; NaN where there is no load."""
         load = np.where(self.load > 0, self.load, np.nan)
         return self.friction_moving / (6 * load)
 
@@ -91,7 +91,7 @@ class PadFilm(ABC):
 
     @abstractmethod
     def gradient(self, x: Array) -> Array:
-        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, for one place a pad."""
+        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and one x/l per pad."""
 
 
 def pad_film(level: str, a: Array, width: Array) -> PadFilm:
@@ -100,11 +100,11 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
     Parameters
     ----------
     level
-        Its name.
+        Name of the level.
     a
-        Film ratio h_i/h_o, above 0 and if finite up to 1000; NaN gives NaN [-].
+        Film ratio h_i/h_o, above 0, and up to 1000 at level finite; NaN gives NaN [-].
     width
-        b/l, if finite 0.01 … 100; NaN gives NaN [-].
+        b/l, 0.01 … 100 at level finite; NaN gives NaN [-].
 
     Raises
     ------
@@ -129,11 +129,10 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
 
 
 def shear_of_wedge(a: Array) -> Array:
-    """Return the friction by the mean velocity gradient alone, F h_o/(eta U l b).
+    """Return the friction due to the mean velocity gradient alone, F h_o/(eta U l b) [-].
 
-    Ln a/(a − 1), 1 for streamers [-].
-
-    Streamers that carry the inlet's flow fill h_i/h of a diverging film: the mean of h_i h_o/h² is 1.
+    It is ln a/(a − 1), and 1 for streamers: those that carry the inlet's flow fill h_i/h of a diverging film,
+    and the mean of h_i h_o/h² is 1.
 
     Parameters
     ----------
@@ -163,20 +162,20 @@ def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array)
 
 
 def _bearing(a: Array) -> Array:
-    """Return the film ratio; 1 for a film that is ruptured or whose ratio is NaN."""
+    """Return the film ratio; 1 if the film is ruptured or the ratio is NaN."""
     return np.where(a > 1, a, 1.0)
 
 
 @dataclass(frozen=True)
 class InfinitePad(PadFilm):
-    """The closed forms of an incline without side leakage; P = 0 where they would pull."""
+    """The closed forms of an incline without side leakage; P = 0 where they would give tension."""
 
     def pressure(self, x: Array) -> Array:
         """Return the pressure p h_o²/(6 eta U l) at x/l, (..., places)."""
         return pressure_incline_Rayleigh_1918(x, _bearing(self.a)[..., None]) + 0 * self.a[..., None]
 
     def gradient(self, x: Array) -> Array:
-        """Return pressure gradient 6 (H − H_m)/H³, where H_m = 2a/(a + 1) carries the flow by shear alone."""
+        """Return the pressure gradient 6 (H − H_m)/H³; at H_m = 2a/(a + 1) the flow is by shear alone."""
         a = _bearing(self.a)
         H = a - (a - 1) * x
         return 6 * (H - 2 * a / (a + 1)) / H**3 + 0 * self.a
@@ -202,32 +201,32 @@ class FinitePad(PadFilm):
     """A solved pad of finite width, with its pressure at mid-width."""
 
     mesh: NodeMap
-    """Where its nodes stand."""
+    """The nodes along the pad."""
     P: Array
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""
 
     def pressure(self, x: Array) -> Array:
         """Return the pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics.
 
-        At the ends of the pad it is that of the surroundings, without what rounding leaves of it.
+        At the ends of the pad it is exactly 0.
         """
         return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0) * ((x > 0) & (x < 1))
 
     def gradient(self, x: Array) -> Array:
-        """Return pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, one a pad, by the same cubics."""
+        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and one x/l per pad, by cubics."""
         t = self.mesh.coordinate(x[..., None])
         return (6 * interpolated(self.P, t)[1] / self.mesh.slope(t))[..., 0]
 
 
 def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
-    """Return values and slopes d/dt at t by the cubic through four of n + 1 nodes equally spaced in 0 … 1.
+    """Return values and derivatives d/dt at t by the cubic through four of n + 1 equally spaced nodes.
 
     Parameters
     ----------
     values
-        (..., n + 1) at the nodes.
+        (..., n + 1) values at the nodes, which span 0 … 1.
     t
-        (..., places) where they are wanted [-].
+        (..., places) at which the values are wanted [-].
     """
     n = values.shape[-1] - 1
     first = np.clip(np.nan_to_num(t * n).astype(int) - 1, 0, n - 3)
@@ -252,9 +251,9 @@ def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -
     width
         b/l, 0.01 … 100; NaN gives NaN [-].
     along
-        Intervals along the pad, even.
+        Number of intervals along the pad, even.
     across_half
-        Intervals across half the width, even.
+        Number of intervals over half the width, even.
     """
     a, width = np.broadcast_arrays(a, width)
     size = along, across_half
@@ -280,7 +279,7 @@ def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -
 
 
 def _peak(P: Array) -> tuple[Array, Array]:
-    """Return height of the largest pressure and its t, by the parabola through the three nodes about it."""
+    """Return height and t of the largest pressure, from the parabola through three nodes around it."""
     n = P.shape[-1] - 1
     k = np.clip(P.argmax(axis=-1), 1, n - 1)
     before, top, after = (np.take_along_axis(P, (k + i)[..., None], axis=-1)[..., 0] for i in (-1, 0, 1))
@@ -290,7 +289,7 @@ def _peak(P: Array) -> tuple[Array, Array]:
 
 
 def _extrapolated(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
-    """Load, moment, inlet and side flow (N, 4), and the pressure at mid-width (N, n + 1), extrapolated."""
+    """Return extrapolated load, moment, inlet and side flow (N, 4), and mid-width pressure (N, n + 1)."""
     coarse, P_coarse = solved_pads(a, width, along // 2, across_half // 2)
     fine, P_fine = solved_pads(a, width, along, across_half)
     nodes = np.broadcast_to(np.linspace(0, 1, along + 1), P_fine.shape)

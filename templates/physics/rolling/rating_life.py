@@ -19,11 +19,11 @@ LIMIT = np.array([0.19, 0.22, 0.26, 0.28, 0.30, 0.34, 0.38, 0.42, 0.44])
 AXIAL = np.array([2.30, 1.99, 1.71, 1.55, 1.45, 1.31, 1.15, 1.04, 1.00])
 RADIAL = 0.56
 WEIBULL, LEAST = 1.5, 0.05
-"""Slope of the distribution of lives, and the share of L10 that no bearing falls short of."""
+"""Slope of the distribution of lives, and the fraction of L10 that every bearing reaches."""
 
 
 def _last(value: Array, curve: Array) -> Array:
-    """Return a number for each point, to go with a curve for each point."""
+    """Return a value for each point, shaped to broadcast with a curve for each point."""
     return np.asarray(value)[..., None] if np.ndim(curve) else np.asarray(value)
 
 
@@ -36,14 +36,14 @@ def relative_axial_load(F_a: Array, f_0: Array, C_0: Array) -> Array:
 
 @units("N", "1", returns="1")
 def factor_is_known(F_a: Array, f_0: Array) -> Truth:
-    """Return whether f0 is given where there is an axial load."""
+    """Return whether f0 is given, if there is an axial load."""
     largest = np.max(F_a, axis=-1) if np.ndim(F_a) else F_a
     return (largest == 0) | ~np.isnan(f_0)
 
 
 @units("N", None, returns="1")
 def is_bearable(F_a: Array, elements: str) -> Truth:
-    """Return whether this calculation covers the axial load on these rolling elements."""
+    """Return whether this calculation covers an axial load on the given rolling elements."""
     return elements == "ball" or bool(np.all(np.asarray(F_a) == 0))
 
 
@@ -51,9 +51,8 @@ def is_bearable(F_a: Array, elements: str) -> Truth:
 def equivalent_load_ISO_281_2007(F_r: Array, F_a: Array, f_0: Array, C_0: Array) -> Array:
     """Return P = Fr, or X Fr + Y Fa where Fa/Fr > e, at each angle [N].
 
-    X, Y, e linear between the table's rows.
-
-    At Fa/Fr = e the table's digits leave X Fr + Y Fa up to 1 % below Fr; P is never below Fr.
+    X, Y and e are interpolated linearly between the rows of the table. At Fa/Fr = e the rounding of the table
+    makes X Fr + Y Fa up to 1 % less than Fr; P is never less than Fr.
     """
     curve = F_r if np.ndim(F_r) else F_a
     share = _last(np.where(np.isnan(f_0), 0.0, f_0) / C_0, curve) * F_a
@@ -81,29 +80,29 @@ def static_load_ISO_76_2006(F_r: Array, F_a: Array) -> Array:
 
 @units(None, returns="1", latex=r"3\ \text{{(balls) or}}\ \tfrac{{10}}{{3}}\ \text{{(rollers)}}")
 def life_exponent(elements: str) -> Array:
-    """Return 3 for balls, 10/3 for rollers."""
+    """Return the life exponent: 3 for balls, 10/3 for rollers."""
     return np.float64(3.0 if elements == "ball" else 10 / 3)  # type: ignore[return-value]
 
 
 @units("1", returns="1", latex=r"0.95\left(\frac{{\ln {0}}}{{\ln 0.9}}\right)^{{2/3}}+0.05")
 def reliability_factor(S: Array) -> Array:
-    """Return a1 [1] of a reliability: 1 at 0.9, by a Weibull distribution with a least life."""
+    """Return a1 [1] of a reliability: 1 at 0.9, by a Weibull distribution with a minimum life."""
     return (1 - LEAST) * (np.log(S) / np.log(0.9)) ** (1 / WEIBULL) + LEAST
 
 
 @units("1", "1", returns="1", latex=r"10^6\,{0}^{{-{1}}}")
 def rating_life(ratio: Array, p: Array) -> Array:
-    """Return L10 = 10⁶ (C/P)^p [revolutions]; none (NaN) without load."""
+    """Return L10 = 10⁶ (C/P)^p [revolutions]; NaN without load."""
     return (1e6 * np.where(ratio > 0, ratio, np.nan) ** -p)[()]
 
 
 @units("1", "rad/s", returns="s", latex=r"\frac{{2\pi\,{0}}}{{{1}}}")
 def time_of_turns(turns: Array, omega: Array) -> Array:
-    """Return the time of a number of revolutions [s]."""
+    """Return the duration of a number of revolutions [s]."""
     return 2 * np.pi * turns / omega
 
 
 @units("N", "N", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def safety(C_0: Array, P_0: Array) -> Array:
-    """Return the static capacity over static load [1]; none (NaN) without load."""
+    """Return the ratio of static capacity to static load [1]; NaN without load."""
     return (C_0 / np.where(P_0 > 0, P_0, np.nan))[()]

@@ -1,1 +1,1 @@
-"""Effects of rough faces on a film: asperity contact, and flow factors."""
+"""Effects of rough surfaces on a film: asperity contact, and flow factors."""

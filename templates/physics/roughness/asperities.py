@@ -4,8 +4,8 @@ r"""Contact of two rough surfaces with normally distributed summits, after Green
     p_c = \frac{16\sqrt2\,\pi}{15}(\sigma\beta\eta)^2\sqrt{\sigma/\beta}\,E'\,F_{5/2}(h/\sigma), \quad
     F_{5/2}(u) = \frac{1}{\sqrt{2\pi}}\int_u^\infty (s-u)^{5/2} e^{-s^2/2}\,ds
 
-sigma is the composite roughness (root mean square), beta the radius of the summits, eta their number per
-area, 1/E' the sum of (1 − nu²)/E of both. A spline through exact values represents F_{5/2}.
+sigma is the composite rms roughness, beta the radius of the summits, eta their number per unit area, 1/E' the
+sum of (1 − nu²)/E of both surfaces. A spline through exact values represents F_{5/2}.
 
 References
 ----------
@@ -23,14 +23,14 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 FARTHEST = 10.0
-"""Gap over roughness from which on no summits touch: F_{5/2} is 2e-25 there [-]."""
+"""Ratio of gap to roughness above which no summits touch: F_{5/2} is 2e-25 there [-]."""
 
 _KNOTS = 801
 _POINTS = 48
 
 
 def summit_integral(u: Array) -> Array:
-    """Return F_{5/2} of a gap over the roughness, 0 or more; exactly, by the parabolic cylinder function [-].
+    """Return F_{5/2} at a gap over roughness of 0 or more, exactly, by the parabolic cylinder function [-].
 
     Examples
     --------
@@ -42,20 +42,20 @@ def summit_integral(u: Array) -> Array:
 
 @cache
 def _logarithm() -> CubicSpline:
-    """Return the ln F_{5/2} over 0 … FARTHEST, to 1e-9."""
+    """Return the spline of ln F_{5/2} over 0 … FARTHEST, accurate to 1e-9."""
     u = np.linspace(0, FARTHEST, _KNOTS)
     return CubicSpline(u, np.log(summit_integral(u)))
 
 
 @cache
 def _quadrature() -> tuple[Array, Array]:
-    """Return Gauss's points and weights on −1 … 1."""
+    """Return Gauss points and weights on −1 … 1."""
     x, weight = np.polynomial.legendre.leggauss(_POINTS)
     return x, weight
 
 
 def splined_summit_integral(u: Array) -> Array:
-    """Return F_{5/2} of a gap over the roughness, 0 or more; 0 from `FARTHEST` on [-]."""
+    """Return F_{5/2} at a gap over roughness of 0 or more, from the spline; 0 from `FARTHEST` on [-]."""
     return np.where(u < FARTHEST, np.exp(_logarithm()(np.minimum(u, FARTHEST))), 0.0)
 
 
@@ -66,9 +66,9 @@ def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
     Parameters
     ----------
     product
-        Sigma beta eta [-].
+        sigma beta eta [-].
     slenderness
-        Sigma over beta [-].
+        sigma over beta [-].
     modulus
         Composite modulus E' [Pa].
     """
@@ -76,16 +76,16 @@ def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
 
 
 def contact_integrals(eps: Array, roughness: Array) -> tuple[Array, Array]:
-    """Return the integrals of the contact pressure: along the line of centres, and around [-].
+    """Return the integrals of the contact pressure along the line of centres and around the circle [-].
 
-    They are the integrals over the angle of F_{5/2} cos(phi) and of F_{5/2}, phi from the narrowest gap.
+    They are the integrals over the angle of F_{5/2} cos(phi) and of F_{5/2}, with phi from the narrowest gap.
 
     Parameters
     ----------
     eps
         Relative eccentricity, 0 … 1 [-].
     roughness
-        Sigma over radial clearance [-].
+        sigma over radial clearance [-].
     """
     x, weight = _quadrature()
     eps, roughness = np.broadcast_arrays(eps, roughness)

@@ -1,13 +1,13 @@
-r"""The average Reynolds equation of rough surfaces after Patir and Cheng, and its film of a journal.
+r"""The average Reynolds equation of rough surfaces after Patir and Cheng, solved for a journal bearing.
 
 .. math::
     \partial_x(\phi_x h^3\partial_x p) + \partial_z(\phi_x h^3\partial_z p)
     = 6\,\eta\,U\,\partial_x(\bar h_T + \sigma\Phi_s)
 
 phi_x is that of isotropic roughness (gamma = 1) in both directions. Phi_s is (sigma_1/sigma)² phi_s of the
-moving face minus (sigma_2/sigma)² phi_s of the other, so it vanishes for faces of equal roughness. The mean
-gap h_T of a normal distribution is h where the faces do not touch. Below h/sigma = 0.5, where the tables end,
-the factors stay constant.
+moving surface minus (sigma_2/sigma)² phi_s of the other, so it vanishes for surfaces of equal roughness. The
+mean gap h_T of a normal distribution is h where the surfaces do not touch. Below h/sigma = 0.5, where the
+tables end, the factors are constant.
 
 The tables' numbers were taken from the source code of foam-extend 4.0 (flowFactorsPatirCheng.C), which quotes
 the papers; at h/sigma = 5 the two branches of phi_s agree to 1e-3.
@@ -30,22 +30,22 @@ PRESSURE = {
     1 / 9: (1.48, 0.42), 1 / 6: (1.38, 0.42), 1 / 3: (1.18, 0.42), 1: (0.90, 0.56),
     3: (0.225, 1.5), 6: (0.520, 1.5), 9: (0.870, 1.5),
 }  # fmt: skip
-"""C and r of phi_x by gamma: 1 − C exp(−r u) up to gamma = 1, 1 + C u^−r above."""
+"""Constants C and r of phi_x for each gamma: 1 − C exp(−r u) up to gamma = 1, 1 + C u^−r above."""
 SHEAR = {
     1 / 9: (2.046, 1.12, 0.78, 0.03, 1.856), 1 / 6: (1.962, 1.08, 0.77, 0.03, 1.754),
     1 / 3: (1.858, 1.01, 0.76, 0.03, 1.561), 1: (1.899, 0.98, 0.92, 0.05, 1.126),
     3: (1.560, 0.85, 1.13, 0.08, 0.556), 6: (1.290, 0.62, 1.09, 0.08, 0.388),
     9: (1.011, 0.54, 1.07, 0.08, 0.295),
 }  # fmt: skip
-"""A_1, alpha_1, alpha_2, alpha_3 and A_2 of phi_s by gamma."""
+"""Constants A_1, alpha_1, alpha_2, alpha_3 and A_2 of phi_s for each gamma."""
 THINNEST = 0.5
-"""h/sigma at which the tables end [-]."""
+"""Smallest h/sigma of the tables [-]."""
 
 
 def pressure_flow_factor(u: Array, gamma: float = 1) -> Array:
-    """Return phi_x at u = h/sigma, for a gamma of the table.
+    """Return phi_x at u = h/sigma, for a gamma of the table [-].
 
-    Correlation length along over across the flow [-].
+    gamma is the correlation length along the flow over that across it.
     """
     C, r = PRESSURE[gamma]
     u = np.maximum(u, THINNEST)
@@ -62,7 +62,7 @@ def shear_flow_factor(u: Array, gamma: float = 1) -> Array:
 
 
 def mean_gap(u: Array) -> Array:
-    """Return the mean gap over sigma of rough, normally distributed faces, where they do not overlap [-]."""
+    """Return the mean gap over sigma of rough, normally distributed surfaces, without overlaps [-]."""
     return u * ndtr(u) + np.exp(-np.square(u) / 2) / np.sqrt(2 * np.pi)
 
 
@@ -82,7 +82,7 @@ def rough_journal(
     asymmetry
         (sigma_journal² − sigma_bearing²)/sigma² times sliding over hydrodynamic speed [-].
     around, across
-        Intervals of the mesh.
+        Numbers of circumferential and axial intervals.
     """
     mesh = journal_mesh(eps, ratio, around, across)
     H, H_mid = gap(mesh.phi, eps), gap(midpoints(mesh.phi), eps)

@@ -1,12 +1,12 @@
 """Fatigue life by stress: Basquin's line, mean stress by Goodman, Gerber or Morrow.
 
-For smooth or notched steel parts under constant amplitude, where stresses stay elastic (beyond some 10³
-cycles). Lives commonly scatter by a factor of three and more; these formulas include no reliability.
+This applies to smooth or notched steel parts under constant amplitude, where stresses stay elastic (beyond
+some 10³ cycles). Lives commonly scatter by a factor of three and more; these formulas include no reliability.
 
 Compressive mean stress: Goodman's and Gerber's lines were fitted to tests in tension. In compression,
-Gerber's parabola would reduce life as in tension, and Goodman's line would increase it; here both set a
-compressive mean stress to zero, after Budynas and Nisbett. Morrow's formula is used unchanged: compression
-lengthens life (Dowling).
+Gerber's parabola would reduce life as in tension, and Goodman's line would increase it; here a compressive
+mean stress counts as zero for both, after Budynas and Nisbett. Morrow's formula is used unchanged:
+compression increases life (Dowling).
 
 References
 ----------
@@ -38,7 +38,7 @@ _SAFETY = (
     r"\frac{{n\,{1}}}{{{2}}}+n^{{2}}\,{3}=1\text{{)}}"
 )
 
-_LONGEST = np.log(1e300)  # of a life that is reported as a number
+_LONGEST = np.log(1e300)  # ln of the longest life that is reported as a number
 
 
 @units(None, "Pa", "Pa", "Pa", returns="1", latex=_SHARES)
@@ -55,11 +55,10 @@ def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array
 
 @units("Pa", "Pa", "1", "Pa", returns="1", latex=r"\frac{{1}}{{2}}\left(\frac{{{0}}}{{{1}}}\right)^{{1/{2}}}")
 def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, endurance: Array) -> Array:
-    """Return cycles to failure N [1] at a reversed amplitude [Pa], of sigma_ar = sigma_f' (2 N)^b.
+    """Return the cycles to failure N [1] at a reversed amplitude [Pa], from sigma_ar = sigma_f' (2 N)^b.
 
-    NaN if endless.
-
-    Endless up to the endurance limit [Pa] (NaN: there is none), without stress, and beyond 1e300 cycles.
+    Life is infinite, returned as NaN, up to the endurance limit [Pa] (NaN: there is none), without stress,
+    and beyond 1e300 cycles.
     """
     with np.errstate(divide="ignore", over="ignore"):
         logarithm = (np.log(amplitude) - np.log(coefficient)) / exponent - np.log(2)
@@ -69,9 +68,9 @@ def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, e
 
 @units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
 def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
-    """Return the reversed amplitude [Pa] borne for a number of cycles, or for ever without one.
+    """Return the permissible reversed amplitude [Pa] for a number of cycles; NaN cycles: infinite life.
 
-    The higher of Basquin's line at that life and the endurance limit [Pa]; NaN where there is neither.
+    It is the larger of Basquin's line at that life and the endurance limit [Pa]; NaN if there is neither.
     """
     return np.fmax(coefficient * (2 * life) ** exponent, endurance)
 
@@ -81,7 +80,7 @@ def load_safety_factor(correction: str, amplitude: Array, allowable: Array, shar
     """Return the factor by which amplitude [Pa] and mean stress may grow together; NaN if unbounded.
 
     Goodman and Morrow: 1/n = sigma_a/S + sigma_m/strength. Gerber: n sigma_a/S + (n sigma_m/sigma_u)² = 1
-    (Budynas and Nisbett, chapter 6), solved so that no digit is lost.
+    (Budynas and Nisbett, chapter 6), solved without loss of digits.
     """
     used = amplitude / allowable
     total = (used + np.sqrt(used**2 + 4 * share)) / 2 if correction == GERBER else used + share
@@ -90,39 +89,36 @@ def load_safety_factor(correction: str, amplitude: Array, allowable: Array, shar
 
 @units("Pa", "Pa", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def ratio_or_none(strength: Array, stress: Array) -> Array:
-    """Return the strength over stress, both in Pa [1]; NaN without stress."""
+    """Return strength over stress, both in Pa [1]; NaN without stress."""
     return np.where(stress > 0, strength / np.where(stress > 0, stress, 1.0), np.nan)[()]
 
 
 @units(None, "Pa", returns="1")
 def mean_is_used(correction: str, mean: Array) -> Any:
-    """Return whether the correction takes the mean stress [Pa] as it is, not a compressive one as zero."""
+    """Return whether the correction uses the mean stress [Pa] as it is, not a compressive one as zero."""
     return ~((mean < 0) & (correction in (GOODMAN, GERBER)))
 
 
 @units(None, "Pa", returns="1")
 def either_is_given(one: Array, other: Array) -> Any:
-    """Return whether at least one of two stresses [Pa] is no NaN."""
+    """Return whether at least one of two stresses [Pa] is given."""
     return ~(np.isnan(one) & np.isnan(other))
 
 
 @units("Pa", "Pa", "Pa", returns="1")
 def is_borne_once(amplitude: Array, mean: Array, ultimate: Array) -> Any:
-    """Return whether amplitude plus mean is below the ultimate strength [Pa].
-
-    What is missing harms nothing.
-    """
+    """Return whether amplitude plus mean is below the ultimate strength [Pa]; true if one is missing."""
     return ~(amplitude + mean >= ultimate)
 
 
 @units("Pa", "Pa", returns="1")
 def is_below(one: Array, other: Array) -> Any:
-    """Return whether one stress [Pa] is below another, or is missing."""
+    """Return whether one stress [Pa] is below another; true if one is missing."""
     return ~(one >= other)
 
 
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
-    """Return in words whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
+    """Return a text that states whether a life is finite or infinite; empty if the amplitude [Pa] is NaN."""
     words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
     return words if words.ndim else str(words)

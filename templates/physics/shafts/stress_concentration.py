@@ -1,7 +1,7 @@
 """Stress concentration at the shoulder fillet of a round shaft, and its effect in fatigue.
 
-For a step between two coaxial round sections. The fillet between a crank's pin and web has a different shape:
-use finite elements or a measured factor where it matters.
+The formulas are for a step between two coaxial round sections. The fillet between a crank's pin and web has a
+different shape: use finite elements or a measured factor if that matters.
 
 References
 ----------
@@ -26,15 +26,16 @@ _BENT = ((0.947, 1.206, -0.131), (0.022, -3.405, 0.915), (0.869, 1.777, -0.555),
 _BENT_SHARP = (
     (1.232, 0.832, -0.008), (-3.813, 0.968, -0.260), (7.423, -4.868, 0.869), (-3.839, 3.070, -0.600)
 )  # fmt: skip
-_SHARP = 2.0  # t/r from which on the second set of coefficients holds in bending
+_SHARP = 2.0  # t/r above which the second set of coefficients applies in bending
 _CHARTED = {TORSION: (0.25, 4.0), BENDING: (0.1, 20.0)}
 
 
 @units(None, "m", "m", "m", returns="1", latex=r"K_{{t}}^{{\mathrm{{Pilkey}}}}\left({1},{2},{3}\right)")
 def shoulder_fillet_Pilkey_2008(loading: str, D: Array, d: Array, r: Array) -> Array:
-    """Return the stress concentration factor [1] of a fillet r between diameters D > d [m], on the section d.
+    """Return the stress concentration factor [1] of a fillet r between diameters D > d [m], on section d.
 
-    In bending of the normal, in torsion of the shear stress; NaN where a dimension is missing.
+    It applies to the normal stress in bending and to the shear stress in torsion; NaN if a dimension is
+    missing.
     """
     height = (D - d) / 2
     slope, step = height / r, 2 * height / D
@@ -47,40 +48,37 @@ def shoulder_fillet_Pilkey_2008(loading: str, D: Array, d: Array, r: Array) -> A
 
 @units(None, "1", None, returns="1")
 def is_charted(loading: str, slope: Array, K_t: Array) -> Any:
-    """Return whether the shoulder's height over its fillet [1] is within the chart, or K_t is given."""
+    """Return whether shoulder height over fillet radius [1] is within the chart, or K_t is given."""
     low, high = _CHARTED[loading]
     return ~((slope < low) | (slope > high)) | ~np.isnan(K_t)
 
 
 @units("m", "m", returns="1")
 def is_wider(D: Array, d: Array) -> Any:
-    """Return whether one diameter is larger than the other [m], or one of them is missing."""
+    """Return whether one diameter is larger than the other [m]; true if one of them is missing."""
     return ~(D <= d)
 
 
 @units(None, "1", None, "Pa", None, "Pa", returns="1")
 def notch_is_known(K_t: Array, slope: Array, amplitude: Array, S_a: Array, mean: Array, S_m: Array) -> Any:
-    """Return whether K_t [1] is given or follows from a shoulder, or is not needed."""
+    """Return whether K_t [1] is given, follows from a shoulder, or is not needed."""
     needed = (np.isnan(amplitude) & ~np.isnan(S_a)) | (np.isnan(mean) & ~np.isnan(S_m))
     return ~needed | ~np.isnan(K_t) | ~np.isnan(slope)
 
 
 @units("1", "1", returns="1", latex=r"1+{1}\left({0}-1\right)")
 def fatigue_notch_factor_Peterson(K_t: Array, q: Array) -> Array:
-    """Return the fatigue notch factor [1] of a stress concentration K_t [1] at a notch sensitivity q [1]."""
+    """Return the fatigue notch factor [1] from a factor K_t [1] and a notch sensitivity q [1]."""
     return 1 + q * (K_t - 1)
 
 
 @units(None, "Pa", "1", returns="Pa", latex=r"c_{{\mathrm{{load}}}}\,{2}\,{1}")
 def local_stress(loading: str, nominal: Array, K_f: Array) -> Array:
-    """Return local stress [Pa] of a nominal one.
-
-    As it is in bending, the von Mises stress of a shear in torsion.
-    """
+    """Return the local stress [Pa] in bending, or the von Mises stress of the local shear in torsion."""
     return (np.sqrt(3) if loading == TORSION else 1.0) * K_f * nominal
 
 
 def _polynomial(coefficients: tuple[tuple[float, float, float], ...], slope: Array, step: Array) -> Array:
-    """Return Pilkey's polynomial: cubic in the step, its coefficients in the root of the slope."""
+    """Return Pilkey's polynomial: cubic in 2 t/D, with coefficients in the root of t/r."""
     root = np.sqrt(slope)
     return sum((a + b * root + c * slope) * step**i for i, (a, b, c) in enumerate(coefficients))  # type: ignore[return-value]

@@ -1,10 +1,11 @@
 """Free torsional vibration of a chain of inertias joined by shafts: natural frequencies and mode shapes.
 
-For `torsional_vibration`. Undamped, linear; no branches and no gears (reduce both sides to one speed first).
+Used by `torsional_vibration`. The chain is undamped and linear, without branches and gears (refer both sides
+to one speed first).
 
 With J the inertias and k the stiffnesses, K phi = omega² J phi. The chain's K is B k Bᵀ, where B forms the
 differences of neighbouring angles; so the omega are the singular values of J^(-1/2) B k^(1/2), which is
-bidiagonal. They are computed from that matrix, never from K: forming K loses the small frequencies of a
+bidiagonal. They are computed from that matrix and not from K: forming K loses the small frequencies of a
 widely scaled train, whereas the entries of a bidiagonal matrix determine each singular value to rounding
 (Demmel, Kahan). Over 18 decades of inertias and stiffnesses all frequencies agree with 60-digit arithmetic to
 1e-13, and entries of mode shapes to 1e-15 times the square root of the ratio of largest to smallest inertia.
@@ -26,13 +27,13 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 
 FREE, FIXED = "free_free", "fixed_free"
-MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # of a chain; of the mode shapes of all chains
-TIE = 1 - 1e-9  # entries of a mode shape this near to the largest are as large
+MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # per chain; in the mode shapes of all chains
+TIE = 1 - 1e-9  # mode-shape entries above this fraction of the largest count as equal to it
 
 
 @dataclass(frozen=True)
 class _Bidiagonal:
-    """Diagonal and superdiagonal of a square matrix, and the rotations that led there (none: NaN)."""
+    """Diagonal and superdiagonal of a square matrix, and the rotations that produced them (NaN if none)."""
 
     diagonal: Array
     above: Array
@@ -41,7 +42,7 @@ class _Bidiagonal:
 
     @property
     def dense(self) -> Array:
-        """Return the matrix itself."""
+        """Return the dense matrix."""
         n = self.diagonal.shape[-1]
         full, i = np.zeros((*self.diagonal.shape, n)), np.arange(n)
         full[..., i, i], full[..., i[:-1], i[1:]] = self.diagonal, self.above
@@ -50,14 +51,14 @@ class _Bidiagonal:
 
 @units("kg*m**2", "N*m/rad", None, returns="1")
 def fits(J: Array, k: Array, ends: str) -> bool:
-    """Return whether J [..., inertia] and k [..., spring], NaN for none, make a chain."""
+    """Return whether J [..., inertia] and k [..., spring], NaN if missing, form a chain."""
     springs = np.shape(k)[-1] if np.ndim(k) else 0
     return springs == np.shape(J)[-1] - (ends == FREE)
 
 
 @units("kg*m**2", "N*m/rad", "1", returns="1")
 def manageable(J: Array, k: Array, orders: Array) -> bool:
-    """Return whether chains [..., inertia] and their tables of orders [..., order] can be calculated."""
+    """Return whether chains [..., inertia] and tables of orders [..., order] are within size limits."""
     several = np.shape(np.atleast_1d(orders))
     chains = np.broadcast_shapes(np.shape(J)[:-1], np.shape(k)[:-1], several[:-1])
     longest = max(np.shape(J)[-1], several[-1])
@@ -67,10 +68,10 @@ def manageable(J: Array, k: Array, orders: Array) -> bool:
 @on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left({1},{0}\right)}}")
 def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
-    """Return the natural angular frequencies [rad/s], ascending [..., mode], of J [kg m²], k [N m/rad].
+    """Return the natural angular frequencies [rad/s], ascending [..., mode], from J [kg m²] and k [N m/rad].
 
     With free ends the first is exactly 0, and k[i] joins J[i] and J[i+1]; with a fixed end k[0] joins J[0] to
-    the ground and k[i] joins J[i-1] and J[i]. NaN where numbers overflow.
+    the ground and k[i] joins J[i-1] and J[i]. The result is NaN where numbers overflow.
     """
     elastic = _singular_values(_reduced(J, k, ends).dense)
     return _with_rigid(elastic, 0.0, axis=-1) if ends == FREE else elastic
@@ -89,7 +90,7 @@ def mode_shapes(J: Array, k: Array, ends: str) -> Array:
 
 
 def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
-    """Return J^(-1/2) B k^(1/2) as a square matrix; with free ends, its last row turned into the others."""
+    """Return J^(-1/2) B k^(1/2) as a square matrix; with free ends, rotations eliminate its last row."""
     root_J = np.sqrt(J)
     if ends == FIXED:
         root_k = np.sqrt(k)
@@ -101,9 +102,10 @@ def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
 
 
 def _turned(first: Array, second: Array) -> _Bidiagonal:
-    """The square bidiagonal of a chain with free ends: column i holds first[i] and, below it, -second[i].
+    """Return the square bidiagonal matrix of a chain with free ends.
 
-    Each rotation is a product of positive numbers, so that no digit is lost.
+    Column i contains first[i] and, below it, -second[i]. Each rotation is a product of positive numbers, so
+    no digit is lost.
     """
     diagonal, above, cosines, sines = (np.zeros_like(first) for _ in range(4))
     rest = first[..., :1]
@@ -118,7 +120,7 @@ def _turned(first: Array, second: Array) -> _Bidiagonal:
 
 
 def _turned_back(turned: _Bidiagonal, vectors: Array) -> Array:
-    """Vectors [..., mode, row] of the square matrix as vectors of the chain, which has one row more."""
+    """Return vectors [..., mode, row] of the square matrix as vectors of the chain (one row more)."""
     rows = np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 1))], axis=-1)
     for i in reversed(range(vectors.shape[-1])):
         cosine, sine = turned.cosines[..., i, None], turned.sines[..., i, None]
@@ -130,9 +132,8 @@ def _turned_back(turned: _Bidiagonal, vectors: Array) -> Array:
 def _singular_values(matrix: Array) -> Array:
     """Return the singular values [..., mode] of bidiagonal matrices, ascending.
 
-    NaN where an entry is not finite.
-
-    LAPACK leaves a bidiagonal matrix as it is and, without vectors, takes the accurate dqds algorithm.
+    They are NaN if an entry is not finite. LAPACK does not change a bidiagonal matrix and, without vectors,
+    uses the accurate dqds algorithm.
     """
     finite = _finite(matrix)
     values = np.linalg.svd(np.where(finite, matrix, 0.0), compute_uv=False)
@@ -140,7 +141,7 @@ def _singular_values(matrix: Array) -> Array:
 
 
 def _left_vectors(matrix: Array) -> Array:
-    """Return the left singular vectors [..., mode, row], in the order of the values; NaN as those."""
+    """Return the left singular vectors [..., mode, row] in the order of the values; NaN like the values."""
     finite = _finite(matrix)
     columns = np.linalg.svd(np.where(finite, matrix, 0.0))[0]
     return np.where(finite, columns[..., ::-1].swapaxes(-1, -2), np.nan)
@@ -152,9 +153,9 @@ def _finite(matrix: Array) -> NDArray[np.bool_]:
 
 
 def _scaled(shapes: Array) -> Array:
-    """Return each shape [..., mode, inertia] with 1 as its largest entry.
+    """Return each shape [..., mode, inertia] with its largest entry equal to 1.
 
-    Of equally large ones the first counts.
+    If several entries are equally large, the first counts.
     """
     size = np.abs(shapes)
     largest = size.max(axis=-1, keepdims=True, initial=0.0)
@@ -163,7 +164,7 @@ def _scaled(shapes: Array) -> Array:
 
 
 def _with_rigid(elastic: Array, value: float, axis: int) -> Array:
-    """Return the elastic modes, preceded by the mode in which the chain turns as a whole."""
+    """Return the elastic modes, preceded by the mode in which the chain rotates as a rigid body."""
     shape = list(elastic.shape)
     shape[axis] = 1
     return np.concatenate([np.full(shape, value), elastic], axis=axis)

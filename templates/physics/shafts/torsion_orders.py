@@ -1,8 +1,8 @@
 """Critical speeds, where engine orders meet natural frequencies, and the lines of a Campbell diagram.
 
-For `torsional_vibration`. An order is a number of excitations per turn: a four-stroke engine has whole and
-half orders. The natural frequencies of a chain do not depend on speed, so they are horizontal lines in the
-diagram.
+Used by `torsional_vibration`. An order is a number of excitations per revolution: a four-stroke engine has
+whole and half orders. The natural frequencies of a chain do not depend on speed, so they are horizontal lines
+in the diagram.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 PLACES = 21
-"""Speeds at which the lines of the diagram are given."""
+"""Number of speeds at which the lines of the diagram are given."""
 
 RPM = 2 * np.pi / 60
 
@@ -42,13 +42,13 @@ def excitation(orders: Array, speeds: Array) -> Array:
 
 @units("rad/s", returns="1")
 def ascending(speeds: Array) -> bool:
-    """Return whether a range [rad/s] has two speeds, the lower one first."""
+    """Return whether a range [rad/s] has two speeds in ascending order."""
     return np.shape(speeds)[-1:] == (2,) and bool(np.all(speeds[..., 0] < speeds[..., 1]))
 
 
 @units("rad/s", "1", "rad/s", returns="1")
 def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
-    """Return in words the critical speeds [rad/s; ..., order, mode] in the range; empty without a range."""
+    """Return a text on the critical speeds [rad/s; ..., order, mode] in the range; empty without a range."""
     if not np.ndim(speeds) or np.isnan(critical).any():
         return ""
     points = np.broadcast_shapes(critical.shape[:-2], speeds.shape[:-1], np.shape(orders)[:-1])
@@ -62,9 +62,9 @@ def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
 
 
 def _sentence(critical: Array, orders: Array, speeds: Array) -> str:
-    """Return the critical speeds of one chain within the range, ascending.
+    """Return a text on the critical speeds of one chain within the range, in ascending order.
 
-    Mode 0 of a free chain has none.
+    Mode 0 of a free chain has no critical speed.
     """
     inside = (critical >= speeds[0]) & (critical <= speeds[1]) & (critical > 0)
     crossings = sorted((critical[order, mode], orders[order], mode) for order, mode in np.argwhere(inside))

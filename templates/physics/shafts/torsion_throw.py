@@ -1,6 +1,6 @@
 """A crank throw in torsion: the sections of its parts, and the choice of the closed form.
 
-For `crank_stiffness`. Both closed forms are fitted to tests: Carter's to throws with slender webs, Ker
+Used by `crank_stiffness`. Both closed forms are fitted to tests: Carter's to throws with slender webs, Ker
 Wilson's to throws whose pin overlaps the journals.
 
 References
@@ -30,24 +30,22 @@ TOO_SHORT = (
 
 @units("m", "m", returns="m**4", latex=r"\left({0}^{{4}}-{1}^{{4}}\right)")
 def ring(outer: Array, inner: Array) -> Array:
-    """Return the difference of the fourth powers of outer and inner diameter [m].
+    """Return the difference of the fourth powers of outer and inner diameter [m⁴].
 
-    32/π times the polar moment [m⁴].
-
-    Multiplied out so that thin walls lose no digits.
+    It is 32/π times the polar moment of area [m⁴], factored so that thin walls lose no digits.
     """
     return (outer - inner) * (outer + inner) * (outer**2 + inner**2)
 
 
 @units("m", returns="1")
 def recommended(overlap: Array) -> Any:
-    """Return the formula for a throw with a pin overlap [m]: carter or wilson."""
+    """Return the formula to use for a throw with a pin overlap [m]: carter or wilson."""
     return _selected([overlap > 0, overlap <= 0], [WILSON, CARTER])
 
 
 @units("m", "m", returns="1")
 def reason(overlap: Array, effective_throw: Array) -> Any:
-    """Return why that formula is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
+    """Return a text on why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
     cases = [(overlap > 0) & (effective_throw < 0), overlap > 0, overlap <= 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART])
 

@@ -1,6 +1,6 @@
 """A smooth transition from Carter's to Ker Wilson's formula where pin and journal begin to overlap.
 
-For `crank_stiffness` 1. The literature chooses by the sign of the overlap, without a transition. But at
+Used by `crank_stiffness` 1. The literature chooses by the sign of the overlap, without a transition. But at
 overlap 0 nothing changes abruptly: the webs stiffen steadily as the throw becomes shorter. So the two
 formulas are blended over a range of throws. Its middle is the published boundary, R = (D_j + D_c)/2. Its half
 width is 0.1 (D_j + D_c), half of the length by which Ker Wilson shortens the throw because pin and journal
@@ -28,7 +28,7 @@ from templates.core.language.declare import units
 
 CARTER, BETWEEN, WILSON = "carter", "between", "wilson"
 HALF_WIDTH = 0.1
-"""Of the transition, in D_j + D_c."""
+"""Half the width of the transition, over D_j + D_c."""
 
 APART = "pin and journal are well apart: the webs bend, which Carter's formula allows for"
 NEITHER = (
@@ -56,7 +56,7 @@ def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
 def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
     """Return the stiffness [N m/rad] blended from Carter's and a share [1] of Ker Wilson's flexibility.
 
-    Where the share is 0 or 1 it is that of one formula, to the last digit.
+    If the share is 0 or 1 the result is exactly that of one formula.
     """
     joined = 1 / ((1 - share) / carter + share / wilson)
     return np.select([share <= 0, share >= 1], [carter, wilson], joined)[()]
@@ -64,13 +64,13 @@ def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
 
 @units("1", returns="1")
 def recommended(share: Array) -> Any:
-    """Return the formula for a throw, by the share [1] of Ker Wilson's: carter, wilson or between."""
+    """Return the formula used for a throw, from the share [1] of Ker Wilson's: carter, wilson or between."""
     return _selected([share <= 0, share >= 1, share > 0], [CARTER, WILSON, BETWEEN])
 
 
 @units("1", "m", returns="1")
 def reason(share: Array, effective_throw: Array) -> Any:
-    """Return why that is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
+    """Return a text on why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
     cases = [(share >= 1) & (effective_throw < 0), share >= 1, share <= 0, share > 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART, NEITHER])
 

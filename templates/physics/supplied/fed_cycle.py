@@ -4,9 +4,9 @@ The levels compute orbit, pressure, power loss and flow:
 
     mobility_short    Booker's closed form (1971) of the short bearing's half film; ignores the supply
     mobility          the finite bearing's mobility from its map; ignores the supply
-    mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
+    mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands carry it
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
-                      nowhere else; knows no groove, hole or supply pressure; one case at a time
+                      nowhere else; ignores groove, hole and supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; case after case
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
@@ -63,9 +63,9 @@ BOUNDARY = {
     "supplied": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply pressure "
     "in grooves and holes; oil in a cavity stays where it is",
 }
-"""What each level takes for the pressure at the film's borders."""
+"""Boundary conditions of the pressure at each level."""
 WIDTHS = {"mobility_short": (0.01, 100.0), **dict.fromkeys(LEVELS[1:], (NARROWEST, WIDEST))}
-"""Width ratios B/D that each level takes [-]."""
+"""Smallest and largest width ratio B/D at each level [-]."""
 OWN_ERRORS = {
     "maximum_pressure": "pressure",
     "power_loss": "loss",
@@ -73,38 +73,38 @@ OWN_ERRORS = {
     "supply_flow": "side_flow",
     "bore_deflection": "pressure",
 }
-"""Outputs of which a march states the error, by its name in `Totals`."""
+"""Outputs whose error the march states, each with the name of that error in `Totals`."""
 UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
-"""Verdicts that leave no film to report."""
+"""Verdicts for which no film is reported."""
 REMEDY = {
     Verdict.STARVED: "move the groove or the hole to where the load seldom points, or add one",
     Verdict.UNSETTLED: "give less load in kN, or more dynamic_viscosity in mPa*s; under a light load give "
     "less supply_pressure in bar",
 }
-"""What a user may change where no film repeats."""
+"""Changes of the input that can give a repeating film."""
 
 
 @dataclass(frozen=True)
 class FedDuty:
-    """What a bearing has to do over a cycle, and what feeds it; SI."""
+    """Loads and speeds of a bearing over a cycle, and its oil supply; SI."""
 
     duty: Duty
-    """Load and speeds; the load is what the journal pushes with."""
+    """Load and speeds; the load is the force of the journal on the film."""
     groove_share: Array
-    """Width of a groove in the sleeve over that of the bearing, 0 where there is none, (...) [-]."""
+    """Width of a groove in the sleeve over the width of the bearing, 0 without a groove, (...) [-]."""
     groove_start: Array
-    """Where it begins, from the sleeve's axis, (...) [rad]."""
+    """Angle from the sleeve's axis at which the groove begins, (...) [rad]."""
     groove_extent: Array
-    """Extent in the sense x to y, (...) [rad]."""
+    """Angle that the groove extends from its start in the sense x to y, (...) [rad]."""
     pressure: Array
-    """Supply pressure above ambient P = p psi²/(eta Omega), NaN where nothing feeds, (...) [-]."""
+    """Supply pressure above ambient P = p psi²/(eta Omega), NaN without a supply, (...) [-]."""
     supplies: NDArray[np.object_] | None = None
-    """Grooves and holes and their pressure, a `Supply` or None, (...); level supplied alone needs them."""
+    """Grooves and holes and their pressure, a `Supply` or None, (...); only level supplied needs them."""
 
 
 @dataclass(frozen=True)
 class FedOrbit:
-    """Where the journal goes; NaN, and eps_max infinite, where no orbit was found."""
+    """The orbit of the journal; NaN, and eps_max infinite, where no orbit was found."""
 
     eps_x: Array
     eps_y: Array
@@ -112,18 +112,18 @@ class FedOrbit:
     gap: Array
     """1 − |eps|, (..., N)."""
     eps_max: Array
-    """Largest relative eccentricity, between the angles too, by a parabola, (...)."""
+    """Largest relative eccentricity, also between the angles (by a parabola), (...)."""
     angle: Array
-    """Its crank angle, at the mobility levels that of the nearest node [rad]."""
+    """Crank angle of the largest eccentricity; the mobility levels give that of the nearest node [rad]."""
     numerical_error: Array
-    """Relative error of the smallest gap by the step, or from cycle to cycle, (...); NaN where unknown."""
+    """Relative error of the smallest gap from the step or from cycle to cycle, (...); NaN where unknown."""
     marches: tuple[SuppliedOrbit | None, ...] = ()
-    """Results of marching in time at level supplied, of every point; None of one without speed or supply."""
+    """Result of the march at level supplied for each point; None for a point without speed or supply."""
     flooded: TransientOrbit | None = None
-    """Results of marching in time at level flooded."""
+    """Result of the march at level flooded."""
 
     def admitted(self, eps_max: Array) -> "FedOrbit":
-        """Return the same with NaN where the largest eccentricity was not admitted."""
+        """Return the same orbit with NaN where the largest eccentricity is NaN."""
         lost = np.isnan(eps_max)
 
         def kept(values: Array) -> Array:
@@ -135,12 +135,12 @@ class FedOrbit:
         return FedOrbit(**values, marches=self.marches, flooded=self.flooded)
 
     def required(self) -> "FedOrbit":
-        """Return the same if a film repeats, or if there are several points.
+        """Return the same orbit if a film repeats, or if there are several points.
 
         Raises
         ------
         InvalidInputs
-            By the name of the verdict, if the film of a single point starves or no orbit was found.
+            Named after the verdict, if the film of a single point starves or no orbit was found.
         """
         if len(self.marches) == 1 and (marched := self.marches[0]) and marched.verdict in UNREPEATED:
             detail = f"no film repeats: {marched.reason}; {REMEDY[marched.verdict]}"
@@ -149,12 +149,12 @@ class FedOrbit:
 
     @property
     def verdict(self) -> str:
-        """End of a march at level supplied, of several points with the number of each; empty without one."""
+        """Return how a march of level supplied ended, numbered for several points; empty without one."""
         return _of_points([marched.verdict.value if marched else "" for marched in self.marches])
 
     @property
     def reason(self) -> str:
-        """Return why no film repeats, in words; empty where one does or level supplied did not march."""
+        """Return a text on why no film repeats; empty if one does or level supplied was not used."""
         return _of_points([marched.reason if marched else "" for marched in self.marches])
 
     @property
@@ -166,19 +166,19 @@ class FedOrbit:
 
     @property
     def mass_balance(self) -> Array:
-        """Return oil fed less oil lost and stored, over the oil lost; NaN but at level supplied."""
+        """Return oil fed minus oil lost and stored, over the oil lost; NaN except at level supplied."""
         return self.of_marches(lambda marched: marched.mass_balance)
 
     @property
     def feed(self) -> Array:
-        """Return oil fed, Q/(B D c Omega), c the radial clearance, in the mean.
+        """Return the mean flow of oil fed, Q/(B D c Omega), c the radial clearance, (...).
 
-        NaN if no film repeats, (...).
+        It is NaN if no film repeats.
         """
         return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else m.mean_feed)
 
     def of_marches(self, value: Callable[[SuppliedOrbit], float]) -> Array:
-        """Return a value of the march of each point; NaN without one, (...)."""
+        """Return a value from the march of each point; NaN without one, (...)."""
         if not self.marches:
             return self._everywhere(np.nan)
         values = [value(marched) if marched else np.nan for marched in self.marches]
@@ -194,7 +194,7 @@ class FedOrbit:
 
 
 def _of_points(texts: Sequence[str]) -> str:
-    """Return a statement for all points, or one for each point; empty if there is none."""
+    """Return a text for all points, or one for each point; empty if there is none."""
     if len(set(texts)) <= 1:
         return next(iter(texts), "")
     return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)
@@ -202,11 +202,11 @@ def _of_points(texts: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class _Cases:
-    """The points of a duty in one row, dimensionless."""
+    """The points of a duty as a one-dimensional array, dimensionless."""
 
     passing: GroovePassage
     ratio: Array
-    """(C,) width over diameter; 1 where the level does not take it, and the load has no speed then."""
+    """(C,) width over diameter; 1, and a load without speed, where the level does not support the width."""
     sliding: Array
     """(C, N) speed of the journal over the sleeve, over Omega."""
     pressure: Array
@@ -215,7 +215,7 @@ class _Cases:
 
     @property
     def load(self) -> CyclicLoad:
-        """Return the load on its own."""
+        """Return the cyclic load alone."""
         return self.passing.load
 
 
@@ -253,9 +253,9 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
     }
 )
 def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
-    """Return the pressure, loss and flow along an orbit.
+    """Return pressure, loss and flow along an orbit.
 
-    Side flow of level supplied with what its supply drives.
+    The side flow of level supplied includes the flow driven by the supply.
     """
     cases = _cases(level, fed)
     load, points = cases.load, cases.points
@@ -280,10 +280,10 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
 
 
 def _driven(level: str, cases: _Cases, eps: Array, weight: Array) -> Array:
-    """Return the mean flow from the groove over both lands due to supply pressure, (C,).
+    """Return the mean flow from the groove over both lands that the supply pressure drives, (C,).
 
-    The pressure of the film does not hinder it, as ISO 7902-1 has it for a steady load. 0 where the level
-    knows no supply pressure, or counts that flow as side flow.
+    The pressure of the film does not reduce it, as in ISO 7902-1 for a steady load. It is 0 if the level
+    ignores supply pressure, or includes this flow in the side flow.
     """
     if level not in MOBILITY:
         return np.zeros(cases.ratio.shape)
@@ -304,7 +304,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
     eps_x, eps_y
         Relative eccentricity [-].
     start, extent
-        Where the arc begins and how far it goes [rad].
+        Start and extent of the arc [rad].
     """
     eps, centre = np.hypot(eps_x, eps_y), np.arctan2(eps_y, eps_x)
 
@@ -317,23 +317,26 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
 
 
 def fed_duty(level: str, duty: Duty, feeding: SupplyGeometry, pressure: Array) -> FedDuty:
-    """Return a duty with its oil supply at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
+    """Return a duty with its oil supply at a level, for a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supplies = supplies_of(feeding, pressure) if level == "supplied" else None
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, pressure, supplies)
 
 
 def _cases(level: str, fed: FedDuty) -> _Cases:
-    """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
+    """Return the points of a duty, dimensionless; NaN speeds where the level does not support the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
-    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure)
+    fed_points = np.zeros(
+        () if fed.supplies is None else fed.supplies.shape
+    )  # points may differ only in the size of a hole, so the shape of the supplies counts too
+    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure, fed_points)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
     curves = np.broadcast_arrays(duty.F_x * scale, duty.F_y * scale, *speeds, *flat, duty.angle)
     points = curves[0].shape[:-1]
     x, y, journal, sleeve, frame, *rows, _ = (np.reshape(c, (-1, duty.angle.size)) for c in curves)
-    ratio, share, start, extent, pressure = (row[:, 0] for row in rows)
+    ratio, share, start, extent, pressure, _ = (row[:, 0] for row in rows)
     groove = Groove(np.nan_to_num(share), np.nan_to_num(start), np.nan_to_num(extent))
     turned = turning(duty.angle, period, sleeve - frame)
     taken = _taken(level, ratio, groove, turned.turns)
@@ -348,7 +351,7 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
 
 
 def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
-    """Return which cases a level takes: by their width, that of the lands, and what the sleeve does."""
+    """Return a mask of the cases that a level supports, by bearing and land width and sleeve rotation."""
     low, high = WIDTHS[level]
     taken = (ratio >= low) & (ratio <= high)
     if level != "mobility_grooved":
@@ -359,7 +362,7 @@ def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
 
 
 def _flooded_orbit(cases: _Cases) -> FedOrbit:
-    """Return the orbit of the one case at level flooded, marched from that at level mobility."""
+    """Return the orbit of a single case at level flooded, marched from that at level mobility."""
     ratio = cases.ratio
     start, flooded = periodic_orbit(cases.load, MapLaw(ratio)), None
     if np.isfinite(start.least_gap).all():
@@ -376,7 +379,7 @@ def _periodic(level: str, cases: _Cases) -> Orbit:
 
 
 def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
+    """Return pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
     S, ratio = cases.load.S, cases.ratio
     size = np.hypot(*S)
     c, s = np.where(size > 0, S / np.where(size > 0, size, 1.0), 0.0)
@@ -395,13 +398,13 @@ def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array,
 
 
 def _one_by_one(marches: tuple[SuppliedOrbit | None, ...]) -> Iterator[tuple[Mask, SuppliedOrbit | None]]:
-    """Yield the mask of each case, and its march."""
+    """Yield the mask of each case with its march."""
     for number, marched in enumerate(marches):
         yield np.arange(len(marches)) == number, marched
 
 
 def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit | None:
-    """March one case; None where the level does not take it."""
+    """Return the march of one case; None if the level does not support it."""
     load = cases.load.of(np.arange(cases.ratio.size) == number)
     if supply is None or not np.isfinite(load.w).all():
         return None
@@ -410,7 +413,7 @@ def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit
 
 
 def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> FedOrbit:
-    """Return the orbits of all cases; a film that starves has no eccentricity, and is not refused for it."""
+    """Return the orbits of all cases; a starved film has NaN eccentricities, which no bound refuses."""
     orbits = [
         _sampled(marched, cases.load.of(one)) if marched and marched.verdict not in UNREPEATED
         else _nowhere(cases.load.of(one))
@@ -426,7 +429,7 @@ def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> Fed
 
 
 def _shaped(orbit: Orbit, cases: _Cases) -> FedOrbit:
-    """Return the cases in the shape of the points."""
+    """Return the values of the cases in the shape of the points."""
     points = cases.points
     x, y = (e.reshape(*points, -1) for e in orbit.eps)
     gap = orbit.between.reshape(points)
@@ -458,12 +461,14 @@ def _at(marched: SuppliedOrbit, values: Array, load: CyclicLoad) -> Array:
 def _of_march(
     marched: SuppliedOrbit | None, load: CyclicLoad, eps: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, mean side flow, shear and the load's work on the film, (1, N) each."""
+    """Return pressure, mean side flow, shear and the work of the load on the film, (1, N) each."""
     if marched is None:
         nothing = np.full_like(load.w, np.nan)
         return nothing, nothing, nothing, nothing
     P, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.shear))
-    flow = np.full_like(P, marched.mean_side_flow)  # of the steps, which are finer than the load's angles
+    flow = np.full_like(
+        P, marched.mean_side_flow
+    )  # mean over the steps, which are finer than the angles of the load
     rate = [_at(marched, _slope(marched.theta, e, load.period), load) for e in marched.eps]
     squeezing = np.stack(rate)[:, None] - load.w * np.stack([-eps[1], eps[0]])
     valid = np.isfinite(eps[0])
@@ -472,7 +477,7 @@ def _of_march(
 
 
 def _slope(theta: Array, values: Array, period: float) -> Array:
-    """Return d/d(theta) of what repeats, from the neighbours on either side, (K,)."""
+    """Return d/d(theta) of periodic values by central differences, (K,)."""
     before = theta - np.roll(theta, 1)
     before[0] += period
     after = np.roll(before, -1)

@@ -1,11 +1,11 @@
 r"""One step of a supplied film by Newton's method: the compiled kernel of level `supplied`.
 
-In the frame of the mesh the shear flow vanishes. A cell balances, with 12 times the time derivative,
+In the frame of the mesh the shear flow vanishes. The balance of a cell is, times 12,
 
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
 
-A node in a pocket has the pocket's pressure. If a pocket's edge lies at a distance d before the next node,
+A node in a pocket has the pocket's pressure. If the edge of a pocket is at a distance d from the next node,
 oil flows from the edge with the conductance of the step times step/d: the edge moves continuously between
 nodes, and its position is accurate to second order.
 
@@ -24,20 +24,21 @@ from templates.physics.numerics.machine_code import compiled
 from templates.physics.supplied.supplied_mesh import Mesh
 
 MOST = 25
-"""Iterations of Newton's method."""
+"""Largest number of Newton iterations."""
 SETTLED = 3e-5
-"""Last change of the eccentricity over the gap, and imbalance of a cell over what a full one stores [-]."""
+"""Convergence: last change of the eccentricity over the gap, and imbalance of a cell over what it stores
+when full [-]."""
 LEAVES = 0.3
-"""An iteration leaves this share of the gap."""
+"""An iteration leaves at least this fraction of the gap."""
 NEAREST = 1e4
-"""Conductance that holds a node at the pressure of its pocket, over that of the cell [-]."""
+"""Conductance that holds a node at the pressure of its pocket, over the conductance of the cell [-]."""
 
 
 @compiled
 def covered(mesh: Mesh, places: Array) -> Array:
-    """Return, (3, n, m), 1 for nodes in a pocket, and the nearness of a pocket's edge ahead and behind.
+    """Return, (3, n, m), a mask of nodes in a pocket and the nearness of an edge ahead and behind.
 
-    The nearness is step/d − 1 with d the distance to an edge that lies before the next node; 0 if none does.
+    The nearness is step/d − 1 with d the distance to an edge that lies before the next node; 0 without one.
 
     places: (k, 3) centre in the mesh [rad], half angle [rad] and half length [-] of each pocket.
     """
@@ -60,9 +61,9 @@ def covered(mesh: Mesh, places: Array) -> Array:
 
 @compiled
 def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
-    """Return conductances around and across and the gap [-].
+    """Return circumferential and axial conductances and the gap [-].
 
-    Value, and slopes by e_x and e_y: (3, n) each.
+    Each has its value and its derivatives by e_x and e_y: (3, n).
     """
     n = mesh.order.size
     step = 2 * np.pi / n
@@ -87,7 +88,7 @@ def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
 
 @compiled
 def lost(mesh: Mesh, around: Array, across: Array, P: Array, loss: Array) -> None:
-    """Enter what the cells lose by pressure, (n, m)."""
+    """Store in the output the outflow of the cells due to pressure, (n, m)."""
     n, m = P.shape
     loss[:] = 0.0
     for i in range(n):
@@ -119,7 +120,7 @@ def diagonal(mesh: Mesh, around: Array, across: Array) -> Array:
 
 @compiled
 def matrix(mesh: Mesh, around: Array, across: Array, alpha: Array, own: Array) -> Array:
-    """Return rows of the banded matrix, (n m, 4 m + 1), diagonal in column 2 m: by k, where P = alpha k."""
+    """Return rows of the banded matrix, (n m, 4 m + 1), diagonal in column 2 m, for k in P = alpha k."""
     n, m = alpha.shape
     band = 2 * m
     rows = np.zeros((n * m, 2 * band + 1))
@@ -140,7 +141,7 @@ def matrix(mesh: Mesh, around: Array, across: Array, alpha: Array, own: Array) -
 
 @compiled
 def eliminate(rows: Array, right: Array) -> None:
-    """Solve a banded system with dominant columns in place; right is (rows, 3)."""
+    """Solve a banded system with column-dominant matrix in place; right is (rows, 3)."""
     size, band = rows.shape[0], rows.shape[1] // 2
     for k in range(size):
         pivot = 1 / rows[k, band]
@@ -163,11 +164,10 @@ def eliminate(rows: Array, right: Array) -> None:
 
 @compiled
 def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple[Array, Array, Array, Array]:
-    """Return the complementarity of every cell.
+    """Return the linearised complementarity condition of every cell.
 
-    DP = alpha k + P0, dvoid = beta k + v0, with one unknown k each.
-
-    A and T turn pressure and void into flow. The larger slope is by the void where a cell is full, by the
+    The changes are dP = alpha k + P0 and dvoid = beta k + v0, with one unknown k each. A and T turn pressure
+    and void into flow. The derivative by the void is the larger one where a cell is full, that by the
     pressure elsewhere.
     """
     alpha, beta, P0, v0 = np.empty(P.shape), np.empty(P.shape), np.zeros(P.shape), np.zeros(P.shape)
@@ -202,7 +202,7 @@ def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
 
 @compiled
 def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> tuple[float, float]:
-    """Solve [[a, b], [c, d]] for (x, y); the least squares of a matrix whose determinant vanishes."""
+    """Return (x, y) that solves [[a, b], [c, d]]; a least-squares solution if the determinant vanishes."""
     size, det = a * a + b * b + c * c + d * d, a * d - b * c
     if abs(det) > 1e-13 * size:
         return (d * x - b * y) / det, (a * y - c * x) / det
@@ -211,7 +211,7 @@ def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> 
 
 @compiled
 def edges(around: Array, seen: Array, i: int, j: int) -> float:
-    """Return conductance from a node to the edges of pockets beside it, beyond that to the nodes there."""
+    """Return conductances from a node to adjacent pocket edges, in addition to those to the nodes there."""
     return float(around[i] * seen[1, i, j] + around[i - 1] * seen[2, i, j])
 
 
@@ -219,7 +219,7 @@ def edges(around: Array, seen: Array, i: int, j: int) -> float:
 def balances(
     mesh: Mesh, e: Array, P: Array, void: Array, seen: Array, supply: float, store: float, rest: Array
 ) -> tuple[tuple[Array, Array], Array, Array, Array, Array]:
-    """Conductances around and across, A, T, that of the feed, and loss of oil with slopes by e, (3, n, m)."""
+    """Return conductances, A, T, that of the feed, and the loss with derivatives by e, (3, n, m)."""
     n, m = P.shape
     around, across, gap = coefficients(mesh, e)
     A, T, feeding = diagonal(mesh, around[0], across[0]), np.empty((n, m)), np.empty((n, m))
@@ -247,7 +247,7 @@ def responses(
     mesh: Mesh, flows: tuple[Array, Array], A: Array, T: Array, feeding: Array, loss: Array,
     law: tuple[Array, Array, Array, Array],
 ) -> Array:  # fmt: skip
-    """Return the unknown k of every cell without displacement, and by each component of it, (3, n, m)."""
+    """Return the unknown k of every cell without displacement and per component of it, (3, n, m)."""
     alpha, beta, P0, v0 = law
     n, m = A.shape
     own, right, k = np.empty((n, m)), np.empty((n * m, 3)), np.empty((3, n, m))
@@ -272,7 +272,7 @@ def responses(
 def displaced(
     mesh: Mesh, e: Array, P: Array, k: Array, alpha: Array, P0: Array, S: Array, mass: float, inertia: Array
 ) -> tuple[float, float]:
-    """Return the change of the eccentricity for which the film bears the load and the journal's inertia."""
+    """Return the change of eccentricity for which the film balances the load and the journal's inertia."""
     n, m = P.shape
     x, y = S[0], S[1]
     for i in range(n):
@@ -292,13 +292,12 @@ def solved(
     mesh: Mesh, state: tuple[Array, Array, Array], S: Array, seen: Array, supply: float,
     rate: float, rest: Array, mass: float, inertia: Array, smooth: bool,
 ) -> tuple[bool, Array, Array, Array, float, float]:  # fmt: skip
-    """Return whether Newton's method settled.
+    """Return whether Newton's method converged, then eccentricity, pressure, void, feed and side flow.
 
-    Then eccentricity, pressure and void, feed and side flow times 24.
+    Feed and side flow are multiplied by 24. Pressure and void may be below 0 by the residual of Newton's
+    method.
 
-    Pressure and void may be below 0 by what Newton's method leaves.
-
-    d(oil)/dtheta = rate·oil + rest, acceleration = inertia[0]·e + inertia[1:]; `state` is where to start.
+    d(oil)/dtheta = rate·oil + rest, acceleration = inertia[0]·e + inertia[1:]; `state` is the initial guess.
     """
     e, P, void = state[0].copy(), state[1].copy(), state[2].copy()
     n, m = P.shape

@@ -1,4 +1,4 @@
-"""March a supplied film over a cycle: BDF2 steps whose size follows the gap, halved where one fails."""
+"""March a supplied film over a cycle: BDF2 steps whose size follows the gap; a failed step is halved."""
 
 from __future__ import annotations
 
@@ -18,41 +18,42 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 GAP_CHANGE = 0.2
-"""A step is chosen so that the gap changes by about this share, down to `SMALLEST` of the step asked for."""
+"""Relative change of the gap that a step aims at; the step is not reduced below `SMALLEST` times the
+requested step."""
 STRAYS = 3.0
-"""And so that the journal strays from where its velocity would bring it by about this many gaps per square
-of the step asked for [1/rad²]: at 2° by 0.4 % of the gap."""
+"""Aimed-at deviation of the journal from a move at constant velocity, in gaps per square of the requested
+step [1/rad²]: at 2° 0.4 % of the gap."""
 RETAKEN, SMALLEST = 2.0, 1 / 8
-"""A step so many times larger than it should be is taken again; smallest share of the step asked for [-]."""
+"""A step this many times too large is repeated; smallest fraction of the requested step [-]."""
 SHORTEST = 1e-3
-"""Share of the step asked for below which a step that still fails ends the march."""
+"""Fraction of the requested step below which a step that still fails ends the march."""
 OVERDRAWN = 1.02
-"""Void of a cell beyond which a step of second order, which took oil that was not there, is repeated with
-first order [-]."""
+"""If the void of a cell exceeds this, a second-order step removed more oil than the cell held and is
+repeated with first order [-]."""
 
 
 @dataclass(frozen=True)
 class TurnedAngle:
-    """The integral of a speed that repeats and is linear between its angles."""
+    """The integral of a periodic speed that is linear between its angles."""
 
     angle: Array
     """(N,) rising crank angles [rad]."""
     period: float
     speed: Array
-    """(N,) over Omega [-]."""
+    """(N,) speed over Omega [-]."""
 
     def __call__(self, theta: Array) -> Array:
-        """Return the angle turned by since crank angle 0 [rad]."""
+        """Return the angle rotated since crank angle 0 [rad]."""
         return self._since_first(theta - self.angle[0]) - self._at_zero
 
     @cached_property
     def of_cycle(self) -> float:
-        """Return the angle turned by in a cycle [rad]."""
+        """Return the angle rotated in a cycle [rad]."""
         return float(self._nodes[2][-1])
 
     @cached_property
     def _nodes(self) -> tuple[Array, Array, Array]:
-        """Return (N + 1,) angles since the first, speeds there and angles turned by since."""
+        """Return (N + 1,) angles from the first, speeds there and angles rotated since."""
         place = np.append(self.angle - self.angle[0], self.period)
         speed = np.append(self.speed, self.speed[0])
         turned = np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(place))
@@ -80,7 +81,7 @@ class TurnedAngle:
 
 @dataclass(frozen=True)
 class Duty:
-    """What one bearing has to do, and how it is fed."""
+    """Loads and speeds of one bearing, and its oil supply."""
 
     load: CyclicLoad
     """One case."""
@@ -97,19 +98,19 @@ class Duty:
 
     @cached_property
     def mesh_turning(self) -> TurnedAngle:
-        """Rotation of the mesh in the frame, at the mean speed of journal and sleeve."""
+        """Return the rotation of the mesh in the frame, at the mean speed of journal and sleeve."""
         return TurnedAngle(self.load.angle, self.load.period, self.load.w[0])
 
     @cached_property
     def journal_turning(self) -> TurnedAngle:
-        """Rotation of the journal in the mesh; the sleeve turns back by as much."""
+        """Return the rotation of the journal in the mesh; the sleeve rotates back by the same angle."""
         return TurnedAngle(self.load.angle, self.load.period, self.sliding / 2)
 
     @cached_property
     def _force(self) -> tuple[Array, NDArray[np.complex128]]:
-        """Return rising angles from before 0 to beyond the period, and the load there, x + i y.
+        """Return ascending angles from before 0 to beyond the period, and the load there, x + i y.
 
-        `np.interp` makes both at every call if it is given a period.
+        With a period, `np.interp` would recompute both at every call.
         """
         angle = self.load.angle % self.load.period
         order = np.argsort(angle)
@@ -127,7 +128,7 @@ class Duty:
         return np.interp(theta % period, *self._force), w
 
     def seen(self, theta: Array) -> tuple[Array, Array]:
-        """Load (K, 2), and places of the pockets (K, k, 3) as the kernel takes them, in axes of the mesh."""
+        """Return load (K, 2) and pocket positions (K, k, 3) in axes of the mesh, as the kernel needs them."""
         S = np.interp(theta % self.load.period, *self._force) * np.exp(-1j * self.mesh_turning(theta))
         turned = self.journal_turning(theta)
         places = np.empty((theta.size, len(self.supply.pockets), 3))
@@ -153,13 +154,13 @@ class State:
     velocity: Array
     """(2,) d(e)/d(theta)."""
     step: float
-    """That led here; 0 at a start [rad]."""
+    """Step that led to this state; 0 at a start [rad]."""
     feed: float = 0.0
-    """Oil fed, Q/(B D c Omega), c radial."""
+    """Oil fed, Q/(B D c Omega), c the radial clearance."""
     side_flow: float = 0.0
-    """Oil lost at both ends, likewise."""
+    """Oil lost at both ends, Q/(B D c Omega)."""
     flows: tuple[float, float] = (0.0, 0.0)
-    """Both over the step that led here, in the mean that the step takes: fed less lost is stored."""
+    """Oil fed and oil lost over the last step, averaged as the step does: their difference is stored."""
 
 
 def gap_at(mesh: Mesh, e: Array) -> Array:
@@ -168,15 +169,15 @@ def gap_at(mesh: Mesh, e: Array) -> Array:
 
 
 def start(mesh: Mesh, duty: Duty) -> State:
-    """Return a full film, the journal half way along the load."""
+    """Return a full film with the journal displaced half-way along the load."""
     S = duty.seen(np.array([duty.begin]))[0][0]
     e, none = 0.5 * S / max(float(np.hypot(*S)), 1e-9), np.zeros((mesh.order.size, mesh.width.size))
     return State(duty.begin, e, none, none, none + gap_at(mesh, e)[:, None], np.zeros(2), 0.0)
 
 
 def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
-    """Return the state after a step: of second order if it can be, by the active set if it can be."""
-    from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second
+    """Return the state after a step, of second order and by the active set if possible."""
+    from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second to load
 
     last = states[-1]
     theta = last.theta + h
@@ -205,7 +206,7 @@ def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | No
 
 
 def _size(last: State, after: State, step: float) -> float:
-    """Return a step over the best one: by the change of the gap, and by that of the velocity."""
+    """Return the size of a step over the best size, from the changes of the gap and of the velocity."""
     before, now = (1 - np.hypot(*state.e) for state in (last, after))
     gap = abs(np.log(now / before)) / GAP_CHANGE
     strayed = np.hypot(*(after.e - last.e - after.step * last.velocity)) / min(before, now)
@@ -215,11 +216,9 @@ def _size(last: State, after: State, step: float) -> float:
 def marched(
     mesh: Mesh, duty: Duty, begin: State, step: float, say: Callable[[float], None]
 ) -> tuple[list[State], int, bool]:
-    """Return one cycle: its states, the first where it began; halvings of steps that failed.
+    """Return the states of one cycle, from its start, the number of halved steps, and whether it ended.
 
-    Whether it ended.
-
-    say: is given the share of the cycle that is done, before each step.
+    say: receives the completed fraction of the cycle before each step.
     """
     states, halvings, h = [begin], 0, step
     end = begin.theta + duty.load.period

@@ -1,6 +1,6 @@
-"""The mesh of a supplied film: cells that turn with the mean speed of journal and sleeve, and rows across.
+"""The mesh of a supplied film: cells that rotate at the mean speed of journal and sleeve, in axial rows.
 
-Across, the mesh covers half the width: rows of nodes from the middle to the edge of the shortest pocket, one
+Axially, the mesh covers half the width: rows of nodes from the middle to the edge of the shortest pocket, one
 row at the edge of every other pocket, then rows that become finer towards the end of a wide bearing. The end,
 at ambient pressure, has no row.
 """
@@ -13,30 +13,30 @@ from scipy.interpolate import CubicSpline
 from templates.core.arrays import Array, Integers
 
 _FADES = 0.35
-"""Distance from the end over D/2 within which the pressure of a wide bearing falls to that of the end [-]."""
+"""Distance from the end over D/2 within which the pressure of a wide bearing falls to ambient [-]."""
 _FADES_THIN = 2.0
-"""The same over the width of the least gap, sqrt(2 (1 − eps)) [-]."""
+"""The same distance over the width of the smallest gap, sqrt(2 (1 − eps)) [-]."""
 _DENSITY = 0.6
-"""Rows in the length of a pocket over those of equal spacing [-]."""
+"""Row density along a pocket, relative to equal spacing [-]."""
 
 
 class Mesh(NamedTuple):
-    """n nodes around × m across half the width; what the compiled kernel needs of it."""
+    """A mesh of n circumferential × m axial nodes on half the width, with data for the compiled kernel."""
 
     ratio: float
     """Width over diameter B/D [-]."""
     zeta: Array
-    """(m + 1,) axial places of the nodes, 0 (middle) … 1 (end)."""
+    """(m + 1,) axial positions of the nodes, 0 (middle) … 1 (end)."""
     width: Array
     """(m,) axial widths of the cells."""
     quadrature: Array
-    """(m,) weights of the nodes' pressures in the mean over the width, exact for a parabola."""
+    """(m,) weights that average the nodes' pressures over the width; exact for a parabola."""
     normal: Array
     """(2, n) cosine and sine of the nodes' angles."""
     middle: Array
-    """(2, n) the same midway to the next node."""
+    """(2, n) cosine and sine of the angles midway to the next node."""
     order: Integers
-    """(n,) place of each node in the sequence 0, 1, 3, …, 4, 2, in which neighbours are at most two apart."""
+    """(n,) index of each node in the sequence 0, 1, 3, …, 4, 2, in which neighbours are at most two apart."""
 
 
 def supplied_mesh(
@@ -55,16 +55,16 @@ def supplied_mesh(
     ratio
         Width over diameter B/D [-].
     around
-        Nodes around.
+        Number of circumferential nodes.
     across
-        Rows across half the width, the end not counted.
+        Number of rows over half the width, without the end.
     edges
-        Rising half lengths of the pockets over B/2 [-].
+        Ascending half lengths of the pockets over B/2 [-].
     grooved
-        Whether the pressure falls towards the pockets too; the land is then finer at both of its sides.
+        Whether the pressure also falls towards the pockets; the land is then finer at both of its sides.
     gap
-        Least gap to be expected: where it is thin, the film is short around, and its pressure falls nearer to
-        the edges [-].
+        Expected least gap: where it is small, the film is short circumferentially, and its pressure falls
+        closer to the edges [-].
     finest
         Largest spacing of the rows at the edges over that of equal ones [-].
     """
@@ -93,17 +93,17 @@ def supplied_mesh(
 
 
 def _towards_end(t: Array, fine: float) -> Array:
-    """Return the places 0 … 1 whose distance shrinks to `fine` of equal ones."""
+    """Return places 0 … 1 whose spacing decreases to `fine` times that of equal ones."""
     return np.asarray(1 - (1 - t) * (fine + (1 - fine) * (1 - t)))
 
 
 def _inner_cells(edge: float, across: int) -> int:
-    """Return the cells from the middle to the first edge; three rows at least are left for the land."""
+    """Return the number of cells from the middle to the first edge; three or more rows are left for land."""
     return min(max(1, round(_DENSITY * edge * across)), max(1, across - 3))
 
 
 def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
-    """Return the weights that give an even parabola across exactly; the pressure has a kink at each edge."""
+    """Return weights that integrate an even parabola exactly across; the pressure has a kink at each edge."""
     weights = np.zeros(zeta.size)
     first = inner if edges else zeta.size - 1
     if first == 1:
@@ -122,9 +122,9 @@ def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
 
 
 def carried(mesh: Mesh, finer: Mesh, values: Array, end: Array) -> Array:
-    """Return values (n, m) of one mesh at the nodes of another.
+    """Return values (n, m) of one mesh interpolated to the nodes of another.
 
-    `end` are those at the bearing's end, (n,).
+    `end` are the values at the bearing's end, (n,).
     """
     phi, finer_phi = (np.arange(one.order.size) * 2 * np.pi / one.order.size for one in (mesh, finer))
     around = [np.interp(finer_phi, phi, v, period=2 * np.pi) for v in (*values.T, end)]

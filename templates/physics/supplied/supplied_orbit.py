@@ -1,9 +1,9 @@
 """The orbit of a journal in a mass-conserving film fed by holes and grooves: level `supplied`.
 
-The film is marched over several cycles (`supplied_march`) in a mesh that turns with the mean speed of journal
-and sleeve. In this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so its history is not
-smeared. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves; then on a mesh
-whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures it.
+The film is marched over several cycles (`supplied_march`) on a mesh that rotates at the mean speed of journal
+and sleeve. On this mesh the shear flow vanishes, and oil in a cavity stays in its cell, so there is no
+numerical diffusion. The march runs on a coarse mesh until the orbit repeats, or the film clearly starves;
+then on a mesh whose cells follow the least gap. `python -m benchmarks.supplied_orbits` measures its errors.
 """
 
 from dataclasses import astuple, dataclass, replace
@@ -28,89 +28,93 @@ from templates.physics.supplied.supplied_run import (
 from templates.physics.supplied.supply import Supply
 
 MASS = 2.5e-4
-"""Mass of the journal m c Omega psi²/(B D eta), c radial: it regularises where the film is empty [-]."""
+"""Mass of the journal m c Omega psi²/(B D eta), c the radial clearance: it regularises the motion where the
+film is empty [-]."""
 SECTOR = np.pi / 3
-"""A pocket whose centre lies within this angle of the load's direction, and whose half angle is smaller, is
-under the load [rad]."""
+"""A pocket is under the load if its half angle is smaller than this and its centre lies within this angle
+of the load's direction [rad]."""
 OFTEN = 0.4
-"""Share of the cycle under the load from which a pocket stays there [-]."""
+"""Fraction of the cycle under the load from which a pocket counts as staying there [-]."""
 THINNEST = 1e-4
-"""Least gap that the mesh follows [-]."""
-_REPORTED = 0.05  # share of a cycle between two reports of progress
+"""Smallest gap that the mesh resolves [-]."""
+_REPORTED = 0.05  # fraction of a cycle between two progress reports
 
 
 class Verdict(StrEnum):
-    """End of a march."""
+    """How a march ended."""
 
     REPEATING = "repeating"
-    """The orbit repeats: its least gap to 1e-3."""
+    """The orbit repeats: its smallest gap repeats to 1e-3."""
     WANDERING = "wandering"
-    """The least gap repeats to `repeat_error` only, 3 % at most."""
+    """The smallest gap repeats only to `repeat_error`, at most 3 %."""
     STARVED = "starved"
-    """The film thins like 1/sqrt(n) with the cycle n or faster, or none is left under the load."""
+    """The film thins with the cycle number n like 1/sqrt(n) or faster, or no film is left under the load."""
     UNSETTLED = "unsettled"
-    """No orbit was found: the least gap changes by more than 3 % from cycle to cycle without thinning, as
-    where the supply lifts a journal more than its load presses it; or no film bears the load."""
+    """No orbit was found: the smallest gap changes by more than 3 % from cycle to cycle without thinning
+    (for example if the supply lifts the journal more than the load presses it), or no film supports the
+    load."""
 
 
 @dataclass(frozen=True)
 class MeshSettings:
-    """A mesh, the largest step in time on it, and how many cycles to march on it at most."""
+    """A mesh, its largest time step, and the largest number of cycles to march on it."""
 
     around: int
     across: int
     step: float
-    """[rad]."""
+    """Largest time step [rad]."""
     most: int
     near_edges: bool = False
-    """Whether rows are finer at both sides of a hole's edge, as they are at a groove's."""
+    """Whether rows are also finer on both sides of a hole's edge, as they are at a groove's edge."""
     cells: float = 1.0
-    """Cells around over those that a thin gap asks for, where the mesh follows it [-]."""
+    """Circumferential cells relative to those that a thin gap needs [-]."""
 
 
 COARSE = MeshSettings(64, 4, np.radians(4.0), 30)
-"""The mesh that runs in."""
+"""The mesh of the first cycles."""
 FINE = MeshSettings(128, 6, np.radians(2.0), 24)
-"""The mesh of the result; more around where the least gap is thin."""
+"""The mesh of the result; it has more circumferential cells where the smallest gap is thin."""
 RESOLVED, MOST_AROUND = 0.3, 384
-"""Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
+"""Largest width of a cell over the width of the smallest gap, sqrt(2 (1 − eps)), and the largest number of
+cells [-]."""
 
 NEAR_HOLES = (
     MeshSettings(192, 6, np.radians(2.0), 24, near_edges=True, cells=1.5),
     MeshSettings(256, 8, np.radians(2.0), 24, near_edges=True, cells=2.0),
 )
-"""Meshes that follow where every hole stays under the load: there all oil enters against the film's pressure,
-through the hole's edges, and the mesh at these edges decides how much."""
+"""Further meshes for bearings in which every hole stays under the load: there all oil enters through the
+hole's edges against the film's pressure, so the mesh at these edges determines the flow."""
 NEAR_EDGES = 0.4
-"""Spacing of their rows at the edges over that of equal ones, at most [-]."""
+"""Largest row spacing at a hole's edge on these meshes, relative to equal rows [-]."""
 STAYS = 0.6
-"""Share of the cycle under the load above which they do [-]."""
+"""Fraction of the cycle under the load above which the holes count as staying under it [-]."""
 THIN, MORE_ROWS = 0.002, 4
-"""Least gap below which a mesh after the first has so many more rows across [-]."""
+"""If the smallest gap is below the first number, meshes after the first have the second number of extra
+axial rows [-]."""
 
 
 @dataclass(frozen=True)
 class Totals:
-    """What one cycle on one mesh comes to; dimensionless."""
+    """The results of one cycle on one mesh; dimensionless."""
 
     gap: float
-    """Smallest gap, between the angles too."""
+    """Smallest gap, also between the angles."""
     pressure: float
     """Largest pressure p psi²/(eta Omega)."""
     loss: float
-    """Mean of shear times sliding speed squared, and of the load's work on the film."""
+    """Mean of shear times the square of the sliding speed, plus the mean work of the load on the film."""
     side_flow: float
-    """Mean of the oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+    """Mean flow of oil out of both ends, Q/(B D c Omega), c the radial clearance."""
 
     def change(self, before: "Totals") -> "Totals":
-        """Return the change from another mesh, relative to this one [-]."""
+        """Return the change to another mesh, relative to this one [-]."""
         pairs = zip(astuple(self), astuple(before), strict=True)
         return Totals(*(abs(old / new - 1) for new, old in pairs))
 
     def error(self, repeat: float, least: "Totals") -> "Totals":
-        """Return the error left by mesh and step where this is the change from the mesh before [-].
+        """Return the remaining error of mesh and step from the change since the previous mesh [-].
 
-        `repeat` is the change from cycle to cycle, `least` what is left at least.
+        `repeat` is the change from cycle to cycle, `least` the smallest error that is stated.
         """
         parts = zip(astuple(self), astuple(least), astuple(LEAVES), astuple(COARSE_BEYOND), strict=True)
         return Totals(*(
@@ -121,17 +125,18 @@ class Totals:
 UNKNOWN = Totals(np.nan, np.nan, np.nan, np.nan)
 LEAST = Totals(gap=5e-3, pressure=0.05, loss=5e-3, side_flow=0.01)
 LEAST_OF_HOLES = replace(LEAST, pressure=0.2)
-"""Where holes alone feed, a starved film may end in an impact, whose pressure follows the step."""
+"""Where only holes feed the bearing, a starved film may end in an impact, whose pressure depends on the
+step."""
 LEAVES = Totals(gap=3.0, pressure=3.0, loss=1.5, side_flow=2.0)
 COARSE_BEYOND = Totals(gap=0.012, pressure=0.1, loss=0.02, side_flow=0.05)
-"""The error that mesh and step leave is `LEAST` and `LEAVES` times the change from the mesh before. Of a
-change beyond the third, which is the coarse mesh's own, a quarter counts. Chosen on marches with finer
-meshes, and checked on others, by `python -m benchmarks.film_cycle_engines` [-]."""
+"""The error of mesh and step is `LEAST` plus `LEAVES` times the change since the previous mesh. A change
+beyond `COARSE_BEYOND` stems from the coarse mesh; only a quarter of it counts. The numbers were chosen on
+marches with finer meshes and checked on others by `python -m benchmarks.film_cycle_engines` [-]."""
 
 
 @dataclass(frozen=True)
 class SuppliedOrbit:
-    """The last cycle marched; dimensionless, at K angles of unequal steps."""
+    """The last marched cycle; dimensionless, at K angles of unequal steps."""
 
     theta: Array
     """(K,) rising crank angles; the last is one cycle after the load's first [rad]."""
@@ -144,43 +149,43 @@ class SuppliedOrbit:
     feed: Array
     """(K,) oil fed by all pockets, Q/(B D c Omega), c the radial clearance."""
     side_flow: Array
-    """(K,) oil that leaves at both ends, likewise."""
+    """(K,) oil that leaves at both ends, Q/(B D c Omega)."""
     shear: Array
-    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    """(K,) shear of the oil present; pi/sqrt(1 − eps²) for a full film."""
     void: Array
     """(K,) share of the gap's volume that is void."""
     least_gap: float
-    """Smallest gap over the cycle, between the angles too, by a parabola; NaN without a whole cycle [-]."""
+    """Smallest gap over the cycle, also between the angles (by a parabola); NaN without a whole cycle [-]."""
     least_angle: float
-    """Its crank angle [rad]."""
+    """Crank angle of the smallest gap [rad]."""
     verdict: Verdict
     repeat_error: float
-    """Change of the least gap from the cycle before, relative; unless it repeats the largest of the last
-    three, infinite if there were not two cycles."""
+    """Relative change of the smallest gap since the previous cycle. If the orbit does not repeat, it is the
+    largest change of the last three cycles, and infinite with fewer than two cycles."""
     error: Totals
-    """Relative error by mesh and step, and by what the cycle lacks of repeating; NaN where unknown [-]."""
+    """Relative error from mesh, step and imperfect repetition of the cycle; NaN where unknown [-]."""
     drift: float
-    """Change of the eccentricity from the cycle before, over the gap, mean over the cycle; likewise."""
+    """Change of the eccentricity since the previous cycle over the gap, averaged over the cycle [-]."""
     cycles: tuple[int, ...]
     """Cycles marched on each mesh."""
     around: int
-    """Cells around of the last mesh."""
+    """Circumferential cells of the last mesh."""
     mean_feed: float
-    """Oil fed in the mean over the cycle, as the steps took it [-]."""
+    """Mean flow of oil fed over the cycle, averaged over the steps [-]."""
     mean_side_flow: float
-    """Oil that leaves at both ends, likewise [-]."""
+    """Mean flow of oil out of both ends, averaged over the steps [-]."""
     mass_balance: float
-    """Oil fed less oil lost at the ends less oil stored, over the oil lost [-]."""
+    """Oil fed minus oil lost at the ends minus oil stored, over the oil lost [-]."""
     halvings: int
-    """Number of halvings in the last cycle, of steps that had not converged."""
+    """Number of times a step of the last cycle was halved because it did not converge."""
     under_load: float
-    """Share of the cycle in which every pocket lies under the load, within 60° of its direction [-]."""
+    """Fraction of the cycle in which every pocket is under the load, within 60° of its direction [-]."""
     change: Totals
-    """Change of the cycle from the mesh before, relative; NaN if there was none [-]."""
+    """Relative change of the cycle since the previous mesh; NaN if there was none [-]."""
 
     @property
     def reason(self) -> str:
-        """Return why the orbit does not repeat, in words; empty if it does."""
+        """Return a text on why the orbit does not repeat; empty if it does."""
         if self.verdict is Verdict.REPEATING:
             return ""
         if self.verdict is Verdict.WANDERING:
@@ -203,35 +208,36 @@ def supplied_orbit(
     refined: bool = True,
     near_holes: tuple[MeshSettings, ...] = (),
 ) -> SuppliedOrbit:
-    """March one case until it repeats, or until it is clear that it starves.
+    """Return the orbit of one case, marched until it repeats or clearly starves.
 
-    Says how far it is by `templates.core.progress.report`, which may raise to cancel. The first call compiles
-    the kernel, or reads it from disk (`templates.physics.numerics.machine_code`).
+    It reports progress by `templates.core.progress.report`, which may raise an error to cancel. The first
+    call compiles the kernel, or reads it from disk (`templates.physics.numerics.machine_code`).
 
     Parameters
     ----------
     load
-        One case: S (2, 1, N), with which the journal pushes; w (1, N).
+        One case: S (2, 1, N), the force of the journal; w (1, N).
     sliding
-        (N,) speed of the journal over the sleeve, over Omega, at the load's angles [-].
+        (N,) speed of the journal relative to the sleeve, over Omega, at the load's angles [-].
     ratio
         Width over diameter B/D [-].
     supply
         Pockets and supply pressure.
     meshes
-        Meshes to march on in turn.
+        The successive meshes of the march.
     mass
         Mass of the journal m c Omega psi²/(B D eta), c radial [-].
     refined
-        Whether meshes after the first follow a thin gap: more cells around, and rows nearer to the edges.
+        Whether meshes after the first follow a thin gap, with more cells and with rows closer to the edges.
     near_holes
-        Meshes to march on after these where every pocket stays under the load, for more than `STAYS` of the
+        Further meshes for a case in which every pocket stays under the load for more than `STAYS` of the
         cycle.
 
     Raises
     ------
     ValueError
-        If a pocket that does not go all around is not back at its place in the frame after the cycle.
+        If a pocket that does not extend around the whole circle is not back at its position in the frame
+        after the cycle.
     """
     duty = Duty(load, np.asarray(sliding, float), supply, mass)
     _require_return(duty)
@@ -253,13 +259,13 @@ def supplied_orbit(
 
 
 def _cells(gap: float, times: float = 1.0) -> int:
-    """So many times the cells around that resolve a gap, in steps of 16."""
+    """Return `times` the number of circumferential cells that resolves a gap, in steps of 16."""
     wanted = times * 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
     return int(min(16 * np.ceil(wanted / 16), MOST_AROUND))
 
 
 class _Progress:
-    """Says how far a march is, a few times in a cycle."""
+    """Reports the progress of a march several times per cycle."""
 
     def __init__(self, number: int, meshes: tuple[MeshSettings, ...]) -> None:
         self.number, self.meshes, self.last = number, meshes, -1.0
@@ -273,7 +279,7 @@ class _Progress:
 
 
 def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
-    """Return a state on another mesh."""
+    """Return a state interpolated to another mesh."""
     void = carried(mesh, finer, state.void, state.void[:, -1])
     P = carried(mesh, finer, state.P, 0 * state.P[:, -1])
     oil = (1 - void) * gap_at(finer, state.e)[:, None]
@@ -281,7 +287,7 @@ def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
 
 
 def return_error(duty: Duty) -> float:
-    """Return the largest distance of a pocket from its start position after a cycle [rad]."""
+    """Return the largest distance of a pocket from its initial position after a cycle [rad]."""
     mean, half = duty.mesh_turning.of_cycle, duty.journal_turning.of_cycle
     turns = [
         mean + half if p.on_journal else mean - half for p in duty.supply.pockets if p.half_angle < np.pi
@@ -290,7 +296,7 @@ def return_error(duty: Duty) -> float:
 
 
 def under_load(duty: Duty) -> float:
-    """Return the share of the cycle in which every pocket lies within 60° of the load's direction [-]."""
+    """Return the fraction of the cycle in which every pocket is within 60° of the load's direction [-]."""
     theta = duty.begin + duty.load.period * np.arange(720) / 720
     S, places = duty.seen(theta)
     off = places[..., 0] - np.arctan2(S[:, 1], S[:, 0])[:, None]
@@ -347,14 +353,14 @@ def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
 
 
 def _change(duty: Duty, runs: list[Run]) -> Totals:
-    """Return the change between the results of the last two meshes; NaN without a whole cycle on both."""
+    """Return the change between the results of the last two meshes; NaN without a full cycle on both."""
     if len(runs) < 2 or not (runs[-2].gaps and runs[-1].gaps):
         return UNKNOWN
     return _totals(duty, runs[-1]).change(_totals(duty, runs[-2]))
 
 
 def _totals(duty: Duty, run: Run) -> Totals:
-    """Return the summary values of the last cycle of a run."""
+    """Return the results of the last cycle of a run."""
     states, mesh = run.states[1:], run.mesh
     theta, z = in_frame(duty, run.states)
     fill = np.array([(1 - state.void) @ mesh.width for state in states])
@@ -373,7 +379,7 @@ def _totals(duty: Duty, run: Run) -> Totals:
 
 
 def _verdict(run: Run, share: float) -> Verdict:
-    """Return how the last run ended; `share` is the share of the cycle with all pockets under the load."""
+    """Return how the last run ended; `share` is that fraction of the cycle with all pockets under load."""
     if run.ending is RunOutcome.REPEATING:
         return Verdict.REPEATING
     if run.ending is RunOutcome.THINNING or (run.ending is RunOutcome.FAILED and share >= OFTEN):
@@ -385,15 +391,15 @@ def _verdict(run: Run, share: float) -> Verdict:
 def _flows(states: list[State]) -> tuple[float, float]:
     """Return oil fed and oil lost over a cycle.
 
-    A step of BDF2 stores a mean of the flow at its end and of the mean of the step before. Summed in this way
-    the flows are those of the oil that the march kept; the trapezoidal rule differs by up to some per cent
-    where the steps do, as at an impact.
+    A BDF2 step stores a weighted mean of the flow at its end and the mean of the step before. The flows are
+    summed with the same weights, so that they are consistent with the marched oil content; the trapezoidal
+    rule differs by up to some per cent where the step size changes, as at an impact.
     """
     fed, lost = (sum(state.step * state.flows[k] for state in states[1:]) for k in range(2))
     return float(fed), float(lost)
 
 
 def _stored(mesh: Mesh, states: list[State]) -> float:
-    """Return oil in the film at the end of a cycle less that at its start."""
+    """Return the oil in the film at the end of a cycle minus that at its start."""
     kept = (states[-1].oil - states[0].oil) @ mesh.width
     return float(kept.sum()) * np.pi / mesh.order.size

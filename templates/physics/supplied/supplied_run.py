@@ -1,13 +1,13 @@
 """Cycles of a supplied film on one mesh, until they repeat or the film is found to lose its oil.
 
 A fed bearing soon forgets its initial state: most orbits repeat after 3 to 6 cycles. Two kinds do not. If all
-the oil must enter under the load, little enters: the film thins like 1/sqrt(n) with the cycle n, or faster
-(`thins`). And if the journal crosses a space without oil and meets the film on the other side, the position
-of the impact may change from cycle to cycle by more than a step, although the least gap does not change; so
-the test uses the mean change over the cycle.
+the oil has to enter under the load, little enters: the film thins like 1/sqrt(n) with the cycle n, or faster
+(`thins`). And if the journal crosses a space without oil and hits the film on the other side, the position of
+the impact may change from cycle to cycle by more than a step, although the least gap does not change. The
+test therefore uses the mean change over the cycle.
 
-If the mesh, and with it the oil, makes half a turn per cycle, as with cycles of 360°, the load meets the film
-of the last cycle but one: then two successive changes must be small.
+If the mesh, and with it the oil, makes half a revolution per cycle, as with cycles of 360°, the load acts on
+the film of the cycle before the last: then two successive changes must be small.
 """
 
 from __future__ import annotations
@@ -28,21 +28,23 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 REPEATS = 1e-3
-"""Change of the least gap between two cycles, relative, of an orbit that repeats [-]."""
+"""Largest relative change of the smallest gap between two cycles of a repeating orbit [-]."""
 DRIFTS = 0.02
-"""The same of the eccentricity over the gap, mean over the cycle [-]."""
+"""Largest change of the eccentricity between two cycles of a repeating orbit, over the gap and averaged
+over the cycle [-]."""
 WANDERS = 0.03
-"""Largest change of the least gap in `RECENT` cycles of an orbit that `repeat_error` goes with [-]."""
+"""Largest change of the smallest gap in `RECENT` cycles for which an orbit is reported with its
+`repeat_error` [-]."""
 RECENT = 3
 STARVING, EARLIEST = 0.15, 24
-"""A film starves whose least gap tends to less than this share of the last one; judged from this cycle on
-[-]."""
+"""A film starves if its smallest gap tends to less than this fraction of the last one; first cycle that is
+judged [-]."""
 
 _SAMPLES = 361
 
 
 class RunOutcome(StrEnum):
-    """End of a run on one mesh."""
+    """How a run on one mesh ended."""
 
     REPEATING = "repeating"
     UNSETTLED = "unsettled"
@@ -52,23 +54,23 @@ class RunOutcome(StrEnum):
 
 @dataclass(frozen=True)
 class Run:
-    """Cycles on one mesh."""
+    """The cycles on one mesh."""
 
     mesh: Mesh
     states: list[State]
-    """Of the last whole cycle; the first is where it began."""
+    """States of the last whole cycle; the first state is its start."""
     gaps: list[float]
-    """Least gap of each cycle [-]."""
+    """Smallest gap of each cycle [-]."""
     drift: float
-    """Change of the eccentricity over the gap from the cycle before, mean over the cycle; infinite in the
-    first [-]."""
+    """Change of the eccentricity since the previous cycle over the gap, averaged over the cycle; infinite
+    in the first [-]."""
     halvings: int
-    """In the last cycle."""
+    """Number of halved steps in the last cycle."""
     ending: RunOutcome
 
     @property
     def repeat_error(self) -> float:
-        """Change of the least gap in the last cycle or, unless it repeats, the largest of recent ones."""
+        """Return the change of the least gap in the last cycle, or the largest recent one if unrepeated."""
         if len(self.gaps) < 2:
             return np.inf
         return change(self.gaps, 1 if self.ending is RunOutcome.REPEATING else RECENT)
@@ -82,22 +84,22 @@ def run_in(
     most: int,
     say: Callable[[int, float], None],
 ) -> Run:
-    """March until the orbit repeats, thins or fails, or the cycles are used up.
+    """March until the orbit repeats, thins or fails, or the number of cycles is used up; return the run.
 
     Parameters
     ----------
     mesh
-        Of the state.
+        The mesh of the state.
     duty
-        What the bearing has to do.
+        Loads, speeds and oil supply of the bearing.
     state
-        Where to begin.
+        The initial state.
     step
         Largest step [rad].
     most
-        Cycles to march at most.
+        Largest number of cycles.
     say
-        Is given the cycle, from 1, and the share of it that is done.
+        Receives the cycle, from 1, and its completed fraction.
     """
     gaps: list[float] = []
     before, states, drift, halvings = None, [state], np.inf, 0
@@ -121,21 +123,21 @@ def run_in(
 
 
 def change(gaps: list[float], cycles: int) -> float:
-    """Return the largest relative change of the least gap from cycle to cycle, in the last so many."""
+    """Return the largest relative change of the least gap between consecutive cycles, over the last ones."""
     return float(np.abs(np.diff(gaps[-cycles - 1 :]) / gaps[-cycles:]).max())
 
 
 def returns(turned: float, within: float = 0.02) -> bool:
-    """Return whether an angle [rad] is a whole number of turns."""
+    """Return whether an angle [rad] is a whole number of revolutions."""
     return bool(abs((turned + np.pi) % (2 * np.pi) - np.pi) <= within)
 
 
 def thins(gaps: list[float]) -> bool:
-    """Return whether the least gaps of all cycles on a mesh fall towards none, like 1/sqrt(n) or faster.
+    """Return whether the least gaps of all cycles on a mesh tend to zero, like 1/sqrt(n) or faster.
 
     A film that no oil enters is squeezed out: under a constant load its gap falls like 1/sqrt(n) with the
-    cycle n. A line in 1/sqrt(n) through the later half of the gaps then ends near zero; that of an orbit
-    which settles ends near its gap.
+    cycle n. A line in 1/sqrt(n) through the second half of the gaps then extrapolates to nearly zero; for an
+    orbit that converges it extrapolates to nearly its gap.
     """
     n = len(gaps)
     if n < EARLIEST:
@@ -153,14 +155,14 @@ def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
 
 
 def least_gap(theta: Array, gap: Array, period: float) -> tuple[float, float]:
-    """Return the smallest gap of a cycle between its angles, by a parabola through three, and its angle.
+    """Return the smallest gap of a cycle, by a parabola through three angles, and its angle.
 
     Parameters
     ----------
     theta
-        (K,) rising angles of one cycle [rad].
+        (K,) ascending angles of one cycle [rad].
     gap
-        (K,) gaps there [-].
+        (K,) gaps at these angles [-].
     period
         The cycle [rad].
     """

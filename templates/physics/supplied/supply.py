@@ -1,4 +1,4 @@
-"""Oil supply of a film over a cycle: holes, slots and grooves of either surface, and their pressure.
+"""Oil supply of a film over a cycle: holes, slots and grooves in either surface, and their pressure.
 
 Angles are positive in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0:
 the angle of a hole in the pin is measured from the throw, that of a groove in the rod's bore from the rod's
@@ -18,18 +18,18 @@ class Pocket:
     """A hole, slot or groove full of oil at the supply pressure, symmetric about the bearing's middle."""
 
     centre: float
-    """Angle in the axes of the sleeve or, on_journal, of the journal, at crank angle 0 [rad]."""
+    """Angle at crank angle 0, in the axes of the sleeve or, with on_journal, of the journal [rad]."""
     half_angle: float
-    """Half its extent around; pi goes all around [rad]."""
+    """Half the circumferential extent; pi for a full circle [rad]."""
     half_length: float
-    """Half its length across over B/2, above 0, at most 0.95 [-]."""
+    """Half the axial extent over B/2, above 0 and at most 0.95 [-]."""
     on_journal: bool = False
-    """Whether it turns with the journal; otherwise with the sleeve."""
+    """Whether the pocket rotates with the journal; otherwise it is in the sleeve."""
 
 
 @dataclass(frozen=True)
 class Supply:
-    """What feeds a film: at least one pocket, and a pressure above that of the cavities.
+    """The oil supply of a film: at least one pocket, and a pressure above that of the cavities.
 
     Raises
     ------
@@ -54,10 +54,10 @@ class Supply:
 
     @property
     def grooved(self) -> bool:
-        """Return whether a pocket goes half around or more, and so passes through the loaded zone."""
+        """Return whether a pocket extends at least half around, and so passes through the loaded zone."""
         return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Return the different half lengths, rising [-]."""
+        """Return the distinct half lengths in ascending order [-]."""
         return tuple(sorted({pocket.half_length for pocket in self.pockets}))

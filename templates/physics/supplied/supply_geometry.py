@@ -1,4 +1,4 @@
-"""Oil supply of a bearing as drawn: a groove and a hole in the sleeve, a hole in the pin.
+"""Oil supply of a bearing as on a drawing: a groove and a hole in the sleeve, a hole in the pin.
 
 Angles are positive from x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: the angle of
 a hole in the pin is measured from the throw, the angles of groove and hole in a rod's bore from the rod's
@@ -18,39 +18,39 @@ from templates.physics.orbits.rotation import turning
 from templates.physics.supplied.supply import LONGEST, Pocket, Supply
 
 UNDER_LOAD = np.pi / 3
-"""A hole nearer than this to the load's direction lies under the load [rad]."""
+"""A hole within this angle of the load's direction is under the load [rad]."""
 HALF = np.pi / 3
-"""By how much the extent of a half groove may differ from 180° [rad]."""
+"""Largest deviation of a half groove's extent from 180° [rad]."""
 AROUND = 2 * np.pi * (1 - 1e-9)
-"""An extent that goes all around [rad]."""
+"""Smallest extent that counts as a full circle [rad]."""
 
 
 @dataclass(frozen=True)
 class SupplyGeometry:
-    """Groove and holes of some points, SI, each midway across; NaN where there is none."""
+    """Groove and holes of some points, in SI, each axially centred; NaN if absent."""
 
     D: Array
     """Diameter of the bearing [m]."""
     W: Array
-    """Its width [m]."""
+    """Width of the bearing [m]."""
     groove_width: Array
-    """Groove in the sleeve [m]."""
+    """Width of the groove in the sleeve [m]."""
     groove_start: Array
-    """Where it begins, from the sleeve's axis [rad]."""
+    """Angle from the sleeve's axis at which the groove begins [rad]."""
     groove_extent: Array
-    """Return its extent around [rad]."""
+    """Angle that the groove extends [rad]."""
     sleeve_length: Array
-    """Hole or slot in the sleeve: along the width [m]."""
+    """Axial length of the hole or slot in the sleeve [m]."""
     sleeve_arc: Array
-    """Around [m]."""
+    """Circumferential length of the hole or slot in the sleeve [m]."""
     sleeve_angle: Array
-    """Its middle, from the sleeve's axis [rad]."""
+    """Angle of the middle of the sleeve's hole from the sleeve's axis [rad]."""
     pin_length: Array
-    """Hole or slot in the pin: along the width [m]."""
+    """Axial length of the hole or slot in the pin [m]."""
     pin_arc: Array
-    """Around [m]."""
+    """Circumferential length of the hole or slot in the pin [m]."""
     pin_angle: Array
-    """Its middle, from the throw [rad]."""
+    """Angle of the middle of the pin's hole from the throw [rad]."""
 
     @property
     def grooved(self) -> Mask:
@@ -69,22 +69,22 @@ class SupplyGeometry:
 
     @property
     def count(self) -> Array:
-        """Return the number of inlets among the three."""
+        """Return how many of the three inlets there are."""
         return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
 
     def partial(self) -> Mask:
-        """Return a mask of the points whose groove does not go all around."""
+        """Return a mask of the points whose groove does not extend all around."""
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
-        """Existence of each, its middle, half extent [rad] and length [m], and whether it is in the pin."""
+        """Return, for each inlet: existence, middle, half extent [rad], length [m], whether in the pin."""
         half = self.groove_extent / 2
         yield self.grooved, self.groove_start + half, half, self.groove_width, False
         yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
         yield self.pin_holed, self.pin_angle, self.pin_arc / self.D, self.pin_length, True
 
     def pockets(self, shape: tuple[int, ...]) -> Iterator[tuple[Pocket, ...]]:
-        """Yield the pockets of each point of a shape; one that rounds to nothing feeds nothing."""
+        """Yield the pockets of each point of a shape, without those that round to size zero."""
         for number in range(int(np.prod(shape))):
             pockets = []
             for present, middle, half, length, on_journal in self.parts():
@@ -98,15 +98,15 @@ class SupplyGeometry:
 
 
 def _fitted(across: float) -> float:
-    """Return a length over the width, but for the rounding by which the longest exceeds its limit."""
+    """Return a length over the width, corrected if it exceeds its limit only by rounding."""
     return LONGEST if LONGEST < across <= LONGEST * (1 + 1e-9) else across
 
 
 def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]:
     """Return the `Supply` of each point, (...).
 
-    None where there is nothing, no pressure P = p psi²/(eta Omega) [-], or an inlet that is too long: a rule
-    refuses that.
+    It is None without inlets or without pressure P = p psi²/(eta Omega) [-], and if an inlet is too long,
+    which a rule refuses.
     """
     sizes = (np.shape(getattr(feeding, field.name)) for field in fields(feeding))
     shape = np.broadcast_shapes(np.shape(pressure), *sizes)
@@ -119,7 +119,7 @@ def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]
 
 
 def supply_kind(feeding: SupplyGeometry) -> str:
-    """Return the kind of supply of all points; empty where they differ."""
+    """Return the kind of supply of all points; empty if the points differ."""
     half = np.abs(feeding.groove_extent - np.pi) <= HALF + 1e-9
     kinds = {
         "none": feeding.count == 0,
@@ -134,10 +134,10 @@ def supply_kind(feeding: SupplyGeometry) -> str:
 
 
 def sleeve_motion(duty: Duty) -> str:
-    """Return how the sleeve of all points moves in the block: fixed, swinging, or empty if otherwise.
+    """Return how the sleeve of all points moves in the block: fixed, swinging, or empty for anything else.
 
-    A swinging one, such as a rod, comes to rest in the mean. The crank turns with the journal, in the mean,
-    and the load's axes do not turn.
+    A swinging sleeve, such as a rod, has zero mean speed. The crank has the mean speed of the journal, and
+    the axes of the load do not rotate.
     """
     journal, sleeve = (np.mean(np.atleast_1d(speed), axis=-1) for speed in (duty.omega_J, duty.omega_B))
     slow = 1e-3 * duty.Omega
@@ -150,16 +150,16 @@ def sleeve_motion(duty: Duty) -> str:
 
 
 def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
-    """Return whether a groove or hole leaves a land at the ends and goes around once at most."""
+    """Return whether a groove or hole leaves a land at both ends and extends at most once around."""
     inside = (length <= LONGEST * W) & ~(arc > np.pi * D)
     return np.asarray(np.isnan(length) | inside)[()]
 
 
 @units(None, "rad/s", None, returns="1")
 def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
-    """Return whether a part is back at its place in the load's frame after the cycle, where that is needed.
+    """Return whether a part is back at its position in the load's frame after the cycle, where required.
 
-    Angles that cover no cycle are not judged here.
+    The result is true for angles that do not cover a cycle, which another rule refuses.
     """
     period = cycle_of(duty.angle)
     if not (np.any(needed) and np.isfinite(period)):
@@ -171,9 +171,9 @@ def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
 
 
 def feed_under_load(duty: Duty, feeding: SupplyGeometry) -> Array:
-    """Return share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
+    """Return the fraction of the cycle with every groove and hole within 60° of the load's direction [-].
 
-    NaN where there is none. A groove or slot longer than that is never under the load as a whole.
+    It is NaN without any. A groove or slot longer than that is never completely under the load.
     """
     direction, sleeve, journal = _in_frame(duty)
     under, fed = np.ones(direction.shape, bool), np.zeros((), bool)
@@ -188,7 +188,7 @@ def feed_under_load(duty: Duty, feeding: SupplyGeometry) -> Array:
 
 
 def _in_frame(duty: Duty) -> tuple[Array, Array, Array]:
-    """Return the directions of the load and turns of sleeve and journal in the frame, (..., N) each [rad]."""
+    """Return load direction and rotation of sleeve and journal in the frame, (..., N) each [rad]."""
     period, Omega = cycle_of(duty.angle), np.asarray(duty.Omega)[..., None]
     of_sleeve, of_journal = ((speed - duty.omega_F) / Omega for speed in (duty.omega_B, duty.omega_J))
     x, y, *speeds, _ = np.broadcast_arrays(duty.F_x, duty.F_y, of_sleeve, of_journal, duty.angle)

@@ -6,11 +6,11 @@ from templates.core.arrays import Array
 
 _KEPT = 6
 _SHARE = 0.7
-"""Share of the change that is taken where nothing is known of it yet."""
+"""Fraction of the change that is applied while no earlier changes are known."""
 
 
 class Anderson:
-    """Guesses for x = g(x), from what g has changed so far.
+    """Successive guesses for the solution of x = g(x), from the recent values of g.
 
     References
     ----------
@@ -22,7 +22,7 @@ class Anderson:
         self.changes: list[Array] = []
 
     def after(self, place: Array, change: Array) -> Array:
-        """Return the next guess, where g(place) = place + change."""
+        """Return the next guess after g(place) = place + change."""
         if self.changes and np.abs(change).max() > 3 * np.abs(self.changes[-1]).max():
             self.places, self.changes = [], []
         self.places = [*self.places, place][-_KEPT:]

@@ -1,6 +1,6 @@
-"""The mesh of a film between the two edges of its groove: around, and across half the width.
+"""The mesh of a film from one edge of its groove around to the other, on half the width.
 
-Angles are measured from the load in the sense of rotation. The groove stands still, so the nodes do not move
+Angles are measured from the load in the sense of rotation. The groove is stationary, so the nodes do not move
 during the search for the journal's position, and the force is continuous. The nodes are graded once towards
 the thin film.
 """
@@ -14,30 +14,30 @@ from templates.physics.films.film_equations import dual_widths
 from templates.physics.films.film_mesh import graded_across
 
 _FINE = 8000
-"""Places at which the density of nodes is integrated."""
+"""Number of points at which the density of nodes is integrated."""
 _INLET, _LAYER = 0.5, 0.01
 """Weight and width [rad] of the finer mesh where fresh oil meets the warm walls."""
 
 
 @dataclass(frozen=True)
 class Arc:
-    """Nodes around × nodes across half the width; the first and the last around are edges of the groove."""
+    """Circumferential nodes × axial nodes on half the width; the first and last are the groove's edges."""
 
     phi: Array
     """(n + 1,) angles from the load, rising by less than a turn [rad]."""
     zeta: Array
-    """(m + 1,) axial places, 0 (middle) … 1 (end)."""
+    """(m + 1,) axial positions, 0 (middle) … 1 (end)."""
     ratio: float
     """Width over diameter B/D [-]."""
 
     @property
     def around(self) -> Array:
-        """(n + 1,) lengths of the cells around the nodes, half cells at the groove [rad]."""
+        """Return the (n + 1,) circumferential lengths of the cells, half cells at the groove [rad]."""
         return dual_widths(self.phi)
 
     @property
     def across(self) -> Array:
-        """(m + 1,) the same across; their sum is 1."""
+        """Return the axial lengths of the cells; their sum is 1."""
         return dual_widths(self.zeta)
 
 
@@ -49,15 +49,15 @@ def groove_arc(start: float, length: float, thin: tuple[float, float], ratio: fl
     start
         Angle of the groove's edge at which the film begins [rad].
     length
-        From there to the other edge [rad].
+        Angle from there to the other edge [rad].
     thin
-        Relative eccentricity and angle of the narrowest gap, to which nodes are graded [-], [rad].
+        Relative eccentricity [-] and angle [rad] of the narrowest gap, to which nodes are graded.
     ratio
         Width over diameter B/D [-].
     n
-        Intervals around.
+        Number of circumferential intervals.
     m
-        Intervals across half the width.
+        Number of intervals over half the width.
     """
     eps, attitude = thin
     fine = start + np.linspace(0, length, _FINE + 1)

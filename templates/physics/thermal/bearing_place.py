@@ -13,19 +13,19 @@ from templates.physics.thermal.arc import Arc
 from templates.physics.thermal.pressure import Gap, PressureSolution, gap_of, pressed
 
 FARTHEST = float(np.arctanh(0.9999))
-"""Length of y beyond which no journal is looked for."""
+"""Largest length of y in the search."""
 _STEPS = 40
 _LONGEST = 0.7
 _DIFFERENCE = 1e-5
 _NOISE = 1e-6
-"""What may be lacking where no step leaves less: the films themselves are not solved more closely."""
+"""Accepted residual where no step reduces it further: the films are not solved more accurately."""
 _HALVINGS = 8
 _STALE = 0.3
-"""A step that leaves more than this share of what was lacking asks for new slopes."""
+"""After a step that leaves more than this fraction of the residual, the slopes are computed again."""
 
 
 class NoBalance(ArithmeticError):
-    """No film was found that bears the load, or none whose heat is carried off."""
+    """No film was found that carries the load, or none whose heat is removed."""
 
 
 class PositionSearch:
@@ -34,15 +34,15 @@ class PositionSearch:
     Parameters
     ----------
     arc
-        Where the film is.
+        The mesh.
     edges
-        (J + 1,) of the strips across.
+        (J + 1,) edges of the strips across.
     load
         So with the viscosity of the supply [-].
     feed
         P_s of the groove and its length over the width [-].
     y
-        (2,) where the search begins; then where it has ended.
+        (2,) initial position; after a search, the final position.
     """
 
     def __init__(self, arc: Arc, edges: Array, load: float, feed: tuple[float, float], y: Array) -> None:
@@ -56,7 +56,7 @@ class PositionSearch:
         Raises
         ------
         NoBalance
-            If there is none, or the search has not come to rest.
+            If there is none, or the search does not converge.
         """
         film = self._film(fluidity, self.y)
         lack, fresh = self._lack(film), False
@@ -86,7 +86,7 @@ class PositionSearch:
     def _nearer(
         self, fluidity: Array, step: Array, size: float, tries: int
     ) -> tuple[Array, PressureSolution, Array] | None:
-        """Return the place after a step, or half of it and so on, at which less is lacking; with its film."""
+        """Return the position after a step, halved until the residual decreases, and its film."""
         for _ in range(tries):
             y = self.y + step
             if np.hypot(*y) < FARTHEST:
@@ -98,7 +98,7 @@ class PositionSearch:
         return None
 
     def _newton(self, lack: Array) -> Array:
-        """Return Newton's step of y towards the balance."""
+        """Return the Newton step of y."""
         step = -np.linalg.lstsq(np.asarray(self.slopes), lack, rcond=1e-12)[0]
         size = float(np.hypot(*step))
         if not size > 0:
@@ -106,7 +106,7 @@ class PositionSearch:
         return np.asarray(step * min(1.0, _LONGEST / size))
 
     def _film(self, fluidity: Array, y: Array) -> PressureSolution:
-        """Return the film at a place, kept as the start of the next."""
+        """Return the film at a position, stored as the initial guess of the next."""
         gap: Gap = gap_of(self.arc, y, fluidity, self.edges, self.feed)
         try:
             film = pressed(gap, self.near)
@@ -127,7 +127,7 @@ class PositionSearch:
         return np.array([np.log(size / self.load), np.arctan2(ahead, along)])
 
     def _differences(self, fluidity: Array, lack: Array) -> Array:
-        """Return the (2, 2) slopes of the imbalance."""
+        """Return the (2, 2) derivatives of the residuals by finite differences."""
         kept = self.near
         columns = []
         for step in _DIFFERENCE * np.eye(2):

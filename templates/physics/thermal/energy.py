@@ -9,8 +9,9 @@ Hunter, March 1966). Every term is averaged over the width, so the dissipation e
 journal and supply, and the removed heat adds up to it. In a cavity the oil flows in streamers of the film's
 height: every term is multiplied by their share. Circumferential conduction is neglected.
 
-Finite volumes on the strips of `across`: upwind around, exponential across (Scharfetter, Gummel; Patankar).
-The equations are linear in T: one sparse system also gives the temperatures of the groove and of the journal.
+Finite volumes on the strips of `across`: circumferentially upwind, exponential across the film (Scharfetter,
+Gummel; Patankar). The equations are linear in T: one sparse system also gives the temperatures of the groove
+and of the journal.
 
 In units of T: :math:`\delta = \eta_s\omega/(\rho c\,\psi^2)` for dissipation, :math:`\kappa = k/(\rho c\,
 \omega c_r^2)` for conduction across.
@@ -28,47 +29,48 @@ from templates.physics.thermal.pressure import PressureSolution
 
 @dataclass(frozen=True)
 class HeatSources:
-    """What heats a film and what cools it; temperatures in K."""
+    """The heating and cooling of a film; temperatures in K."""
 
     delta: float
-    """eta_s omega/(rho c psi²) [K]."""
+    """Temperature scale of dissipation, eta_s omega/(rho c psi²) [K]."""
     kappa: float
-    """k/(rho c omega c_r²) [-]."""
+    """Conduction across the film, k/(rho c omega c_r²) [-]."""
     wall: float
-    """Heat transfer of the bush, h_B/(rho c omega c_r); 0: adiabatic; infinite: held [-]."""
+    """Heat transfer of the bush, h_B/(rho c omega c_r); 0 if adiabatic, infinite at a given temperature
+    [-]."""
     outside: float
     """Temperature behind the bush [K]."""
     supply: float
-    """That of the fresh oil [K]."""
+    """Temperature of the fresh oil [K]."""
     journal: float
-    """That of the journal; NaN for one of no net heat [K]."""
+    """Temperature of the journal; NaN for a journal without net heat flow [K]."""
     carry_over: float = 1.0
-    """Share of the oil that arrives at the groove which goes on into the film [-]."""
+    """Fraction of the oil arriving at the groove that continues into the film [-]."""
 
 
 @dataclass(frozen=True)
 class FilmHeat:
-    """A film's temperatures, and where its heat goes: each over rho c U c_r B [K]."""
+    """The temperatures of a film, and its heat flows, each over rho c U c_r B [K]."""
 
     T: Array
-    """(n + 1, J) at the nodes and strips; the groove's at the first and the last [K]."""
+    """(n + 1, J) temperature at the nodes and strips; the first and last are the groove's [K]."""
     bush: Array
-    """(n + 1,) of the bush's surface, at the groove's edges that beside them [K]."""
+    """(n + 1,) temperature of the bush's surface; at the groove's edges that of the neighbouring node [K]."""
     journal: float
-    """Of the journal [K]."""
+    """Temperature of the journal [K]."""
     groove: float
-    """Of the oil that enters the film [K]."""
+    """Temperature of the oil that enters the film [K]."""
     dissipated: float
     by_side: float
-    """What leaves with the oil at the ends, above the supply's temperature."""
+    """Heat that leaves with the oil at the ends, relative to the supply temperature."""
     by_drain: float
-    """What leaves with arriving oil that does not go on."""
+    """Heat that leaves with the arriving oil that drains from the groove."""
     by_bush: float
     by_journal: float
     side: float
-    """Oil that leaves at the ends, over U c_r B [-]."""
+    """Oil flow out of the ends, over U c_r B [-]."""
     fresh: float
-    """Oil that the groove takes from the supply, likewise [-]."""
+    """Oil flow from the supply into the groove, over U c_r B [-]."""
 
     @property
     def residual(self) -> float:
@@ -79,26 +81,26 @@ class FilmHeat:
 
 @dataclass(frozen=True)
 class StripFlows:
-    """Oil that moves between the strips, over U c_r B, and what heats and cools them."""
+    """Oil flows between the strips, over U c_r B, and their dissipation and cooling."""
 
     around: Array
-    """(n, J) from node to node."""
+    """(n, J) flow from node to node."""
     side: Array
-    """(n − 1, J) that leaves at the ends."""
+    """(n − 1, J) flow out of the ends."""
     up: Array
-    """(n − 1, J − 1) from strip to strip towards the journal."""
+    """(n − 1, J − 1) flow from strip to strip towards the journal."""
     heat: Array
     """(n − 1, J) dissipation at the inner nodes, over delta."""
     wet: Array
-    """(n − 1,) length of each inner node's cell that oil covers [rad]."""
+    """(n − 1,) length of each inner node's cell that is wetted by oil [rad]."""
     near: Array
-    """(n − 1,) the same over the gap [rad]."""
+    """(n − 1,) wetted length over the gap [rad]."""
 
 
 def carried(film: PressureSolution) -> StripFlows:
     """Return the flows that conserve the oil of every strip, and the dissipation.
 
-    The half cells at the groove count with the nodes beside them: so the groove mixes, and nothing else.
+    The half cells at the groove are added to their neighbours, so that only mixing takes place in the groove.
     """
     gap, arc = film.gap, film.gap.arc
     faces, nodes, fill = gap.faces, gap.nodes, film.fill
@@ -114,7 +116,7 @@ def carried(film: PressureSolution) -> StripFlows:
 
 
 def _inner(values: Array) -> Array:
-    """Return the values of the inner nodes, with those at the groove added to the nodes beside it."""
+    """Return the values of the inner nodes; those at the groove are added to their neighbours."""
     inner = values[1:-1].copy()
     inner[0] += values[0]
     inner[-1] += values[-1]
@@ -122,7 +124,7 @@ def _inner(values: Array) -> Array:
 
 
 def _dissipation(film: PressureSolution, drag: Array) -> Array:
-    """Dissipation by drag, by the flow around and by that across; its sum is the work put in."""
+    """Return the dissipation by drag and by circumferential and axial flow; its sum is the power input."""
     gap, arc = film.gap, film.gap.arc
     faces, nodes, step = gap.faces, gap.nodes, np.diff(arc.phi)
     steep = (np.diff(film.P, axis=0) / step[:, None]) ** 2 @ arc.across
@@ -156,7 +158,7 @@ def heated(film: PressureSolution, heating: HeatSources, edges: Array) -> FilmHe
 
 
 class _System:
-    """The linear equations: T of the inner nodes' strips, then of the groove and of the journal."""
+    """The linear equations: T of the strips at inner nodes, then of the groove and of the journal."""
 
     def __init__(self, flow: StripFlows, heating: HeatSources, edges: Array) -> None:
         self.flow, self.heating = flow, heating
@@ -179,13 +181,13 @@ class _System:
         self.right = np.zeros(self.size)
 
     def add(self, row: Array | int, column: Array | int, value: Array | float) -> None:
-        """Add to the matrix."""
+        """Add entries to the matrix."""
         parts = np.broadcast_arrays(row, column, value)
         for kept, part in zip((self.rows, self.columns, self.values), parts, strict=True):
             kept.append(part.ravel())
 
     def flows(self, giver: Array | int, taker: Array | int, flow: Array) -> None:
-        """Heat that oil takes from one unknown to another; the giver's balance is written as a loss."""
+        """Add the heat that oil transports from one unknown to another, as a loss of the first."""
         self.add(giver, giver, flow)
         self.add(taker, giver, -flow)
 
@@ -214,7 +216,7 @@ class _System:
         return csc_array((np.concatenate(self.values), (rows, columns)), shape=(self.size, self.size))
 
     def _mixing(self, on: Array, back: Array) -> None:
-        """Oil that arrives mixes with the fresh one; `flows` has entered all of it, part may drain."""
+        """Add the mixing of arriving and fresh oil in the groove; some of the arriving oil may drain."""
         heat = self.heating
         entering, arriving = on[0].sum() + back[-1].sum(), on[-1].sum() + back[0].sum()
         self.fresh = entering - heat.carry_over * arriving
@@ -225,7 +227,7 @@ class _System:
         self.right[self.groove] = self.fresh * heat.supply
 
     def _journal(self) -> None:
-        """Enter the equation of the journal: its temperature is given, or its net heat is zero."""
+        """Add the equation of the journal: its temperature is given, or its net heat flow is zero."""
         if np.isfinite(self.heating.journal):
             self.add(self.journal, self.journal, 1.0)
             self.right[self.journal] = self.heating.journal
@@ -234,7 +236,7 @@ class _System:
             self.add(self.journal, self.index[:, -1], -self.to_journal)
 
     def read(self, solved: Array) -> FilmHeat:
-        """Return the temperatures and where the heat goes."""
+        """Return the temperatures and heat flows."""
         flow, heat = self.flow, self.heating
         inner, groove, journal = solved[: self.groove].reshape(self.index.shape), *solved[self.groove :]
         T = np.concatenate([np.full((1, self.J), groove), inner, np.full((1, self.J), groove)])
@@ -253,9 +255,9 @@ class _System:
 
 
 def _exponential(flow: Array, conduction: Array) -> tuple[Array, Array]:
-    """Return the coefficients of what goes up and down between strips: conduction × B(∓flow/conduction).
+    """Return the coefficients of heat flow up and down between strips: conduction × B(∓flow/conduction).
 
-    B(x) = x/(exp(x) − 1) is exact for a flow and a conduction that do not change between the two.
+    B(x) = x/(exp(x) − 1) is exact if flow and conduction are constant between the two strips.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         x = np.clip(np.where(conduction > 0, flow / conduction, np.sign(flow) * np.inf), -500, 500)

@@ -1,6 +1,7 @@
 """The one-temperature level: the heat balance of ISO 7902-1 with the film map, for many points at once.
 
-It ignores groove and supply pressure, but includes cooling by air behind the bush, as `oil_film` does.
+It ignores groove and supply pressure, but includes cooling by air on the back of the bush, as `oil_film`
+does.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ from templates.physics.thermal.thermal_case import ThermalCase
 
 
 def mapped_values(case: ThermalCase) -> dict[str, Array]:
-    """Return the values of `WarmFilm` that one temperature has; eps infinite where there is no balance."""
+    """Return the values of `WarmFilm` at a single temperature; eps is infinite if there is no balance."""
     area = np.pi * case.D * case.W
     running = OperatingPoint(
         F=case.F, D=case.D, W=case.W, psi=case.psi, omega_m=case.omega, omega_s=case.omega, A=case.A,

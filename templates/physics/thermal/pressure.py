@@ -31,15 +31,15 @@ class Gap:
 
     arc: Arc
     y: Array
-    """(2,) the journal's place along and ahead of the load, as long as atanh(eps)."""
+    """(2,) position of the journal along and ahead of the load, with length atanh(eps)."""
     nodes: Across
-    """Integrals across at the n + 1 nodes."""
+    """Integrals across the film at the n + 1 nodes."""
     faces: Across
-    """The same midway between them, n."""
+    """Integrals across the film midway between the nodes, n."""
     pressure: float
-    """That of the groove P_s [-]."""
+    """Pressure P_s of the groove [-]."""
     length: float
-    """Of the groove across, over the width [-]."""
+    """Axial length of the groove over the bearing's width [-]."""
 
     @property
     def eps(self) -> float:
@@ -57,23 +57,23 @@ class Gap:
 
     @property
     def fed(self) -> Array:
-        """(m + 1,) pressure along the edges of the groove; over the land at its end it falls evenly to 0."""
+        """Return the (m + 1,) pressure along the groove's edges; over the land it falls linearly to 0."""
         land = max(1 - self.length, 1e-12)
         return self.pressure * np.clip((1 - self.arc.zeta) / land, 0, 1)
 
     @property
     def H_nodes(self) -> Array:
-        """(n + 1,) at the nodes."""
+        """Return the (n + 1,) gap at the nodes."""
         return self.H(self.arc.phi)
 
     @property
     def H_faces(self) -> Array:
-        """Return (n,) midway between them."""
+        """Return the (n,) gap midway between the nodes."""
         return self.H(midpoints(self.arc.phi))
 
 
 def gap_of(arc: Arc, y: Array, fluidity: Array, edges: Array, feed: tuple[float, float]) -> Gap:
-    """Return the gap at a place of the journal with a fluidity (n + 1, J) at the nodes.
+    """Return the gap at a position of the journal with a fluidity (n + 1, J) at the nodes.
 
     `feed` is the pressure of the groove and its length over the bearing's width [-].
     """
@@ -89,16 +89,16 @@ class PressureSolution:
     P: Array
     """(n + 1, m + 1) pressure [-]."""
     void: Array
-    """(n + 1, m + 1) share of the gap without oil; at the ends that of the node beside [-]."""
+    """(n + 1, m + 1) fraction of the gap without oil; at the ends that of the neighbouring node [-]."""
 
     @property
     def fill(self) -> Array:
-        """(n + 1,) share of the gap with oil, mean across the width [-]."""
+        """Return the (n + 1,) fraction of the gap filled with oil, averaged over the width [-]."""
         return np.asarray((1 - self.void) @ self.gap.arc.across)
 
     @property
     def force(self) -> Array:
-        """(2,) what the film bears along the load, and pushes ahead of it, in the units of So."""
+        """Return the (2,) force of the film along the load and ahead of it, in units of So."""
         arc = self.gap.arc
         weight = self.P @ arc.across * arc.around / 2
         first, last = arc.phi[-1], arc.phi[0] + 2 * np.pi
@@ -108,12 +108,12 @@ class PressureSolution:
 
     @property
     def slopes(self) -> Array:
-        """Return (n,) difference of pressure between the nodes over their distance, mean across the width."""
+        """Return (n,) pressure difference between nodes over their distance, averaged over the width."""
         return np.asarray(np.diff(self.P, axis=0) @ self.gap.arc.across / np.diff(self.gap.arc.phi))
 
     @property
     def torque(self) -> float:
-        """Torque of shear on the journal, M psi/(B R² eta_s omega), without the groove [-]."""
+        """Return the shear torque on the journal without the groove, M psi/(B R² eta_s omega) [-]."""
         gap, arc = self.gap, self.gap.arc
         drag = arc.around * self.fill * gap.nodes.shear / gap.H_nodes
         pushed = (np.diff(self.P, axis=0) * (1 - self.void[:-1])) @ arc.across
@@ -121,7 +121,7 @@ class PressureSolution:
 
 
 def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> PressureSolution:
-    """Solve for pressure and void, from those (n + 1, m + 1) of a nearby film.
+    """Return the solution for pressure and void, started from those (n + 1, m + 1) of a nearby film.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> PressureSolut
 
 
 def _network(gap: Gap) -> Network:
-    """Return the balances of flow."""
+    """Return the flow balances."""
     arc, n, m = gap.arc, gap.arc.phi.size - 1, gap.arc.zeta.size - 1
     step, axial = _steps(n), _steps(m)
     along = 12 * gap.faces.conductance * gap.H_faces**3 / np.diff(arc.phi)
@@ -154,5 +154,5 @@ def _network(gap: Gap) -> Network:
 
 
 def _steps(n: int) -> csc_array:
-    """(n, n + 1) differences between neighbours."""
+    """Return the (n, n + 1) matrix of differences between neighbours."""
     return csc_array(eye_array(n, n + 1, k=1) - eye_array(n, n + 1))

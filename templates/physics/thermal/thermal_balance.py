@@ -1,7 +1,7 @@
 """Equilibrium of a film, its temperatures and the load: with one temperature, or with a temperature field.
 
 The temperatures are a fixed point: they determine the viscosity, the viscosity determines the film that
-carries the load, and that film determines the temperatures. Anderson acceleration needs some ten films. For
+carries the load, and that film determines the temperatures. Anderson acceleration needs about ten films. For
 comparison, the film with one effective temperature, as in ISO 7902-1, is solved on the same mesh and with the
 same feed.
 """
@@ -22,36 +22,38 @@ from templates.physics.thermal.energy import FilmHeat, HeatSources, carried, hea
 from templates.physics.thermal.pressure import PressureSolution
 
 HOTTEST = 773.15
-"""Highest temperature that is looked for [K]."""
+"""Highest temperature of the search [K]."""
 FIELD, FINE = "field", "fine_field"
 MESHES = {FIELD: ((24, 4, 8), (48, 8, 12)), FINE: ((48, 8, 12), (96, 16, 24))}
-"""Of each level, with the mesh to start from: intervals around, across half the width, strips across."""
+"""The initial and the final mesh of each level: intervals around, across half the width, strips across the
+film."""
 _ROUNDS = 80
 _ACCURACY = 1e-7
-"""Change of temperature over its largest rise at which the search ends [-]."""
+"""The iteration ends when the change of temperature over the largest rise is below this [-]."""
 _FORCE = 1e-8
 _LIGHTEST, _HEAVIEST = 0.05, 0.98
-"""Eccentricities between which a search begins [-]."""
+"""Smallest and largest eccentricity at which a search starts [-]."""
 
 
 @dataclass(frozen=True)
 class Bearing:
-    """A bearing, dimensionless but for its temperatures."""
+    """A bearing, dimensionless except for its temperatures."""
 
     So: float
     """F psi²/(B D eta_s omega) with the viscosity of the supply [-]."""
     ratio: float
     """Width over diameter [-]."""
     pressure: float
-    """Of the supply, p psi²/(eta_s omega) [-]."""
+    """Supply pressure p psi²/(eta_s omega) [-]."""
     groove: tuple[float, float, float]
-    """Angle of its middle from the load, width around [rad], and length over the bearing's width [-]."""
+    """Angle of the groove's middle from the load [rad], its angular width [rad], and its length over the
+    bearing's width [-]."""
     heating: HeatSources
     fluidity: Callable[[Array], Array]
-    """Viscosity of the supply over that at a temperature [K]."""
+    """Function that returns the viscosity at supply over the viscosity at a temperature [K]."""
 
     def arc(self, y: Array, mesh: tuple[int, int, int]) -> Arc:
-        """Return the film's mesh, graded to a place of the journal."""
+        """Return the film's mesh, graded to a position of the journal."""
         centre, width, _ = self.groove
         eps, attitude = float(np.tanh(np.hypot(*y))), float(np.arctan2(y[1], y[0]))
         return groove_arc(
@@ -59,13 +61,13 @@ class Bearing:
         )
 
     def placing(self, y: Array, mesh: tuple[int, int, int]) -> PositionSearch:
-        """Return a search on a mesh from a place."""
+        """Return a search on a mesh that starts from a position."""
         return PositionSearch(
             self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y
         )
 
     def start(self) -> Array:
-        """Return the journal's position in a film of the supply's viscosity, fed along its widest gap."""
+        """Return the journal's position for a film of the supply's viscosity, fed along its widest gap."""
         if not np.isfinite(self.So):
             raise NoBalance("the oil has no viscosity that bears a load")
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
@@ -76,7 +78,7 @@ class Bearing:
 
 @dataclass(frozen=True)
 class OneTemperature:
-    """A film of one viscosity whose heat the side flow and the air carry off."""
+    """A film of uniform viscosity whose heat is removed by side flow and air."""
 
     T: float
     """Effective temperature [K]."""
@@ -91,19 +93,19 @@ class Warm:
     film: PressureSolution
     heated: FilmHeat
     rounds: int
-    """Films until the temperatures stood."""
+    """Number of films solved until the temperatures converged."""
     placing: PositionSearch
     supply: float
     """Temperature of the fresh oil [K]."""
 
 
 def one_temperature(bearing: Bearing, placing: PositionSearch, T: float, step: float) -> OneTemperature:
-    """Return the effective temperature, by the secant from one guess [K] to another by at most `step` [K].
+    """Return the film at the effective temperature, by secants between guesses [K] at most `step` [K] apart.
 
     Raises
     ------
     NoBalance
-        If no film bears the load, or none below 500 °C carries its heat off.
+        If no film carries the load, or its heat cannot be removed below 500 °C.
     """
     shape = placing.arc.phi.size, placing.edges.size - 1
 
@@ -127,7 +129,7 @@ def one_temperature(bearing: Bearing, placing: PositionSearch, T: float, step: f
 
 
 def _mean(film: PressureSolution, heating: HeatSources) -> float:
-    """Return the mean of supply and outlet, by the heat that side flow and air carry off [K]."""
+    """Return the mean of supply and outlet temperature, from the heat removed by side flow and air [K]."""
     flow = carried(film)
     side = float(flow.side.sum())
     air = 0.0 if np.isinf(heating.wall) else 2 * np.pi * heating.wall
@@ -138,12 +140,12 @@ def _mean(film: PressureSolution, heating: HeatSources) -> float:
 
 
 def warm(bearing: Bearing, placing: PositionSearch, T: Array) -> Warm:
-    """Return the film with a temperature at each place, from a guess (n + 1, J) [K].
+    """Return the film with a temperature field, from a guess (n + 1, J) [K].
 
     Raises
     ------
     NoBalance
-        If there is none below 500 °C, or the temperatures do not settle.
+        If there is none below 500 °C, or the temperatures do not converge.
     """
     heating, search = bearing.heating, Anderson()
     given = [T for T in (heating.supply, heating.outside, heating.journal) if np.isfinite(T)]
@@ -165,7 +167,9 @@ def warm(bearing: Bearing, placing: PositionSearch, T: Array) -> Warm:
 
 
 def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm]]:
-    """Return the film of one temperature on the level's mesh, and that of all temperatures before and on it.
+    """Return the film of one temperature on the level's mesh, and the film with a temperature field.
+
+    The temperature field is solved on the preceding mesh and on the level's mesh.
 
     Raises
     ------
@@ -185,7 +189,7 @@ def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm
 
 
 def _carried_over(coarse: Warm, finer: PositionSearch) -> Array:
-    """Return the temperatures of one mesh at the nodes and strips of another."""
+    """Return the temperatures of one mesh interpolated to the nodes and strips of another."""
     T, arc = coarse.heated.T, coarse.placing.arc
     middle, new = (((edges[1:] + edges[:-1]) / 2) for edges in (coarse.placing.edges, finer.edges))
     columns = np.stack([np.interp(finer.arc.phi, arc.phi, strip) for strip in T.T], axis=1)

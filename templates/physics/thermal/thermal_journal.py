@@ -16,17 +16,17 @@ from templates.physics.thermal.thermal_case import ThermalCase
 ONE = "one_temperature"
 LEVELS = (ONE, FIELD, FINE)
 ANGLES = np.radians(np.arange(0, 360, 5))
-"""From the load, at which the bush's temperature is given [rad]."""
+"""Angles from the load at which the bush's temperature is given [rad]."""
 
 
 @dataclass(frozen=True)
 class WarmFilm:
-    """What the film does, at each point; dimensionless but for temperatures [K]."""
+    """The results of the film at each point; dimensionless except temperatures [K]."""
 
     eps: Array
     """Relative eccentricity; infinite where no film was found [-]."""
     attitude: Array
-    """From the load to the narrowest gap [rad]."""
+    """Angle from the load to the smallest gap [rad]."""
     P_max: Array
     """Largest pressure p psi²/(eta_s omega) [-]."""
     T_max: Array
@@ -35,34 +35,34 @@ class WarmFilm:
     """Highest temperature of the bush's surface [K]."""
     T_journal: Array
     T_groove: Array
-    """Of the journal and of the oil that enters the film [K]."""
+    """Temperatures of the journal and of the oil that enters the film [K]."""
     T_side: Array
-    """Mean of the oil that leaves at the ends [K]."""
+    """Mean temperature of the oil that leaves at the ends [K]."""
     torque: Array
-    """M psi/(B R² eta_s omega) [-]."""
+    """Friction torque M psi/(B R² eta_s omega) [-]."""
     side: Array
-    """Flow from the ends, over U c_r B [-]."""
+    """Oil flow out of the ends, over U c_r B [-]."""
     dissipated: Array
     by_oil: Array
     by_bush: Array
     by_journal: Array
-    """Heat that arises, and that leaves with oil, bush and journal, over rho c U c_r B [K]."""
+    """Heat dissipated, and heat removed by oil, bush and journal, over rho c U c_r B [K]."""
     residual: Array
-    """Heat not accounted for, over that which arises, 0 below 1e-9; NaN with one temperature [-]."""
+    """Error of the heat balance over the dissipation, 0 below 1e-9; NaN with one temperature [-]."""
     mesh_error: Array
-    """Change of the smallest film from half the mesh [-]."""
+    """Relative change of the smallest film since the mesh of half the resolution [-]."""
     mesh_change: Array
-    """Change of the largest temperature from half the mesh [K]."""
+    """Change of the highest temperature since the mesh of half the resolution [K]."""
     one_T: Array
-    """One effective temperature for the same bearing [K]."""
+    """Effective temperature of the same bearing in the one-temperature model [K]."""
     one_eps: Array
     one_torque: Array
-    """Eccentricity and torque with it [-]."""
+    """Eccentricity and friction torque in the one-temperature model [-]."""
     bush: Array
     """(..., 72) temperature of the bush's surface at `ANGLES` [K]."""
 
     def admitted(self, eps: Array) -> "WarmFilm":
-        """Return the same with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps is NaN."""
         none = np.isnan(eps)
         each = {f.name: getattr(self, f.name) for f in fields(self)}
         bush = np.where(np.asarray(none)[..., None], np.nan, each.pop("bush"))
@@ -84,7 +84,7 @@ _FIELD = "solved numerically by finite volumes of Dowson's generalised Reynolds 
 def warm_film(level: str, case: ThermalCase) -> WarmFilm:
     """Return the film of every point at a level.
 
-    All at once with one temperature, else one after the other.
+    With one temperature all points are solved at once, otherwise one after the other.
     """
     if level == ONE:
         return _of_one(case)
@@ -120,7 +120,7 @@ def _of_one(case: ThermalCase) -> WarmFilm:
 
 
 def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, float]:
-    """Return the single values of `WarmFilm`."""
+    """Return the scalar values of `WarmFilm`."""
     film, heat, supply = fine.film, fine.heated, fine.supply
     least, before = 1 - film.gap.eps, 1 - coarse.film.gap.eps
     return {
@@ -138,12 +138,12 @@ def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, flo
 
 
 def _above_rounding(value: float, size: float) -> float:
-    """Return a difference of numbers of a size, 0 where it is no more than their rounding."""
+    """Return a difference of numbers of a given magnitude; 0 if it is no more than rounding error."""
     return value if abs(value) > _ROUNDING * size else 0.0
 
 
 def _around(warm: Warm) -> Array:
-    """Return the temperature of the bush's surface at `ANGLES`; in the groove that of its oil."""
+    """Return the temperature of the bush's surface at `ANGLES`; in the groove, that of its oil."""
     phi = warm.placing.arc.phi
     return np.interp(
         phi[0] + (ANGLES - phi[0]) % (2 * np.pi), phi, warm.heated.bush, right=warm.heated.groove
@@ -152,7 +152,7 @@ def _around(warm: Warm) -> Array:
 
 @units("1", returns="rad", latex=r"k\,5°")
 def bush_angles(eps: Array) -> Array:
-    """Return the angles of the bush's temperatures, from the load, for each eccentricity [-]; [rad]."""
+    """Return the angles of the bush's temperatures from the load [rad], for each eccentricity [-]."""
     return np.asarray(np.broadcast_to(ANGLES, (*np.shape(eps), ANGLES.size)))
 
 
@@ -165,5 +165,5 @@ def bush_angles(eps: Array) -> Array:
 )
 @units("1", returns="K")
 def in_kelvin(value: Array) -> Array:
-    """Return a temperature, or a heat over that of 1 K, of a `WarmFilm` [K]."""
+    """Return a temperature [K] of a `WarmFilm`, or a heat flow expressed in kelvin."""
     return value

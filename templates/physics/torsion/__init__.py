@@ -1,1 +1,1 @@
-"""Physics: forced torsional vibration of trains with branches, gears and dampers."""
+"""Forced torsional vibration of trains with branches, gears and dampers."""

@@ -13,7 +13,7 @@ from templates.physics.torsion.torque_harmonics import Excitation, cycle_of
 from templates.physics.torsion.train_layout import TrainLayout, numbered
 
 MOST_SPEEDS, MOST_CYLINDERS = 2000, 100
-_MOST_VALUES, _MOST_STEPS = 4e6, 1e9  # angles of all inertias; steps of elimination
+_MOST_VALUES, _MOST_STEPS = 4e6, 1e9  # limits: angles of all inertias; elimination steps
 
 
 def train_of(
@@ -26,20 +26,20 @@ def train_of(
     excited: Array,
     propeller: Propeller | None,
 ) -> Train:
-    """Return the train of a layout that the rules admit."""
+    """Return the train of a layout that satisfies the rules."""
     assert layout is not None
     return Train(layout, J, k, c, eta, absolute, propeller, int(numbered(excited)[0]))
 
 
 def propeller_of(number: Array, torque: Array, speed: Array, factor: Array) -> Propeller | None:
-    """Return the propeller on the inertia of that number; None where none is given."""
+    """Return the propeller on the inertia of that number; None if none is given."""
     return None if np.isnan(number) else Propeller(int(number) - 1, torque, speed, factor)
 
 
 def response_of(
     train: Train, excitation: Excitation, speeds: Array, excited: Array, factors: Array, firing: Array
 ) -> Response:
-    """Return the response to cylinders on the excited inertias."""
+    """Return the response to the cylinders on the excited inertias."""
     each = np.broadcast_to(factors, np.broadcast_shapes(np.shape(factors), np.shape(firing)))
     cylinders = excitation.of_cylinders(speeds, each, firing)
     places = np.equal.outer(numbered(excited), np.arange(train.layout.count)).astype(float)
@@ -55,25 +55,25 @@ def fire_each(excited: Array, firing: Array) -> bool:
 
 @units("N*m", "N*m", returns="1")
 def are_excited(gas: Array, inertia: Array) -> bool:
-    """Return whether there is a torque [N m] of gas, of inertia, or both."""
+    """Return whether a gas torque or an inertia torque [N m] is given, or both."""
     return bool(np.ndim(gas) or np.ndim(inertia))
 
 
 @units("N*m", "rad/s", returns="1")
 def has_its_speed(inertia: Array, speed: Array) -> bool:
-    """Return whether a torque of inertia [N m] and its speed [rad/s] are given together or not at all."""
+    """Return whether an inertia torque [N m] and its speed [rad/s] are both given, or neither."""
     return bool(np.ndim(inertia)) != bool(np.all(np.isnan(speed)))
 
 
 @units("1", "N*m", "rad/s", returns="1")
 def is_whole_propeller(number: Array, torque: Array, speed: Array) -> bool:
-    """Return whether inertia, torque [N m] and speed [rad/s] of the propeller are given, or none of them."""
+    """Return whether inertia, torque [N m] and speed [rad/s] of the propeller are all given, or none."""
     return len({bool(np.all(np.isnan(one))) for one in (number, torque, speed)}) == 1
 
 
 @units(None, "kg*m**2", "rad/s", "rad", "1", returns="1")
 def is_manageable(points: tuple[int, ...], J: Array, speeds: Array, theta: Array, highest: Array) -> bool:
-    """Return whether all points, speeds and orders together are of a size to calculate."""
+    """Return whether the number of points, speeds and orders together is within the limit."""
     cycle, count = cycle_of(theta), np.shape(J)[-1]
     if cycle is None:
         return True

@@ -4,10 +4,10 @@ For each speed and order, at the angular frequency w of the order,
 
     (K(1 + iη) + i w C − w² M) q = Bᵀ T,   angles = B q,
 
-where B gives all angles from those that no gear drives, and K, C, M are Bᵀ ( ) B; each shaft has its loss
-factor η and its viscous damping. Each matrix is scaled to a diagonal of about 1. If the angles are more than
-`RESONANT` times those that the torque would cause on this diagonal alone, the order meets an undamped
-resonance: no digits are significant, and the result is NaN.
+where B gives all angles from those that no gear drives, and K, C, M are matrices Bᵀ ( ) B; each shaft has a
+loss factor η and viscous damping. Each matrix is scaled to a diagonal of about 1. If the angles are more than
+`RESONANT` times those that the torque would cause on this diagonal alone, the order excites an undamped
+resonance: no digit is significant, and the result is NaN.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from templates.physics.torsion.torque_harmonics import Phasors
 from templates.physics.torsion.train_layout import TrainLayout
 
 RESONANT = 1e12
-_BLOCK = 2_000_000  # entries of matrices that are held at a time
-_NUDGE = 1e-15  # of the scaled diagonal, where a matrix is singular to the last digit
+_BLOCK = 2_000_000  # most matrix entries in memory at a time
+_NUDGE = 1e-15  # perturbation of the scaled diagonal of a matrix that is numerically singular
 
 
 @dataclass(frozen=True)
 class Propeller:
-    """A load whose torque goes with the square of its speed, on one inertia, from 0.
+    """A load whose torque is proportional to the square of its speed, on one inertia (index from 0).
 
     `torque` [N m] at `speed` [rad/s] are on its own shaft; `factor` is the slope dT/dω over T/ω.
     """
@@ -39,7 +39,7 @@ class Propeller:
     factor: Array
 
     def damping(self, speeds: Array) -> Array:
-        """Return the slope of its torque [N m s/rad] at its mean speeds [rad/s], (…, V)."""
+        """Return the slope of the propeller's torque [N m s/rad] at its mean speeds [rad/s], (…, V)."""
         each = (np.asarray(one)[..., None] for one in (self.torque, self.speed, self.factor))
         torque, reference, factor = each
         return np.asarray(factor * torque * np.abs(speeds) / reference**2)
@@ -47,7 +47,7 @@ class Propeller:
 
 @dataclass(frozen=True)
 class Train:
-    """Inertias, (…, n); stiffness, damping, loss factor of shafts, (…, S); damping to the ground; in SI."""
+    """Inertias, (…, n); stiffness, damping and loss factor of shafts, (…, S); damping to ground; in SI."""
 
     layout: TrainLayout
     J: Array
@@ -56,20 +56,20 @@ class Train:
     eta: Array
     absolute: Array
     propeller: Propeller | None = None
-    crank: int = 0  # the inertia whose speed the speeds are
+    crank: int = 0  # the inertia to which the speeds refer
 
     @cached_property
     def mass(self) -> Array:
-        """Return M, which is diagonal: the inertias that turn with each free angle, (…, q)."""
+        """Return the diagonal matrix M: the inertias that rotate with each free angle, (…, q)."""
         return self.J @ self.layout.reduction**2
 
     @cached_property
     def twists(self) -> Array:
-        """Return the twist of the shafts by the free angles, (S, q)."""
+        """Return the matrix that gives the twist of the shafts from the free angles, (S, q)."""
         return self.layout.difference @ self.layout.reduction
 
     def damping_of_inertias(self, speeds: Array) -> Array:
-        """Return the damping to the ground [N m s/rad], (…, V, n), with that of the propeller."""
+        """Return the damping to ground [N m s/rad], (…, V, n), including that of the propeller."""
         own = np.broadcast_to(self.absolute, (*np.shape(self.absolute)[:-1], self.layout.count))[..., None, :]
         if self.propeller is None:
             return own
@@ -106,7 +106,7 @@ class Train:
 
 
 def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
-    """Return the solutions (…, V, H, q); NaN where a resonance without damping leaves no digits."""
+    """Return the solutions (…, V, H, q); NaN at an undamped resonance that leaves no significant digits."""
     inertia = w**2 * mass[..., None, None, :]
     diagonal = np.abs(np.diagonal(matrix, axis1=-2, axis2=-1) + inertia) + inertia
     scale = 1 / np.sqrt(diagonal)
@@ -114,14 +114,14 @@ def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
     loads = (right * scale)[..., None]
     try:
         solution = np.linalg.solve(scaled, loads)[..., 0]
-    except np.linalg.LinAlgError:  # one of them is singular to the last digit
+    except np.linalg.LinAlgError:  # one of them is numerically singular
         solution = _nudged(scaled, loads)
     size, load = np.abs(solution).max(axis=-1), np.abs(loads[..., 0]).max(axis=-1)
     return np.where((size > RESONANT * load)[..., None], np.nan, solution * scale)
 
 
 def _nudged(matrix: Phasors, loads: Phasors) -> Phasors:
-    """Return the solutions of which those of singular matrices are very large; NaN where even that fails."""
+    """Return the solutions; singular matrices are perturbed, so theirs are very large; NaN on failure."""
     try:
         return np.asarray(np.linalg.solve(matrix + 1j * _NUDGE * np.eye(matrix.shape[-1]), loads)[..., 0])
     except np.linalg.LinAlgError:
@@ -153,17 +153,17 @@ class Response:
 
     @cached_property
     def power_in(self) -> Array:
-        """Return the mean power that the harmonics of the torque put in [W], (…, V)."""
+        """Return the mean power input by the harmonics of the torque [W], (…, V)."""
         return (self.frequency * (self.angles.conj() * self.torque).imag.sum(axis=-1)).sum(axis=-1) / 2
 
     @cached_property
     def apparent_power(self) -> Array:
-        """Return the same with all angles a quarter of a period behind [W], (…, V): a measure of its size."""
+        """Return the power input with all angles shifted by a quarter period [W], (…, V), as a reference."""
         return (self.frequency * (np.abs(self.angles) * np.abs(self.torque)).sum(axis=-1)).sum(axis=-1) / 2
 
     @cached_property
     def shaft_power(self) -> Array:
-        """Return the mean power that damping of each shaft turns to heat [W], (…, V, S)."""
+        """Return the mean power dissipated by the damping of each shaft [W], (…, V, S)."""
         train, w = self.train, self.frequency[..., None]
         viscous = w**2 * (train.c + 0 * train.k)[..., None, None, :]
         inner = w * (train.k * train.eta)[..., None, None, :]
@@ -171,6 +171,6 @@ class Response:
 
     @cached_property
     def ground_power(self) -> Array:
-        """Return the mean power that damping of each inertia to the ground takes [W], (…, V, n)."""
+        """Return the mean power dissipated by the damping of each inertia to ground [W], (…, V, n)."""
         speed = (self.frequency[..., None] * np.abs(self.angles)) ** 2
         return np.asarray(speed.sum(axis=-2) * self.ground / 2)

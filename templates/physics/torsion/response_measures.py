@@ -1,7 +1,7 @@
 """Results of a forced response: torque, stress and twist of the shafts, heat, angles, speeds.
 
 A vibratory value is half the range of the curve that is the sum of all orders. The sum of their amplitudes is
-larger, by up to a factor of 2.5, because the orders do not peak at the same angle.
+larger, by a factor of up to 2.5, because the orders do not peak at the same angle.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def vibratory_angle(response: Response) -> Array:
 def stress_of(torque: Array, section: Array) -> Array:
     """Return the shear stress [Pa] of torques [N m; ..., shaft, speed].
 
-    0 where a shaft has a section modulus of 0.
+    It is 0 where a shaft's section modulus is 0.
     """
     modulus = np.asarray(section)[..., None] if np.ndim(section) else np.asarray(section)
     return np.asarray(torque / np.where(modulus == 0, np.inf, modulus))
@@ -61,19 +61,19 @@ def amplitudes_of_orders(response: Response) -> Array:
 
 @units("N*m", returns="N*m", latex=r"\max_{{n}}{0}")
 def largest_of_torques(torque: Array) -> Array:
-    """Return the largest over the speeds [N m], (…, S)."""
+    """Return the largest torque over the speeds [N m], (…, S)."""
     return np.asarray(torque.max(axis=-1))
 
 
 @units("Pa", returns="Pa", latex=r"\max_{{n}}{0}")
 def largest_of_stresses(stress: Array) -> Array:
-    """Return the largest over the speeds [Pa], (…, S)."""
+    """Return the largest stress over the speeds [Pa], (…, S)."""
     return np.asarray(stress.max(axis=-1))
 
 
 @units("rad", returns="rad", latex=r"\max_{{n}}{0}")
 def largest_of_angles(angle: Array) -> Array:
-    """Return the largest over the speeds [rad], (…, member)."""
+    """Return the largest angle over the speeds [rad], (…, member)."""
     return np.asarray(angle.max(axis=-1))
 
 
@@ -97,13 +97,13 @@ def order_of_largest(torque: Array, amplitudes: Array, orders: Array) -> Array:
 
 @units("N*m", returns="N*m", latex=r"\max_{{s}}{0}")
 def torque_envelope(torque: Array) -> Array:
-    """Return the largest of all shafts [N m], (…, V)."""
+    """Return the largest torque of all shafts [N m], (…, V)."""
     return np.asarray(torque.max(axis=-2))
 
 
 @units("Pa", returns="Pa", latex=r"\max_{{s}}{0}")
 def stress_envelope(stress: Array) -> Array:
-    """Return the largest of all shafts [Pa], (…, V)."""
+    """Return the largest stress of all shafts [Pa], (…, V)."""
     return np.asarray(stress.max(axis=-2))
 
 
@@ -113,31 +113,31 @@ def stress_envelope(stress: Array) -> Array:
     latex=r"\sum_{{h}}\tfrac12\left|\Delta\Phi\right|^2 h\omega\left(k\eta+h\omega c\right)",
 )
 def heat_of_shafts(response: Response) -> Array:
-    """Return the power that damping of the shafts turns to heat [W], (…, S, V)."""
+    """Return the power dissipated by the damping of the shafts [W], (…, S, V)."""
     return _across(response.shaft_power)
 
 
 @units("W", returns="W", latex=r"\max_{{n}}{0}")
 def largest_of_powers(power: Array) -> Array:
-    """Return the largest over the speeds [W], (…, S)."""
+    """Return the largest power over the speeds [W], (…, S)."""
     return np.asarray(power.max(axis=-1))
 
 
 @units(None, returns="W", latex=r"\sum_{{h}}\tfrac12\left|\Phi\right|^2\left(h\omega\right)^2c")
 def loss_of_inertias(response: Response) -> Array:
-    """Return the power that damping to the ground takes from the inertias [W], (…, n, V)."""
+    """Return the power dissipated by the damping of the inertias to ground [W], (…, n, V)."""
     return _across(response.ground_power)
 
 
 @units(None, returns="W", latex=r"\sum_{{h}}\tfrac12 h\omega\,\mathrm{{Im}}\left(\Phi^*T\right)")
 def power_put_in(response: Response) -> Array:
-    """Return the power that the varying torque puts in [W], (…, V)."""
+    """Return the power input of the varying torque [W], (…, V)."""
     return response.power_in
 
 
 @units("W", "W", returns="W", latex=r"\sum {0}+\sum {1}")
 def power_lost(shafts: Array, inertias: Array) -> Array:
-    """Return the power that all damping takes [W], (…, V)."""
+    """Return the power dissipated by all damping [W], (…, V)."""
     return np.asarray(shafts.sum(axis=-2) + inertias.sum(axis=-2))
 
 
@@ -149,9 +149,9 @@ def power_lost(shafts: Array, inertias: Array) -> Array:
     latex=r"\max_{{n}}\frac{{\left|{0}-{1}\right|}}{{\tfrac12\sum h\omega\left|\Phi T\right|}}",
 )
 def power_error(put_in: Array, lost: Array, response: Response) -> Array:
-    """Return the difference of the powers over the apparent power, the largest of all speeds, (…).
+    """Return the largest difference of input and dissipation over apparent power, of all speeds, (…).
 
-    0 below 1e-12.
+    Values below 1e-12 are returned as 0.
     """
     size = response.apparent_power
     error = (np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1)
@@ -168,7 +168,7 @@ def speed_spectrum(response: Response, number: Array) -> Array:
     None, "1", "rad/s", returns="1", latex=r"\frac{{\omega_{{max}}-\omega_{{min}}}}{{\overline{{\omega}}}}"
 )
 def irregularity(response: Response, number: Array, speeds: Array) -> Array:
-    """Return the swing of the angular speed of one inertia, numbered from 1, over its mean speed, (…, V)."""
+    """Return the range of angular speed over its mean for one inertia, numbered from 1, (…, V)."""
     at = int(number) - 1
     layout = response.train.layout
     mean = np.abs(np.asarray(speeds) * layout.speeds[at] / layout.speeds[response.train.crank])

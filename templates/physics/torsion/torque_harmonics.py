@@ -1,8 +1,8 @@
 """Harmonics of the torque of one cylinder, and the range of a curve that is a sum of harmonics.
 
-A torque over one cycle is its mean plus Re Σ c e^{ihθ}, with orders h per turn of the crank: whole orders in
-two-stroke engines, half orders as well in four-stroke ones. The cylinder that fires at φ has the harmonics of
-the first one, which fires at φ₁, times e^{−ih(φ−φ₁)}.
+A torque over one cycle is its mean plus Re Σ c e^{ihθ}, with orders h per revolution of the crank: whole
+orders in two-stroke engines, half orders as well in four-stroke engines. The cylinder that fires at φ has the
+harmonics of the first one, which fires at φ₁, times e^{−ih(φ−φ₁)}.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from templates.core.language.declare import units
 Phasors = NDArray[np.complex128]
 TURN = 2 * np.pi
 MOST_ANGLES = 20_000
-_EVEN = 1e-6  # of a step
-_NOISE = 1e-14  # of the largest harmonic; smaller ones are rounding
-_LOW = 0.02  # of the sum of all amplitudes: more than the curve rises above a sample beside its peak
-_BLOCK = 2_000_000  # samples of curves that are held at a time
+_EVEN = 1e-6  # tolerance as a fraction of a step
+_NOISE = 1e-14  # relative to the largest harmonic; smaller ones are rounding error
+_LOW = 0.02  # fraction of the sum of amplitudes; the curve rises less above a sample next to its peak
+_BLOCK = 2_000_000  # most samples in memory at a time
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """Orders (H,), harmonics of gas [N m] and of inertia [N m s²], (…, H), of one cylinder."""
+    """Orders (H,), and harmonics of gas [N m] and inertia torque [N m s²], (…, H), of one cylinder."""
 
     orders: Array
     gas: Phasors
@@ -43,7 +43,7 @@ class Excitation:
 
 @dataclass(frozen=True)
 class Cycle:
-    """Crank angles of one cycle at equal steps: the first [rad], how many, and strokes 2 or 4."""
+    """Equally spaced crank angles of one cycle: the first [rad], their number, and strokes 2 or 4."""
 
     first: float
     count: int
@@ -53,7 +53,7 @@ class Cycle:
 def cycle_of(theta: Array) -> Cycle | None:
     """Return the cycle of crank angles [rad], (K,), without a last point that repeats the first.
 
-    None if none.
+    The result is None if the angles do not cover one cycle.
     """
     if np.ndim(theta) != 1 or not 8 <= theta.size <= MOST_ANGLES:
         return None
@@ -70,13 +70,13 @@ def cycle_of(theta: Array) -> Cycle | None:
 
 @units("rad", returns="1")
 def is_one_cycle(theta: Array) -> bool:
-    """Return whether crank angles [rad] rise in equal steps over one cycle of one or two turns."""
+    """Return whether crank angles [rad] ascend in equal steps over a cycle of one or two revolutions."""
     return cycle_of(theta) is not None
 
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """Return whether a last point that repeats the first angle has its torque [N m], [..., angle]."""
+    """Return whether a last point that repeats the first angle repeats its torque [N m], [..., angle]."""
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True
@@ -97,9 +97,10 @@ def _lines(cycle: Cycle, highest: Array) -> int:
 
 
 def excitation(theta: Array, gas: Array, inertia: Array, reference: Array, highest: Array) -> Excitation:
-    """Return the harmonics of one cylinder; a torque that is not given is none.
+    """Return the harmonics of one cylinder; a torque that is not given counts as 0.
 
-    `inertia` is the torque [N m] at the speed `reference` [rad/s]; it grows with the square of the speed.
+    `inertia` is the torque [N m] at the speed `reference` [rad/s]; it is proportional to the square of the
+    speed.
     """
     cycle = cycle_of(theta)
     assert cycle is not None  # a rule refuses others
@@ -120,10 +121,10 @@ def _harmonics(T: Array, cycle: Cycle, orders: Array) -> Phasors:
 
 
 def half_swing(amplitudes: Phasors) -> Array:
-    """Return half the swing of Re Σ c e^{ikx}, k = 1 … H, over the cycle, (…), of c (…, H).
+    """Return half the range of Re Σ c e^{ikx}, k = 1 … H, over the cycle, (…), from c (…, H).
 
     The curve is sampled at least sixteen times in each period of its highest order. Parabolas through the
-    samples rank its peaks, and Newton's method leads to the largest and the smallest.
+    samples rank its peaks, and Newton's method finds the largest and the smallest value.
     """
     lines = amplitudes.shape[-1]
     if lines == 1:
@@ -144,7 +145,7 @@ def half_swing(amplitudes: Phasors) -> Array:
 
 
 def _extreme(amplitudes: Phasors, curve: Array) -> Array:
-    """Return the largest value of each curve, (R,), by two of Newton's steps from the sample at its top."""
+    """Return the largest value of each curve, (R,), by two Newton steps from its highest sample."""
     step = TURN / curve.shape[-1]
     at = _tops(curve, _LOW * np.abs(amplitudes).sum(axis=-1))
     k = np.arange(1, amplitudes.shape[-1] + 1)
@@ -159,9 +160,9 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
 
 
 def _tops(curve: Array, low: Array) -> Integers:
-    """Return the position of each curve's peak, (R, N), by parabolas.
+    """Return the index of the sample at the highest peak of each curve, (R,); parabolas estimate peaks.
 
-    None is more than `low` above its sample.
+    No peak is more than `low` above its sample.
     """
     largest = curve.max(axis=-1)
     is_high = curve >= (largest - low)[:, None]
@@ -180,7 +181,7 @@ def _tops(curve: Array, low: Array) -> Integers:
 
 @units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le {1}")
 def orders_of(theta: Array, highest: Array) -> Array:
-    """Return the orders up to the highest, (H,): whole ones in two strokes, halves as well in four."""
+    """Return the orders up to the highest, (H,): whole ones for two strokes, half orders too for four."""
     cycle = cycle_of(theta)
     assert cycle is not None  # a rule refuses others
     return np.arange(1, _lines(cycle, highest) + 1) * 2 / cycle.strokes

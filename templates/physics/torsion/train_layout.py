@@ -1,6 +1,6 @@
 """Topology of a train: the connections of inertias, shafts and gears, and the speed ratio of each inertia.
 
-Inertias are numbered from 1; a shaft to 0 ends at the ground. A gear makes the angle of its second inertia
+Inertias are numbered from 1; a shaft to 0 ends at ground. A gear makes the angle of its second inertia
 `ratio` times that of its first, so all angles are B q with one q for each inertia that no gear drives.
 """
 
@@ -17,22 +17,22 @@ from templates.core.language.declare import units
 
 GROUND = -1
 MOST_INERTIAS, MOST_SHAFTS = 100, 300
-_SAME = 1e-9  # mean speeds that agree to this are one
+_SAME = 1e-9  # relative difference below which mean speeds are equal
 
 
 def listed(values: Array) -> Array:
-    """Return a list as given, in its unit; empty where it is not given."""
+    """Return a list as given, in its unit; empty if it is not given."""
     return np.zeros(0) if np.ndim(values) == 0 else np.asarray(values)
 
 
 def numbered(values: Array) -> Integers:
-    """Return the numbers from 1 as places from 0; the ground is −1."""
+    """Return numbers from 1 as indices from 0; ground is −1."""
     return np.asarray(listed(values), dtype=np.int64) - 1
 
 
 @dataclass(frozen=True)
 class TrainLayout:
-    """Which inertias the shafts (S, 2) and the gears (G, 2) join, from 0; ratios (G,)."""
+    """The inertias that shafts (S, 2) and gears (G, 2) connect, as indices from 0, and ratios (G,)."""
 
     count: int
     shafts: Integers
@@ -41,7 +41,7 @@ class TrainLayout:
 
     @cached_property
     def difference(self) -> Array:
-        """Return the twist of each shaft by the angles of the inertias, (S, n)."""
+        """Return the matrix that gives the twist of each shaft from the angles of the inertias, (S, n)."""
         matrix = np.zeros((len(self.shafts), self.count))
         for row, (first, second) in zip(matrix, self.shafts, strict=True):
             row[first] += 1
@@ -51,7 +51,7 @@ class TrainLayout:
 
     @cached_property
     def reduction(self) -> Array:
-        """Return B, (n, q): the angles of all inertias by those that no gear drives."""
+        """Return B, (n, q), which gives the angles of all inertias from those that no gear drives."""
         drivers = {second: (first, ratio) for (first, second), ratio in self._driven()}
         free = [i for i in range(self.count) if i not in drivers]
         columns = {inertia: column for column, inertia in enumerate(free)}
@@ -83,7 +83,7 @@ class TrainLayout:
 
     @property
     def turns_freely(self) -> bool:
-        """Return whether all shafts and gears keep the mean speeds of the inertias that they join."""
+        """Return whether all shafts and gears are compatible with the mean speeds of their inertias."""
         return all(
             abs(self.speeds[second] - ratio * self.speeds[first]) <= _SAME * abs(self.speeds[second])
             for (first, second), ratio in self._turning()
@@ -92,7 +92,7 @@ class TrainLayout:
 
     @property
     def has_gear_loop(self) -> bool:
-        """Return whether gears drive an inertia twice, or in a circle."""
+        """Return whether gears drive an inertia twice, or in a loop."""
         drivers = {int(second): int(first) for first, second in self.gears}
         if len(drivers) < len(self.gears):
             return True
@@ -112,7 +112,7 @@ class TrainLayout:
         return list(zip(pairs, self.ratios.tolist(), strict=True))
 
     def _turning(self) -> list[tuple[tuple[int, int], float]]:
-        """Return the connections between inertias: shafts and gears."""
+        """Return the connections between inertias by shafts and gears."""
         shafts = [((int(i), int(j)), 1.0) for i, j in self.shafts if j != GROUND]
         return [*shafts, *self._driven()]
 
@@ -122,7 +122,7 @@ def train_layout(
 ) -> TrainLayout | None:
     """Return the layout.
 
-    None where lists do not fit or name what does not exist, which other rules refuse.
+    It is None if lists do not match or name inertias that do not exist, which other rules refuse.
     """
     count = np.shape(J)[-1]
     if not (
@@ -155,15 +155,9 @@ def are_pairs(first: Array, second: Array) -> bool:
     return np.ndim(first) == 1 and np.shape(first) == np.shape(second)
 
 
-@units("1", "N*m/rad", returns="1")
-def have_stiffness(first: Array, k: Array) -> bool:
-    """Return whether each shaft has a stiffness [N m/rad; ..., shaft]."""
-    return np.shape(k)[-1:] == np.shape(first)[-1:]
-
-
 @units("kg*m**2", "1", "1", returns="1")
 def name_inertias(J: Array, first: Array, second: Array) -> bool:
-    """Return whether two lists of numbers name inertias that exist, and never the same one twice."""
+    """Return whether two lists of numbers name existing inertias, never the same one twice in a pair."""
     one, other = listed(first), listed(second)
     count = np.shape(J)[-1]
     exist = np.all(one <= count) and np.all(other <= count)
@@ -179,31 +173,31 @@ def are_gears(drivers: Array, driven: Array, ratios: Array) -> bool:
 
 @units(None, returns="1")
 def has_no_loop(layout: TrainLayout | None) -> bool:
-    """Return whether gears drive each inertia once at most, and not in a circle."""
+    """Return whether gears drive each inertia at most once, and not in a loop."""
     return layout is None or not layout.has_gear_loop
 
 
 @units(None, returns="1")
 def is_joined(layout: TrainLayout | None) -> bool:
-    """Return whether shafts and gears join all inertias."""
+    """Return whether shafts and gears connect all inertias."""
     return layout is None or bool(np.all(np.isfinite(layout.speeds)))
 
 
 @units(None, returns="1")
 def turns_freely(layout: TrainLayout | None) -> bool:
-    """Return whether the train turns without twisting its shafts."""
+    """Return whether the train can rotate without twisting its shafts."""
     return layout is None or layout.turns_freely
 
 
 @units("kg*m**2", "1", returns="1")
 def exist(J: Array, numbers: Array) -> bool:
-    """Return whether one list of numbers, or nothing, names inertias that exist."""
+    """Return whether a list of numbers names existing inertias, or is not given."""
     return np.ndim(numbers) <= 1 and bool(np.all(~(np.asarray(numbers) > np.shape(J)[-1])))
 
 
 @units(None, "1", returns="1")
 def turn_alike(layout: TrainLayout | None, numbers: Array) -> bool:
-    """Return whether the excited inertias have one mean speed."""
+    """Return whether the excited inertias have the same mean speed."""
     places = numbered(numbers)
     if layout is None or places.size == 0 or np.any(places >= layout.count):
         return True

@@ -1,8 +1,8 @@
-"""Free vibration of a train with branches and gears: natural frequencies and shapes of its modes.
+"""Free vibration of a train with branches and gears: natural frequencies and mode shapes.
 
-Undamped. With K = Dᵀ k D, where D gives the twists from the free angles and M is diagonal, the angular
-frequencies are the singular values of k^(1/2) D M^(-1/2): forming K would lose the small ones. Shafts without
-stiffness, such as that of a viscous damper's ring, give modes at 0.
+The train is undamped. With K = Dᵀ k D, where D gives the twists from the free angles and M is diagonal, the
+angular frequencies are the singular values of k^(1/2) D M^(-1/2): forming K would lose the small ones. Shafts
+without stiffness, such as that of a viscous damper's ring, give modes at 0.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 from templates.physics.torsion.forced_train import Train
 
-_ROUNDING = 1e-12  # of the highest frequency, of the largest angle: what is below is 0
+_ROUNDING = 1e-12  # relative to the highest frequency or the largest angle; smaller values count as 0
 _TIE = 1 - 1e-9  # entries of a shape this near to the largest are as large
 
 
 def _rows(train: Train) -> Array:
-    """k^(1/2) D M^(-1/2), (…, rows, q), with rows of zeros where there are fewer shafts than free angles."""
+    """Return k^(1/2) D M^(-1/2), (…, rows, q), with zero rows added if there are fewer shafts than angles."""
     rows = np.sqrt(train.k)[..., :, None] * train.twists / np.sqrt(train.mass)[..., None, :]
     lack = max(0, rows.shape[-1] - rows.shape[-2])
     return np.concatenate([rows, np.zeros((*rows.shape[:-2], lack, rows.shape[-1]))], axis=-2)
@@ -27,7 +27,7 @@ def _rows(train: Train) -> Array:
 @on_paper("solved numerically by singular values of the train's matrix of twists")
 @units(None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left(M^{{-1}}K\right)}}")
 def natural_frequencies(train: Train) -> Array:
-    """Return the natural angular frequencies [rad/s], ascending, (…, q); 0 for what turns without twist."""
+    """Return the natural angular frequencies [rad/s], ascending, (…, q); 0 for rigid-body rotation."""
     rows = _rows(train)
     is_finite = np.asarray(np.isfinite(rows).all(axis=(-2, -1), keepdims=True))
     values = np.linalg.svd(np.where(is_finite, rows, 0), compute_uv=False)[..., ::-1]
@@ -56,9 +56,9 @@ def mode_shapes(train: Train) -> Array:
 
 
 def _own_basis(vectors: Array) -> Array:
-    """Return the same space (m, q) by vectors that do not depend on how it was calculated.
+    """Return a basis of the same space (m, q) that does not depend on how the space was calculated.
 
-    The first angle leads.
+    The first angle determines the first vector.
     """
     projector, basis = vectors.T @ vectors, np.zeros((0, vectors.shape[-1]))
     for column in projector:

@@ -1,4 +1,4 @@
-"""Approval, comments and audit on the pages, as forms without scripts."""
+"""Approval, comments and audit on the pages, by forms without scripts."""
 
 import re
 
@@ -43,7 +43,7 @@ def test_a_form_that_is_refused_says_why(room):
     data = {"step": "calculated", "seen": "0" * 64, "page": "design"}
     answer = room.author.post(f"{place}/revisions/1/approvals", data=data, headers=FORM)
     assert answer.status_code == 412
-    assert "Not signed: what there is to sign is not what If-Match names" in answer.text
+    assert "Not signed: the content to sign is not that of If-Match" in answer.text
 
 
 def test_lists_and_history_show_what_is_released(room):

@@ -1,4 +1,4 @@
-"""`crankwright keys …` on a data folder, and what `serve` makes of it."""
+"""`crankwright keys …` on a data folder, and its effect on `serve`."""
 
 import pytest
 from click.testing import CliRunner
@@ -93,8 +93,8 @@ def test_revoking_a_key_names_those_that_end_with_it_and_the_list_says_who_made_
     assert f"{grandchild}  all roles  valid  made by {child}" in listed
     assert run("revoke", key_prefix(first)).output.splitlines() == [
         f"{key_prefix(first)} is revoked; running servers take notice within a few seconds",
-        f"{child} (of {key_prefix(first)}) is revoked with it: made by {key_prefix(first)}",
-        f"{grandchild} (of {child}) is revoked with it: made by {child}",
+        f"{child} (of {key_prefix(first)}) is also revoked, because {key_prefix(first)} created it",
+        f"{grandchild} (of {child}) is also revoked, because {child} created it",
     ]
     assert run("list").output.count("revoked") == 3
     again = run("revoke", child)

@@ -1,4 +1,4 @@
-"""`model.stl?deflection=…`: a mesh as fine as its user asks for, or a refusal that says what is right."""
+"""`model.stl?deflection=…` returns a mesh of the requested fineness, or a refusal with the valid values."""
 
 import pytest
 from serving import API, created, faults, moody, problem
@@ -39,6 +39,24 @@ def test_a_deflection_beside_the_size_is_refused_with_what_suits(http, design, r
     answer = mesh_of(http, design, "stl", deflection=raw)
     problem(answer, 422, "invalid-inputs")
     assert "give 0.00" in answer.text
+
+
+def test_one_part_is_a_file_of_its_own_named_after_it(http, design):
+    whole, alone = mesh_of(http, design, "stl"), mesh_of(http, design, "stl", part="block")
+    assert alone.status_code == 200, alone.text
+    assert "_block.stl" in alone.headers["content-disposition"]
+    assert alone.content == whole.content
+    for kind, magic in {"3mf": b"PK", "brep": b"\nCASCADE"}.items():
+        file = mesh_of(http, design, kind, part="block")
+        assert magic.strip() in file.content[:100]
+    assert mesh_of(http, design, "3mf", part="block", deflection="0.1 mm").status_code == 200
+
+
+def test_what_is_no_part_is_refused_by_name(http, design):
+    assert faults(mesh_of(http, design, "step", part="block")) == {"part": "not_offered"}
+    unknown = mesh_of(http, design, "stl", part="bal")
+    assert faults(unknown) == {"part": "unknown_part"}
+    assert "there is no part 'bal'; the only part is block" in unknown.text
 
 
 def test_an_unknown_design_is_reported_before_a_wrong_deflection(http):

@@ -1,4 +1,4 @@
-"""A design as a function of N rows: equal to each row as a design of its own, and what it refuses."""
+"""A design of N rows gives the results of N separate designs; and what the engine refuses."""
 
 import copy
 
@@ -317,7 +317,7 @@ def test_curves_of_different_lengths_are_refused_in_words():
         (np.array([0]), Column(np.zeros((1, 3)), is_row=True)),
         (np.array([1]), Column(np.zeros((1, 4)), is_row=True)),
     ]
-    with pytest.raises(FaultyText, match="more places in some rows than in others") as refused:
+    with pytest.raises(FaultyText, match="length of its curve differs between rows") as refused:
         scattered(2, parts)
     assert refused.value.code == "shape"
 

@@ -1,4 +1,4 @@
-"""Solving a design: every value of one parameter that gives a wanted output, through relations and steps."""
+"""Solving a design finds every value of one parameter that gives a wanted output, through relations."""
 
 import json
 
@@ -126,7 +126,7 @@ def test_a_tolerance_that_the_level_of_the_design_misses_is_said():
     question = ("clearance", "20 um", "60 um", THIN, "2 um")
     [warning] = asked(fixed, *question, tolerance=1e-3).warnings
     assert warning.code == "tolerance_unmet"
-    assert warning.detail.endswith("not within the tolerance of 0.1 %: the design names level fit for film")
+    assert warning.detail.endswith("not within the tolerance of 0.1 %: the design fixes level fit for film")
     assert asked(fixed, *question, tolerance=0.5).warnings == []
 
 
@@ -148,7 +148,7 @@ def test_what_is_out_of_reach_says_what_can_be_reached():
 @pytest.mark.parametrize(
     ("change", "name", "words"),
     [
-        ({"unknown": "gap"}, "gap", "gap follows from others"),
+        ({"unknown": "gap"}, "gap", "gap is calculated"),
         ({"unknown": "width"}, "width", "no name|unknown|did you mean"),
         ({"between": ["0.5 mm", "2 um"]}, "between", "below the second"),
         ({"between": ["2 N", "0.5 mm"]}, "between", "length|mm"),

@@ -1,4 +1,4 @@
-"""Keys that somebody makes for themselves: none does more, or lasts longer, than the one that made it."""
+"""A key created by another key has no more rights and does not last longer than its creator."""
 
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
@@ -57,7 +57,7 @@ def test_a_key_ends_at_the_latest_with_the_one_that_made_it(team, ada):
     with by(team, short.text) as client:
         assert client.add_key(ada).expires == row.expires
         assert client.add_key(ada, expires_days=1).expires < row.expires
-        with pytest.raises(Problem, match="ends at the latest with the one that makes it"):
+        with pytest.raises(Problem, match="ends at the latest with the key that creates it"):
             client.add_key(ada, expires_days=3)
 
 

@@ -1,4 +1,4 @@
-"""What limits a principal where it holds: jobs that wait, and all that counts as stored."""
+"""Limits of a principal where they apply: queued jobs, and everything that counts as stored."""
 
 import sys
 from pathlib import Path
@@ -85,7 +85,7 @@ def test_jobs_that_wait_are_limited_by_principal_and_the_answer_says_what_to_do(
 def test_the_page_of_the_account_shows_what_waits_and_what_counts(person, http):
     [job] = wait_for_nothing(person, 1)
     page = http.get("/account", headers={"Accept": "text/html"}).text
-    assert '<tr><th scope="row">Jobs that wait</th><td>1</td><td>50</td></tr>' in page
+    assert '<tr><th scope="row">Waiting jobs</th><td>1</td><td>50</td></tr>' in page
     assert "rows of studies" in page
     http.delete(f"{API}/jobs/{job}")
 

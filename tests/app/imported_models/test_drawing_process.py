@@ -1,4 +1,4 @@
-"""What stands in the place of FreeCAD and answers wrongly: it is ended, and the refusal has a name."""
+"""A program in the place of FreeCAD that answers wrongly is ended, and the refusal names the fault."""
 
 import os
 import sys
@@ -71,5 +71,5 @@ def test_no_answer_at_all_ends_at_the_deadline(started):
 
 @pytest.mark.parametrize("number", [float("inf"), float("-inf"), float("nan")])
 def test_a_parameter_that_is_no_number_is_named(number):
-    with pytest.raises(UnreadableModel, match=r"Sizes\.bore is .* mm: give it a finite number"):
+    with pytest.raises(UnreadableModel, match=r"Sizes\.bore is .* mm: set it to a finite number"):
         _parameters([["Sizes", "cell", "bore", number, "mm", "Sizes"]])

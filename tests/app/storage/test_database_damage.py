@@ -1,4 +1,4 @@
-"""A damaged database is refused at the start, with the page; damage that shows later ends all writing."""
+"""A damaged database is refused at the start, naming the page; later damage stops all writing."""
 
 import os
 import shutil
@@ -138,7 +138,7 @@ class TestDatabase:
         with pytest.raises(DatabaseDamaged, match="deleted or replaced"), database.read():
             pass
         database.close()
-        with pytest.raises(DatabaseDamaged, match=r"deleted or replaced.* showed while the service ran"):
+        with pytest.raises(DatabaseDamaged, match=r"deleted or replaced.* found while the service ran"):
             refuse_damage(f"sqlite:///{file}")
 
     def test_check_reports_a_file_that_was_taken_away(self, file):
@@ -181,6 +181,6 @@ class TestDatabase:
         whole = file.read_bytes()
         database.close()
         assert file.read_bytes() == whole, "the damaged log was copied into the file"
-        with pytest.raises(DatabaseDamaged, match="showed while the service ran"):
+        with pytest.raises(DatabaseDamaged, match="found while the service ran"):
             refuse_damage(f"sqlite:///{file}")
         assert any("damage showed" in text for text in check(file.parent, None, in_use=False).database)

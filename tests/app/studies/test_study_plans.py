@@ -1,4 +1,4 @@
-"""The plan of a study: what it refuses, that it is one for equal studies, and what it estimates."""
+"""The plan of a study: refusals, equal plans for equal studies, and estimates."""
 
 import pytest
 from serving import problem
@@ -59,7 +59,7 @@ def test_a_study_that_needs_too_many_solids_says_how_many(body, count, solids):
         planned(*task(SHELL, **body), 10.0)
     (fault,) = refused.value.faults
     assert (fault.name, fault.code) == ("diameter", "needs_solids")
-    assert f"{count} rows are up to {solids} solids; " in fault.detail
+    assert f"{count} rows need up to {solids} solids; " in fault.detail
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_the_interface_says_how_many_solids(http):
     answer = asked(http, new_design(http, SHELL), method="sample", vary=BORE, points=720, outputs=[LOSS])
     (fault,) = problem(answer, 422, "invalid-inputs")["errors"]
     assert fault["code"] == "needs_solids"
-    assert "720 rows are up to 720 solids" in fault["detail"]
+    assert "720 rows need up to 720 solids" in fault["detail"]
 
 
 @pytest.mark.slow

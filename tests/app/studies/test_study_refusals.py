@@ -1,4 +1,4 @@
-"""Studies that are refused before they begin: what is wrong is named, and a limit that is passed."""
+"""Studies that are refused before they begin: the message names the fault or the exceeded limit."""
 
 import pytest
 from serving import faults
@@ -88,6 +88,6 @@ def test_the_limit_of_points_is_named(http, film):
         answer = asked(http, film, method=method, **asking, points=limit + 1)
         assert f"{method} takes at most {limit} rows, not {limit + 1}" in answer.json()["detail"]
     few = asked(http, film, method="optimise", **asking, points=4000).json()["detail"]
-    assert "looks at 4096 rows before it searches; give more, up to 100000" in few
+    assert "calculates 4096 rows before it searches; give more, up to 100000" in few
     odd = asked(http, film, method="sensitivity", kind="sobol", **asking, points=4000).json()["detail"]
     assert "4000 is not a power of two; write 2048 or 4096" in odd

@@ -40,7 +40,7 @@ def test_which_clearance_gives_two_micrometres_at_7000_rpm(bearing, watched, htt
     page.get_by_role("button", name="Solve").click()
     expect(page.get_by_role("alert")).to_contain_text("2 um is out of reach")
     page.get_by_role(
-        "link", name=re.compile("Look between 5.5 .* and 550 |Look between 0.0055 mm and 0.55 mm")
+        "link", name=re.compile("Search between 5.5 .* and 550 |Search between 0.0055 mm and 0.55 mm")
     ).click()
     roots = page.locator("[data-roots] tbody tr")
     expect(roots.first).to_be_visible(timeout=patient(30_000))

@@ -335,7 +335,7 @@ def test_a_model_of_which_only_the_step_file_is_there_is_still_being_built(http)
     assert http.get(f"/api/v1/builds/{key}").json()["artifacts"].keys() == {"step"}
     page = until(
         lambda: http.get("/models/moody/1", params=parameters),
-        lambda page: page.status_code != 200 or "It is being built" not in page.text,
+        lambda page: page.status_code != 200 or "The model is being built" not in page.text,
     )
     assert page.status_code == 200
     assert "data-solid" in page.text

@@ -132,7 +132,7 @@ class TestCount:
         result = imported(MIN, "Sheet")
         lost = {region["region"]: region for region in unresolved(result.record, result.text)}
         assert lost.keys() == {"11", "20"}  # the region, and what needs c
-        assert "fault of the import" in lost["11"]["reason"]
+        assert "error in the program" in lost["11"]["reason"]
         assert "nothing above defines" in lost["20"]["reason"]
 
 

@@ -1,4 +1,4 @@
-"""Worksheets over the end of a server: a start, a tampered database, kill -9, backup and restore."""
+"""Worksheets over a restart: a start, a tampered database, kill -9, backup and restore."""
 
 import json
 import sqlite3
@@ -76,11 +76,11 @@ class TestBroken:
     @pytest.mark.parametrize(
         ("id", "reason"),
         [
-            ("text", "its text is not that of the release"),
-            ("digest", "its text is not that of the release"),
+            ("text", "its text differs from the release"),
+            ("digest", "its text differs from the release"),
             ("record", "its results differ: finished_bore"),
             ("lost", "its golden record cannot be read"),
-            ("unreadable", "its text is not understood any more"),
+            ("unreadable", "its text can no longer be read"),
         ],
     )
     def test_what_is_not_that_of_the_release_is_broken(self, restarted, id, reason):
@@ -182,10 +182,10 @@ def test_releases_that_wait_to_be_read_calculate_nothing_until_then(tmp_path):
     catalogues = Catalogues(find_templates(()), find_models())
     published = WorksheetPublication(database, catalogues, is_shared=False, at_once=0)
     assert catalogues.templates.get("first", 1).sheet is not None
-    with pytest.raises(QuarantinedTemplate, match="is being read again"):
+    with pytest.raises(QuarantinedTemplate, match="is being verified"):
         catalogues.templates.get("second", 1)
     published.look()
     assert catalogues.templates.get("second", 1).sheet is not None
-    published.start()
-    published.stop()
+    published.follower.start()
+    published.follower.stop()
     database.close()

@@ -403,7 +403,7 @@ def create_records() -> None:
 
 
 def begin_counters(dialect: str) -> None:
-    """Create the counters of one server; for several also a sequence, and the moment when the clock stops."""
+    """Create the counters of one server; for several, also a sequence and the time of the last tick."""
     op.execute("INSERT INTO counter (name, value) VALUES ('identity', 0), ('operation', 0)")
     if dialect == "postgresql":
         op.execute("CREATE SEQUENCE identity AS bigint START WITH 1")
@@ -414,12 +414,12 @@ def begin_counters(dialect: str) -> None:
 
 
 RECORDED = ("id", "at", "principal", "name", "action", "object", "digest")
-"""What a row of the audit says; a sealer writes the other columns, once."""
+"""The content of an audit row; a sealer writes the other columns, once."""
 SIGNED = "SELECT 1 FROM approval WHERE design_id = {row}.design_id AND revision = {row}.number"
 
 
 def guard_rows(dialect: str) -> None:
-    """Make the database refuse changes to records and to signed revisions."""
+    """Create triggers that refuse changes to records and to signed revisions."""
     guard = guard_on_postgresql if dialect == "postgresql" else guard_on_sqlite
     sealed = " OR ".join(
         ["OLD.hash IS NOT NULL", *(f"OLD.{name} {{differs}} NEW.{name}" for name in RECORDED)]
@@ -458,7 +458,7 @@ EVENTS = {"insert": ("INSERT", "NEW.bytes", "NEW.bytes <> 0"),
 
 
 def sum_storage(dialect: str) -> None:
-    """Let the total that each principal has stored, one row each, follow `usage` by triggers."""
+    """Create triggers that update each principal's total of stored bytes from `usage`."""
     follow = follow_on_postgresql if dialect == "postgresql" else follow_on_sqlite
     for name, (event, added, changes) in EVENTS.items():
         follow(f"usage_stored_{name}", event, ADD.format(added=added), changes)

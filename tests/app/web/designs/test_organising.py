@@ -54,7 +54,7 @@ def test_a_design_is_tagged_found_and_archived_from_the_home_page(watched, http,
     archived.get_by_role("button", name=f"Remove tag other {word}").click()
     expect(page.locator("tbody tr", has_text=word).get_by_role("link", name=f"other {word}")).to_have_count(0)
     organise(page.locator("tbody tr", has_text=word))
-    page.locator("tbody tr", has_text=word).get_by_role("button", name="Fetch from the archive").click()
+    page.locator("tbody tr", has_text=word).get_by_role("button", name="Restore from the archive").click()
     expect(page.locator("tbody tr", has_text=word)).to_have_count(0)
     assert http.get(f"{API}/designs/{design['id']}/labels").json() == {"tags": [tag], "archived": False}
     assert http.get(f"{API}/designs/{design['id']}").json() == design, "no revision was made"

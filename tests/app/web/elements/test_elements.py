@@ -1,4 +1,4 @@
-"""Property: finite elements in the page: asked for, followed, shown, painted; and read without a script."""
+"""Finite elements on the page: request, progress, results, picture; readable without scripts."""
 
 import re
 
@@ -159,7 +159,7 @@ def test_a_job_that_is_cancelled_says_so(watched):
     page = watched.page
     watched.open("/models/crank_throw/1")
     page.locator('[data-ask="level"]').select_option("fine")
-    page.get_by_label("greatest stress").check()
+    page.get_by_label("largest stress").check()
     page.get_by_role("button", name="Analyse").click()
     expect(page.locator("[data-elements-progress] progress")).to_be_visible()
     page.get_by_role("button", name="Cancel").click()

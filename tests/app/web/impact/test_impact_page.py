@@ -71,7 +71,7 @@ def test_a_refused_design_says_what_to_give(http):
     page = until(lambda: http.get(place), lambda now: "data-job" not in now.text, patient(60)).text
     line = row(page, design)
     assert 'data-effect="refused"' in line
-    assert "Take away film.dynamic_viscosity" in line
+    assert "Remove film.dynamic_viscosity" in line
     assert FORM.findall(line) == []
     preview = http.get(f"/designs/{design}/upgrade", params={"template": "oil_film", "version": "1"})
     assert preview.status_code == 422
@@ -82,7 +82,7 @@ def test_a_refused_design_says_what_to_give(http):
 def test_the_design_says_that_there_is_a_newer_version(http):
     old = http.get(f"/designs/{bearing(http, 'old version')}").text
     assert 'data-upgrade="film"' in old
-    assert "there is a version 2" in old
+    assert "version 2 is available" in old
     step = {"template": "oil_film", "version": 2, "inputs": INPUTS}
     new = created(http, {"name": "new version", "steps": {"film": step}})["id"]
     assert "data-upgrade" not in http.get(f"/designs/{new}").text

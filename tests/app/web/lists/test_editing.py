@@ -23,7 +23,7 @@ def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     expect(dialog.get_by_label("Table", exact=True)).to_be_focused()
     dialog.get_by_label("Table", exact=True).fill(CYCLE.replace("-2,5", "abc"))
     expect(dialog.get_by_role("alert")).to_contain_text("row 4, column Fx: 'abc' is not a number")
-    expect(dialog.get_by_role("button", name="Take over")).to_be_disabled()
+    expect(dialog.get_by_role("button", name="Insert")).to_be_disabled()
     dialog.get_by_label("Table", exact=True).fill(CYCLE)
     expect(dialog.get_by_role("status")).to_contain_text("the last point repeats the first and was left out")
     expect(dialog.get_by_label("Field for Fx")).to_have_value("load_x")
@@ -32,7 +32,7 @@ def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     dialog.get_by_label("Unit of Fx").fill("N")
     dialog.get_by_label("Add to the crank angle").fill("10 deg")
     expect(dialog.locator("tbody tr").first).to_contain_text("10")
-    dialog.get_by_role("button", name="Take over 4 rows").click()
+    dialog.get_by_role("button", name="Insert 4 rows").click()
     expect(page.locator("[id='-crank_angle']")).to_have_value("[10, 100, 190, 280] deg")
     expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2.5, 0.5, 1] N")
     expect(page.locator("[id='-load_y']")).to_have_value("[0.5, 0.5, 0.5, 0.5] kN")
@@ -51,7 +51,7 @@ def test_a_file_is_read_as_a_spreadsheet_saved_it(watched, tmp_path, encoding):
     page.get_by_role("button", name="Paste a table into load x").click()
     dialog = page.get_by_role("dialog", name="Paste a table")
     dialog.get_by_label("or a file").set_input_files(file)
-    dialog.get_by_role("button", name="Take over 2 rows").click()
+    dialog.get_by_role("button", name="Insert 2 rows").click()
     expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2] kN")
     expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] °")
 
@@ -74,11 +74,11 @@ def test_a_workbook_is_chosen_as_a_file(watched, tmp_path):
     assert ".xlsx" in chosen.get_attribute("accept")
     chosen.set_input_files(empty)
     expect(dialog.get_by_role("alert")).to_be_visible()
-    expect(dialog.get_by_role("button", name="Take over")).to_be_disabled()
+    expect(dialog.get_by_role("button", name="Insert")).to_be_disabled()
     assert page.locator("[id='-load_x']").input_value() == before
     chosen.set_input_files(file)
     expect(dialog.locator("tbody tr").first).to_contain_text("1.5")
-    dialog.get_by_role("button", name="Take over 2 rows").click()
+    dialog.get_by_role("button", name="Insert 2 rows").click()
     expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] deg")
     expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2.5] kN")
     expect(page.locator("[id='-load_y']")).to_have_value("[0.5, 0.25] kN")
@@ -105,7 +105,7 @@ def test_a_list_of_quantities_and_relations_is_edited_by_keyboard_and_saved(watc
     expect(dialog.get_by_label("Item 2", exact=True)).to_be_focused()
     page.keyboard.type("= 2 * 6000 kg*mm**2")
     dialog.get_by_role("button", name="Remove item 3").click()
-    dialog.get_by_role("button", name="Take over").click()
+    dialog.get_by_role("button", name="Insert").click()
     field = page.locator("#torsional_vibration-inertias")
     expect(field).to_have_value('["0.012 kg*m**2","= 2 * 6000 kg*mm**2","0.35 kg*m**2","0.1 kg*m**2"]')
     page.get_by_role("button", name=re.compile("Save as revision")).click()
@@ -114,7 +114,7 @@ def test_a_list_of_quantities_and_relations_is_edited_by_keyboard_and_saved(watc
     assert inputs["inertias"] == ["0.012 kg*m**2", "= 2 * 6000 kg*mm**2", "0.35 kg*m**2", "0.1 kg*m**2"]
     page.get_by_role("button", name="Edit the items of inertias").click()
     dialog.get_by_label("Item 2", exact=True).fill("0.02 kg*m**2")
-    dialog.get_by_role("button", name="Take over").click()
+    dialog.get_by_role("button", name="Insert").click()
     expect(field).to_have_value("[0.012,0.02,0.35,0.1] kg*m**2")
     assert watched.faults() == []
 

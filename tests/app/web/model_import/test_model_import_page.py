@@ -15,7 +15,7 @@ from serving import API, heard
 def sent(page, id, content, file):
     page.get_by_label("Name", exact=True).fill(id)
     page.get_by_label("File").set_input_files({"name": file, "mimeType": "", "buffer": content})
-    page.get_by_role("button", name="Bring the model").click()
+    page.get_by_role("button", name="Import the model").click()
 
 
 @pytest.mark.slow

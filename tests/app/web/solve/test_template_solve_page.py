@@ -1,4 +1,4 @@
-"""The page that solves a template: its roots as a table, its curve, and what the form carries over."""
+"""The page that solves a template: table of roots, curve, and values passed to the form."""
 
 import re
 from html import unescape
@@ -75,7 +75,7 @@ def test_the_template_page_leads_to_it_with_what_is_typed(http):
 def test_it_starts_from_the_example_and_offers_bounds(http):
     example = http.get(f"{API}/templates/journal_friction/versions/1").json()["example"]
     page = page_of(http, **{"?unknown": "bearing_width"})
-    assert "Fill in what is still empty" in page
+    assert "Fill in the empty fields" in page
     number, unit = example["bearing_width"].split()
     assert f'name="?low" value="{float(number) / 2:g} {unit}"' in page
 

@@ -78,8 +78,8 @@ def fieldset(page, legend):
 @pytest.mark.parametrize(
     ("typed", "legend", "words"),
     [
-        ({"method": "optimise", "high.0": "60 um"}, "What is best", "name an output to minimise or maximise"),
-        ({"method": "grid", "high.0": "60 kN", "steps.0": "7"}, "What is varied", "kN measures a force"),
+        ({"method": "optimise", "high.0": "60 um"}, "Goals", "name an output to minimise or maximise"),
+        ({"method": "grid", "high.0": "60 kN", "steps.0": "7"}, "Varied quantities", "kN measures a force"),
         ({"method": "sample", "high.0": "60 um", "points": "0"}, "Rows", "greater than or equal to 1"),
     ],
 )
@@ -124,7 +124,7 @@ def test_a_front_is_listed_with_what_its_levels_promise(http, bearing):
     assert listed.count("<tr>") == 1 + len(front) > 2
     assert f'name="row" value="{front[-1]["row"]}"' in listed
     promised = page.partition("<details data-trade>")[2].partition("</details>")[0]
-    assert f"{len(trade['front'])} places of its front, 64 rows" in promised
+    assert f"{len(trade['front'])} points of its front, 64 rows" in promised
     assert promised.count("<tr>") == 1 + len(trade["front"])
 
 
@@ -151,7 +151,7 @@ def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
     assert "variant main_2" in http.get(study).text
     refused = http.post(f"{bearing}/studies", data={**typed, "variant": "main_3"})
     assert refused.status_code == 422
-    assert "its variants are main_2, main_10" in fieldset(refused.text, "What is varied")
+    assert "its variants are main_2, main_10" in fieldset(refused.text, "Varied quantities")
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
@@ -164,15 +164,15 @@ def test_many_outputs_are_grouped_by_step_and_narrowed_by_words(watched, bearing
     count = shown.count()
     assert count > 12
     page.get_by_role("checkbox", name="film.sommerfeld_number").check()
-    page.get_by_role("searchbox", name="Show those with").fill("Temperature")
+    page.get_by_role("searchbox", name="Filter by").fill("Temperature")
     expect(narrowed).to_have_text(f"{shown.count()} of {count}")
     names = shown.all_inner_texts()
     assert 1 < len(names) < count
     assert all("temperature" in name for name in names if "sommerfeld" not in name)
     assert any("sommerfeld" in name for name in names)  # it is ticked
-    page.get_by_role("searchbox", name="Show those with").press("Enter")
+    page.get_by_role("searchbox", name="Filter by").press("Enter")
     expect(page).to_have_url(f"{watched.url}{bearing}/studies/new")  # it starts no study
-    page.get_by_role("searchbox", name="Show those with").fill("")
+    page.get_by_role("searchbox", name="Filter by").fill("")
     assert shown.count() == count
     assert page.locator('[name="objective.0"] optgroup[label="film"] option').count() > 12
     assert watched.faults() == []

@@ -277,7 +277,7 @@ def test_upload_pasting_and_one_more_row_work_without_scripts(plain, http, shell
     page.get_by_label("Headings, units, one row per variant").fill(
         "variant\tfilm.radial_load\n\tkN\nonly\t20\n"
     )
-    page.get_by_role("button", name="Take this table").click()
+    page.get_by_role("button", name="Insert this table").click()
     expect(page.locator("#variant-only")).to_be_visible()
     assert http.get(f"{API}{shell}").json()["variants"] == {"only": {"film.radial_load": "20 kN"}}
 

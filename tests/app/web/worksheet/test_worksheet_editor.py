@@ -137,7 +137,7 @@ def test_what_is_typed_survives_a_reload_and_can_be_discarded(watched, http):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("choice", ["Keep mine", "Take theirs"])
+@pytest.mark.parametrize("choice", ["Keep mine", "Use theirs"])
 @pytest.mark.sampled(1)
 def test_somebody_elses_text_is_shown_and_nothing_is_lost(watched, http, choice):
     id = f"conflict_{choice[:4].strip().lower()}"

@@ -38,7 +38,7 @@ def test_a_sheet_is_imported_by_a_form_alone(plain):
     expect(rows.nth(2)).to_contain_text("1.5 m")
     expect(rows.nth(3)).to_contain_text("random numbers")
     expect(rows.nth(4).get_by_role("link", name="3")).to_have_attribute("href", "#region-3")
-    expect(page.get_by_role("status")).to_contain_text("3 regions forbid a release")
+    expect(page.get_by_role("status")).to_contain_text("3 regions prevent a release")
     page.get_by_role("link", name="Open the draft").click()
     expect(page).to_have_url(f"{plain.url}/worksheets/import_by_form")
 

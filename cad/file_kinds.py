@@ -1,22 +1,27 @@
-"""Deflection: the largest distance of mesh facets from the true surface, as a user requests it.
+"""Kinds of derived files with options: the deflection of a mesh, and a single part.
 
-A kind of file with a deflection is written `stl@0.05mm`, and is stored beside `stl`. Deflections are rounded
-down to steps, six in a decade. So a solid has at most 19 meshes of a kind, however many different deflections
-are requested.
+A kind with options is named `stl@0.05mm#upper_shell`, and its file is stored in addition to that of `stl`.
+The deflection is the largest distance of a facet from the true surface. Deflections are rounded down to six
+values per decade, so a part has at most 19 meshes of a kind, however many deflections are requested.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import floor, log10
 
+from cadquery import Location
+
 from cad.step import Body
-from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, listed
 from templates.core.units.quantity import read
 from templates.core.units.units import unit
 
-MESHES = ("glb", "stl")
+MESHES = ("glb", "stl", "3mf")
 """Kinds of files that are triangles, of which a user may choose the deflection."""
+BY_PART = (*MESHES, "brep")
+"""Kinds of files that can hold one part alone, in its own coordinates."""
 
 FINEST, COARSEST = 1e-4, 0.1
 """Least and largest deflection as parts of the diagonal of the largest body's box."""
@@ -26,12 +31,12 @@ LEAST, MOST = 1e-6, 1e5
 STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 """Of deflections, within a decade."""
 
-_AT, _UNIT = "@", "mm"
+_AT, _OF, _UNIT = "@", "#", "mm"
 _SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
 
 
 def with_deflection(kind: str, raw: str) -> str:
-    """Return the kind of file with a deflection as a user typed it, such as `0.05 mm`.
+    """Return the file kind for a deflection as the user typed it, such as `0.05 mm`.
 
     Raises
     ------
@@ -39,7 +44,7 @@ def with_deflection(kind: str, raw: str) -> str:
         If it is not a length above 0, or the kind has no facets.
     """
     if kind not in MESHES:
-        detail = f"only {' and '.join(MESHES)} are made of facets; leave it out for {kind}"
+        detail = f"only {listed(MESHES)} are made of facets; leave it out for {kind}"
         raise InvalidInputs([Fault("deflection", "not_offered", detail)])
     try:
         typed = read(raw, _UNIT)
@@ -55,38 +60,72 @@ def with_deflection(kind: str, raw: str) -> str:
     return f"{kind}{_AT}{_step_not_above(asked):.6g}{_UNIT}"
 
 
+def with_part(kind: str, part: str) -> str:
+    """Return the file kind for a file that contains only one part.
+
+    Raises
+    ------
+    InvalidInputs
+        If a file of that kind always contains all parts.
+    """
+    if plain_kind(kind) not in BY_PART:
+        detail = f"only {listed(BY_PART)} can hold one part alone; leave it out for {plain_kind(kind)}"
+        raise InvalidInputs([Fault("part", "not_offered", detail)])
+    return f"{kind}{_OF}{part}"
+
+
 def _steps(around: float) -> list[float]:
-    """Return the steps from a decade below a length to a decade above it, ascending."""
+    """Return the allowed deflections from a decade below a length to a decade above it, ascending."""
     decade = floor(log10(around))
     return [float(f"{step:g}e{decade + more}") for more in (-1, 0, 1) for step in STEPS]
 
 
 def _step_not_above(length: float) -> float:
-    """Return the greatest step that is not coarser than a length."""
+    """Return the largest allowed deflection that does not exceed a length."""
     return max(step for step in _steps(length) if step <= length * (1 + _SAME))
 
 
 def _step_not_below(length: float) -> float:
-    """Return the least step that is not finer than a length."""
+    """Return the smallest allowed deflection that is not below a length."""
     return min(step for step in _steps(length) if step >= length * (1 - _SAME))
 
 
 def plain_kind(kind: str) -> str:
-    """Return the kind without its deflection."""
-    return kind.partition(_AT)[0]
+    """Return the file kind without its deflection."""
+    return kind.partition(_OF)[0].partition(_AT)[0]
+
+
+def bodies_of(kind: str, bodies: Sequence[Body]) -> Sequence[Body]:
+    """Return the bodies in a file of that kind: all bodies, or one part once in its own coordinates.
+
+    Raises
+    ------
+    InvalidInputs
+        If no body has the name of the part.
+    """
+    _, has_part, part = kind.partition(_OF)
+    if not has_part:
+        return bodies
+    found = [body for body in bodies if body.name == part]
+    if not found:
+        names = listed([body.name for body in bodies])
+        offered = f"the only part is {names}" if len(bodies) == 1 else f"the parts are {names}"
+        detail = f"there is no part {excerpt(part)}; {offered}"
+        raise InvalidInputs([Fault("part", "unknown_part", detail)])
+    return [replace(body, places=(Location(),)) for body in found]
 
 
 def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
-    """Return the deflection [mm] of a kind of file.
+    """Return the deflection [mm] of a file kind.
 
-    None where it has the usual one, a part of each body's size.
+    None stands for the default, a fraction of the size of each body.
 
     Raises
     ------
     InvalidInputs
         If it is too fine or too coarse for bodies of this size.
     """
-    _, at, text = kind.partition(_AT)
+    _, at, text = kind.partition(_OF)[0].partition(_AT)
     if not at:
         return None
     asked, size = float(text.removesuffix(_UNIT)), _size(bodies)
@@ -99,5 +138,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """Return the largest diagonal of a body's box [mm], whatever the number of its positions."""
+    """Return the largest diagonal of the bounding box of a body [mm]; its positions do not matter."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)
