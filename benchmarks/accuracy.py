@@ -223,7 +223,7 @@ def cost(level: str) -> dict[str, float]:
         return (process_time() - begin) / count
 
     seconds(1)
-    return {"single": min(seconds(1) for _ in range(5)), "vectorised": min(seconds(many) for _ in range(3))}
+    return {"single": min(seconds(1) for _ in range(20)), "vectorised": min(seconds(many) for _ in range(3))}
 
 
 def content_of(

@@ -1,4 +1,4 @@
-"""The script of the mutation tests: which tests are about a file, what a record amounts to, which mutants."""
+"""The script of the mutation tests: related tests of a file, the figure of a record, the mutants."""
 
 import ast
 import json

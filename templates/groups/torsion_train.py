@@ -11,7 +11,6 @@ from templates.physics.torsion.train_layout import (
     are_pairs,
     exist,
     has_no_loop,
-    have_stiffness,
     is_joined,
     name_inertias,
     train_layout,
@@ -58,11 +57,6 @@ class TorsionTrain(Template):
     def pairs(self) -> Truth:
         """Each shaft connects two numbered inertias."""
         return are_pairs(self.s_i, self.s_j)
-
-    @require("shaft_stiffness", "shaft_from", remedy="one for each shaft, 0 for a viscous damper")
-    def stiffness_of_each(self) -> Truth:
-        """Each shaft has a stiffness."""
-        return have_stiffness(self.s_i, self.k)
 
     @require("shaft_from", "shaft_to", "inertias", remedy=NUMBERS)
     def shafts_join(self) -> Truth:

@@ -33,6 +33,7 @@ from templates.physics.heat.cycle_heat import (
     left_by_HTHS,
     loss_of,
     rate_of,
+    shear_loss_of,
     side_flow_of,
     temperature_of,
     viscosity_at_150,
@@ -270,7 +271,7 @@ class CycleHeatBalance(Oil, FedBearing):
     @formula("1", "shear loss", symbol=r"\delta_{\gamma}", source=CROSS)
     def shear_loss(self) -> Array:
         """The relative reduction of the viscosity by shear."""
-        return 1 - self.eta_e / self.eta
+        return shear_loss_of(self.heat, self.eta_e, self.eta)
 
     @formula("W", "power loss", symbol="P",
              latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"

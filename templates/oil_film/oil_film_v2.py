@@ -71,7 +71,7 @@ MESH_ERRORS = {
     "maximum_pressure": attrgetter("pressure_error"),
     "side_flow": attrgetter("flow_error"),
 }
-"""Outputs whose mesh error a bearing that is not plain states, and where the film holds that error."""
+"""Outputs with a mesh error if the bearing is not plain, and the attribute of the film with that error."""
 TAKE_A_SOLUTION = "lobes, bell mouth and tilt need level reynolds or mass_conserving"
 
 

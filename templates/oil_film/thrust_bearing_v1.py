@@ -17,7 +17,10 @@ from templates.physics.journals.oil import by_law, viscosity_at
 from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_collar
 
 NO_SUPPLY = "needs supply_temperature"
-UNBORNE = "no film ratio from 1.000001 to 100 bears this load: change taper, speed, viscosity or pads"
+UNBORNE = (
+    "no film ratio from 1.000001 to 100 bears this load with a film below 500 °C: change taper, speed, "
+    "viscosity or pads, or cool more"
+)
 MEC = "MEC 315"
 
 
@@ -177,7 +180,7 @@ class ThrustBearing(Oil):
             self.b_V, self.c_V, self.as_given("eta"), self.rho_ref, self.T_ref,
         )  # fmt: skip
 
-    @formula("1", "film ratio", symbol="a", gt=1, remedy=UNBORNE)
+    @formula("1", "film ratio", symbol="a", gt=1, le=100, remedy=UNBORNE)
     def a(self) -> Array:
         return self.film.a
 
@@ -221,8 +224,7 @@ class ThrustBearing(Oil):
     def T_e(self) -> Array:
         return self.T_i + self.gain
 
-    @formula("degC", "film temperature", symbol="T", absent=NO_SUPPLY, le=500,
-             remedy="the heat balance finds none below 500 °C: cool more, or less load or speed")  # fmt: skip
+    @formula("degC", "film temperature", symbol="T", absent=NO_SUPPLY)
     def T_film(self) -> Array:
         return (self.T_i + self.T_e) / 2
 

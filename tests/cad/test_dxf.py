@@ -1,4 +1,4 @@
-"""Drawings of every model: sound DXF, whose dimensions measure the parameters; and the same as SVG."""
+"""Drawings of every model: valid DXF with dimensions that measure the parameters, equal to the SVG."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""Free spread of half shells: what nothing holds, against measurements that share no code with it."""
+"""Free spread of half shells: the free state, against measurements that share no code with it."""
 
 import numpy as np
 import pytest

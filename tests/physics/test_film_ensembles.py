@@ -1,4 +1,4 @@
-"""What stands behind the bounds of `oil_film_cycle` 1: order statistics, samples that have every supply."""
+"""The basis of the bounds of `oil_film_cycle` 1: order statistics, samples with every supply."""
 
 import json
 from collections import Counter

@@ -1,4 +1,4 @@
-"""A restored backup or a clone that uses the store of its original: both keep all files, and say why."""
+"""A restored backup or clone that uses the store of its original: both keep all files and report it."""
 
 import json
 import logging

@@ -28,7 +28,7 @@ from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.roots import bracketed_root
 
 HOTTEST = 773.15
-"""Highest film temperature that is looked for [K]."""
+"""Highest film temperature that is sought [K]."""
 _ACCURACY = 1e-13
 
 
@@ -45,11 +45,11 @@ class OperatingPoint(ViscousOil):
     psi: Array
     """Relative clearance [-]."""
     omega_m: Array
-    """Size of the hydrodynamic speed [rad/s]."""
+    """Magnitude of the hydrodynamic speed [rad/s]."""
     omega_s: Array
-    """Speed of sliding in its sense [rad/s]."""
+    """Sliding speed, positive with the hydrodynamic speed [rad/s]."""
     heat_capacity: Array
-    """Of the oil per volume, rho c [J/(m³ K)]."""
+    """Heat capacity of the oil per volume, rho c [J/(m³ K)]."""
     T_supply: Array
     """Temperature of the oil supplied, else NaN [K]."""
     T_ambient: Array
@@ -104,9 +104,9 @@ class HeatBalance:
     T: Array
     """Film temperature [K]; infinite where there is no balance below 500 °C."""
     T_out: Array
-    """Temperature of the oil that leaves; NaN too without a supply [K]."""
+    """Temperature of the outflowing oil; NaN also without a supply [K]."""
     residual: Array
-    """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
+    """Heat imbalance over the largest of power, heat to oil and heat to air [-]."""
 
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")

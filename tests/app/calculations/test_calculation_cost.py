@@ -1,4 +1,4 @@
-"""Estimates of cost: what takes milliseconds stays below the limit, what takes long does not."""
+"""Estimates of cost: calculations of milliseconds are below the limit, long ones above it."""
 
 import pytest
 

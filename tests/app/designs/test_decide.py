@@ -1,4 +1,4 @@
-"""`decide`: levels climb only where a criterion is undecided; what was spent, and why it stopped."""
+"""`decide` uses finer levels only for undecided criteria, and reports its cost and why it stopped."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Clients take turns: nobody's many jobs delay or refuse another's one."""
+"""Clients are served in turn: the many jobs of one do not delay or refuse the job of another."""
 
 import pytest
 from components import ON_POSTGRESQL

@@ -1,4 +1,4 @@
-"""Worksheets over the end of a server: a start, a tampered database, kill -9, backup and restore."""
+"""Worksheets over a restart: a start, a tampered database, kill -9, backup and restore."""
 
 import json
 import sqlite3

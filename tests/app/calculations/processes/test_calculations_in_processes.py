@@ -1,4 +1,4 @@
-"""Expensive calculations over HTTP: in processes of their own, one client after another."""
+"""Expensive calculations over HTTP run in separate processes, with clients in turn."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
