@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from math import atan2, degrees, hypot, isclose
 from typing import Literal
@@ -59,7 +59,7 @@ def measures(
         results += _of_planes(one, section, end, most)
         results += _of_flanks(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
-    standing = list(surfaces_of(bodies, seen))
+    standing = list(_standing(bodies, seen))
     results += _of_arcs(section, standing, {name: one.count for name, one in seen.items()})
     results += _of_slopes(section, standing)
     return results
@@ -75,22 +75,12 @@ def lengths(sizes: Iterable[Size], seen: Mapping[str, PartSurfaces], section: Vi
                 yield length_between(seen[place.first[0][0]], low, high, section)
 
 
-def surfaces_of(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Iterator[Surface]:
+def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Iterator[Surface]:
     """Yield every surface at the positions of its part."""
     for body in bodies:
         for place in body.places:
-            if place.wrapped.IsIdentity():
-                yield from seen[body.name].surfaces
-                continue
-            turn, shift = rigid(place)
-            for one in seen[body.name].surfaces:
-                point = Vector(*(turn @ one.point.toTuple() + shift))
-                direction = Vector(*(turn @ one.direction.toTuple()))
-                along = point.dot(direction) - one.point.dot(one.direction)
-                low, high = one.reach
-                reach = (low + along, high + along) if one.reach != (0.0, 0.0) else one.reach
-                middle = one.middle and Vector(*(turn @ one.middle.toTuple() + shift))
-                yield replace(one, point=point, direction=direction, reach=reach, middle=middle)
+            moved = rigid(place)
+            yield from (one.moved(*moved) for one in seen[body.name].surfaces)
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
