@@ -18,6 +18,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_SurfaceType as _Kind
 
 from cad.on_demand import constant
+from templates.core.arrays import Array
 
 X = constant(lambda: Vector(1, 0, 0))
 Y = constant(lambda: Vector(0, 1, 0))
@@ -153,6 +154,15 @@ class Surface:
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is parallel to the axis."""
         return bool(self.direction.cross(axis).Length < _COINCIDENT)
+
+    def moved(self, turn: Array, shift: Array) -> Surface:
+        """Return the surface after its part was turned (3, 3) and then shifted (3,) [mm]."""
+        point = Vector(*(turn @ self.point.toTuple() + shift))
+        direction = Vector(*(turn @ self.direction.toTuple()))
+        along = point.dot(direction) - self.point.dot(self.direction)
+        low, high = self.reach
+        reach = (low + along, high + along) if self.reach != (0.0, 0.0) else self.reach
+        return replace(self, point=point, direction=direction, reach=reach)
 
     def about(self, axis: Vector) -> bool:
         """Return whether the surface is coaxial with that axis through the origin."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from math import atan2, degrees, hypot, isclose
 from typing import Literal
@@ -79,17 +79,8 @@ def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Itera
     """Yield every surface at the positions of its part."""
     for body in bodies:
         for place in body.places:
-            if place.wrapped.IsIdentity():
-                yield from seen[body.name].surfaces
-                continue
-            turn, shift = rigid(place)
-            for one in seen[body.name].surfaces:
-                point = Vector(*(turn @ one.point.toTuple() + shift))
-                direction = Vector(*(turn @ one.direction.toTuple()))
-                along = point.dot(direction) - one.point.dot(one.direction)
-                low, high = one.reach
-                reach = (low + along, high + along) if one.reach != (0.0, 0.0) else one.reach
-                yield replace(one, point=point, direction=direction, reach=reach)
+            moved = rigid(place)
+            yield from (one.moved(*moved) for one in seen[body.name].surfaces)
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:

@@ -23,7 +23,7 @@ from templates.core.units.quantity import read
 from templates.door import built_in
 
 ROUNDS, SECONDS = 20, 10.0  # changed examples that the long search begins at, and its time for one rule
-NEAR = (0.3, 0.5, 0.8, 0.95, 0.999, 1.0, 1.001, 1.05, 1.2, 2.0, 3.0, 10.0, -1.0)
+NEAR = (0.3, 0.5, 0.8, 0.95, 0.999, 1.0, 1.0003, 1.001, 1.05, 1.2, 2.0, 3.0, 10.0, -1.0)
 DECADES = [sign * size * 10.0**power for power in range(-12, 13) for size in (1, 3) for sign in (1, -1)]
 WHOLE = (*range(13), 16, 20, 25, 32, 50, 100, 101, 200, 1000, 1001, 10**4, 10**5, 10**6)
 ROWS = ([], [[0.0]], [[10.0, 400.0]], [[10.0, -5.0]], [[0.0, 20.0]] * 40, [[1.0, 3.0], [1.0, 3.0]])
