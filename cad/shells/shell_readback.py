@@ -119,7 +119,8 @@ class ShellReadback:
         one = circles[0]
         height, depth = read_relief(self.bore, hypot(one.point.x, one.point.y), one.diameter / 2)
         deep = Size.distance(depth, self.bore_ring, circles)
-        return {"relief_height": height, "relief_depth": deep}
+        edge = Size(height, "edge", Place(faces_of(self.bore_ring), faces_of(circles)))
+        return {"relief_height": edge, "relief_depth": deep}
 
     def groove(self) -> dict[str, float]:
         """Return the width, depth and angle of the oil groove, and the diameter of the oil hole."""

@@ -20,35 +20,35 @@ class ThermalCase(ViscousOil):
     """Load [N]."""
     D: Array
     W: Array
-    """Diameter and width [m]."""
+    """Diameter and width of the bearing [m]."""
     psi: Array
     """Relative clearance [-]."""
     omega: Array
     """Speed of the journal [rad/s]."""
     pressure: Array
-    """Of the supply, above ambient [Pa]."""
+    """Supply pressure above ambient [Pa]."""
     angle: Array
-    """From the load to the groove's middle [rad]."""
+    """Angle from the load to the groove's middle [rad]."""
     extent: Array
-    """Of the groove around [rad]."""
+    """Angular width of the groove [rad]."""
     length: Array
-    """Of the groove across, over the width [-]."""
+    """Axial length of the groove over the bearing's width [-]."""
     carry_over: Array
-    """Share of the oil arriving at the groove that goes on [-]."""
+    """Fraction of the oil arriving at the groove that continues into the film [-]."""
     supply: Array
     """Temperature of the fresh oil [K]."""
     heat_capacity: Array
-    """Of the oil per volume [J/(m³ K)]."""
+    """Heat capacity of the oil per volume [J/(m³ K)]."""
     conductivity: Array
-    """Of the oil [W/(m K)]."""
+    """Thermal conductivity of the oil [W/(m K)]."""
     held: Array
-    """Temperature at which the bush is held, else NaN [K]."""
+    """Given temperature of the bush, else NaN [K]."""
     transfer: Array
     """Heat transfer coefficient of the bush, else NaN [W/(m² K)]."""
     ambient: Array
-    """Temperature behind it, else NaN [K]."""
+    """Temperature behind the bush, else NaN [K]."""
     journal: Array
-    """Temperature of the journal, NaN for one without net heat [K]."""
+    """Temperature of the journal; NaN for a journal without net heat flow [K]."""
 
     def is_whole(self) -> bool:
         """Return whether all data that a film needs are known."""
