@@ -171,7 +171,7 @@ def _require_few(standing: Sequence[_PlacedSolid], pairs: Sequence[_Pair]) -> No
     listed = ", ".join(f"{name} ({count})" for name, count in whose)
     detail = (
         f"{len(meeting)} pairs of solids have boxes that meet, and at most {MOST_MEETING} are compared; the "
-        f"most are of {listed}. Move the components apart, or leave solids out of their files"
+        f"most are of {listed}. Move the components apart, or remove solids from their files"
     )
     raise GeometryError("too_large", detail)
 
