@@ -33,8 +33,8 @@ MOST_SOLIDS = 300
 FARTHEST = 1e5
 """A fixed part stands within this distance of its datum, along each axis [mm]."""
 SHIFTS, TURNS = ("x", "y", "z"), ("turn_x", "turn_y", "turn_z")
-_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
-_WITHIN = ":"  # between the name of a fixed part and that of one of its solids
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
+_WITHIN = ":"  # separates the name of a fixed part from that of one of its solids
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Component:
     may_overlap: tuple[str, ...] = ()  # names of parts and components
     density: float = STEEL_DENSITY  # [kg/m³]
     material: str = ""
-    holds: tuple[str, ...] = ()  # ids of the models that it is made of
+    holds: tuple[str, ...] = ()  # ids of the models from which it is built
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
         """Return the position of the part as parameters of the assembly, with default values."""
@@ -210,12 +210,12 @@ class AssemblyModel(ImportedModel):
             parts = _solids_of(component, drawn.fixed[component.file])
             count += sum(len(part.places) for part in parts)
             if count > MOST_SOLIDS:
-                detail = f"the fixed parts have more than {MOST_SOLIDS} solids; leave some of them out"
+                detail = f"the fixed parts have more than {MOST_SOLIDS} solids; remove some of them"
                 raise GeometryError("too_large", detail)
             for number, part in enumerate(parts):
                 placed = replace(part, places=tuple(at * place for place in part.places))
                 there[part.name] = placed
-                if number == 0:  # a datum may name the component
+                if number == 0:  # a datum may refer to the whole component
                     there[component.name] = placed
                 yield placed
 

@@ -17,7 +17,7 @@ from cad.surfaces import PartSurfaces
 
 MOST_NAMED = 20
 """Of interferences in a refusal."""
-_BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are good to some 1e-7
+_BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are accurate to about 1e-7
 _DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
 _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
 
@@ -131,7 +131,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
     GeometryError
         `place`.
     """
-    if is_single(parts):  # its coordinates have its place in them
+    if is_single(parts):  # the coordinates of a single part include its position
         return
     standing = {body.name: body.places for body in bodies}
     for part in parts:

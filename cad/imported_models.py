@@ -46,7 +46,7 @@ MOST_PLANES = 300
 LONGEST_NAME = 100
 """Of a part, in letters."""
 
-_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class Parameter:
     name: str
     words: str
     unit: str
-    value: float  # in the file as it was sent
-    source: str  # where it stands there: "Spreadsheet.bore", "Sketch.Constraints.width", "d12"
+    value: float  # value in the file as it was uploaded
+    source: str  # location in the file: "Spreadsheet.bore", "Sketch.Constraints.width", "d12"
     low: float | None = None
     high: float | None = None
     role: Role = ""
@@ -71,7 +71,7 @@ class Description:
     file: str  # SHA-256 of the file that the program opens, or of the manifest
     file_name: str
     title: str
-    made_with: str  # the program's version at the import
+    made_with: str  # version of the program at the time of the import
     parameters: tuple[Parameter, ...] = ()
 
     @property
@@ -116,7 +116,7 @@ class DrawnPart:
 
     name: str
     brep: bytes
-    volume: float | None = None  # [mm³]; None where the program states none
+    volume: float | None = None  # [mm³]; None if the program states none
 
 
 @dataclass(frozen=True)
@@ -125,8 +125,8 @@ class ProgramResult:
 
     parts: tuple[DrawnPart, ...] = ()
     step: bytes = field(default=b"", repr=False)
-    mass_volume: float | None = None  # [mm³] of all solids, where a program states it with a STEP file
-    fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # of an assembly: STEP files by hash
+    mass_volume: float | None = None  # [mm³] of all solids, if the program states it with a STEP file
+    fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # STEP files of fixed parts by hash
 
 
 class ImportedModel(CadModel):

@@ -86,8 +86,8 @@ class Part:
     density: float = STEEL_DENSITY  # [kg/m³]
     places: tuple[Location, ...] = field(default_factory=_at_origin)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
-    shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
-    material: str = ""  # its name, such as "CuSn8"; steel, if it does not say and has the density of steel
+    shaped_by: tuple[str, ...] = ()  # parameters to name if the part fails; all parameters if empty
+    material: str = ""  # name such as "CuSn8"; steel if empty and the density is that of steel
 
     @property
     def solid(self) -> Shape:

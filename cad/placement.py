@@ -28,7 +28,7 @@ from cad.surfaces import AXES, X, Y, Z, look
 ORIGIN = "origin"
 _SIDE = re.compile(r"(low|high)_([xyz])")
 _AXIS = re.compile(r"axis_([1-9][0-9]{0,3})")
-_DIGITS = 6  # [mm], to which points of axes are compared
+_DIGITS = 6  # decimals [mm] to which points of axes are compared
 
 
 @dataclass(frozen=True)

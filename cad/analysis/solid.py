@@ -26,8 +26,8 @@ HELD, LOADED, MIRROR, FREE = "held", "loaded", "mirror", "free"
 _AXES = "xyz"
 _COLUMNS = ((slice(0, 1), 1), (slice(1, 4), 3), (slice(4, 10), 6))  # area, centre, moments
 _NEAR = 1e-6  # [mm]
-_ALIKE = 1e-7  # of a size, relative: what the kernel's integrals over mirrored faces agree in
-_FLAT = 1e-5  # of a moment of area; the kernel's own are good to 1e-6
+_ALIKE = 1e-7  # relative difference to which the kernel's integrals over mirrored faces agree
+_FLAT = 1e-5  # relative to a moment of area; the kernel's moments are accurate to 1e-6
 
 
 @dataclass(frozen=True)

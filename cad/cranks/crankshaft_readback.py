@@ -16,7 +16,7 @@ from cadquery import Vector
 from cad.cranks.throw_readback import Webs, stubs
 from cad.surfaces import PartSurfaces, Place, Size, Surface, Z, alike, faces_of
 
-_CLEAR = 1e-6  # [mm], and as the sine of an angle
+_CLEAR = 1e-6  # [mm], also used as the sine of an angle
 _ANGLE = 1e-8  # [rad]
 
 

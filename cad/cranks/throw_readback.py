@@ -15,7 +15,7 @@ from cadquery import Vector
 
 from cad.surfaces import PartSurfaces, Place, Size, Surface, X, Y, Z, faces_of
 
-_CLEAR = 1e-6  # [mm], and as the sine of an angle
+_CLEAR = 1e-6  # [mm], also used as the sine of an angle
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DIRECTORY, _LARGE_DIRECTORY = (
     b"PK\x05\x06",
     b"PK\x06\x07",
-)  # where their ends are, in a ZIP and in a large one
+)  # the signatures of the end record in ordinary and in ZIP64 packages
 
 
 def admitted(content: bytes) -> bytes:
@@ -68,7 +68,7 @@ def admitted(content: bytes) -> bytes:
         for name, part in parts.items():
             if (
                 name == DOCUMENT or name in named
-            ):  # packed small: a bomb of zeros is not kept at its full size
+            ):  # compressed at a low level, so that a zip bomb of zeros is not stored at full size
                 package.writestr(zipfile.ZipInfo(name), part, zipfile.ZIP_DEFLATED, 1)
     return out.getvalue()
 

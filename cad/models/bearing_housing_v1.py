@@ -103,7 +103,7 @@ class BearingHousing(CadModel):
 
     @require("block_height", "cap_height", "housing_bore", remedy="make block and cap higher")
     def bore_has_a_roof(self) -> Truth:
-        """Block and cap are each at least 55 % of the bore high."""
+        """The heights of block and cap are each at least 55 % of the bore diameter."""
         return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "housing_bore",

@@ -166,7 +166,7 @@ class ConnectingRod(CadModel):
 
     @require("shoulder_height", "cap_height", "big_end_bore", remedy="make shoulder and cap higher")
     def bore_has_a_roof(self) -> Truth:
-        """Shoulder and cap are each at least 55 % of the bore high."""
+        """The heights of shoulder and cap are each at least 55 % of the bore diameter."""
         return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "big_end_bore",

@@ -1,4 +1,4 @@
-"""Single-row deep groove ball bearing by its designation; see the class below."""
+"""Single-row deep groove ball bearing whose sizes follow from its designation; see the class below."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
 
 
 class DeepGrooveBearing(BallRow):
-    """Deep groove ball bearing by its designation: rings, balls and cage, with its load ratings.
+    """Deep groove ball bearing with the sizes of its designation: rings, balls, cage, and load ratings.
 
     The designation, such as 6210, determines bore, outer diameter and width; series 618, 60, 62 and 63 are
     available. A size that you give replaces the size of the designation, for example to add a tolerance.
