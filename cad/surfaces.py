@@ -13,9 +13,11 @@ from itertools import pairwise
 from math import cos, sin
 from typing import Any, Literal, Self
 
+from cadquery import Face as Face3d
 from cadquery import Shape, Vector
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_SurfaceType as _Kind
+from OCP.TopAbs import TopAbs_Orientation
 
 from cad.on_demand import constant
 
@@ -139,7 +141,8 @@ class Surface:
     point on the axis and its direction. The point of a sphere or torus is its centre. diameter Diameter of a
     cylinder or sphere, tube diameter of a torus, mean of the end diameters of a cone [mm]. reach Start and
     end of a cylinder or cone along its axis [mm]. about_radius Radius of the centre line of a torus [mm].
-    face Name of the part, and number of the face. middle Centroid of the face of a plane.
+    face Name of the part, and number of the face. middle Centroid of the face of a plane. is_reversed
+    Whether the material is outside a cylinder, or on the side of a plane to which its normal points.
     """
 
     point: Vector
@@ -149,6 +152,7 @@ class Surface:
     about_radius: float = 0.0
     face: Face = field(default=("", -1), compare=False)
     middle: Vector | None = field(default=None, compare=False)
+    is_reversed: bool = field(default=False, compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is parallel to the axis."""
@@ -261,7 +265,8 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
         kind = adaptor.GetType()
         if read := _READERS.get(kind):
             middle = face.Center() if kind == _Kind.GeomAbs_Plane else None
-            of[kind].append(replace(read(adaptor), face=(part, number), middle=middle))
+            surface = replace(read(adaptor), face=(part, number), middle=middle)
+            of[kind].append(replace(surface, is_reversed=_is_reversed(face, adaptor, kind)))
     return PartSurfaces(
         count,
         planes=tuple(of[_Kind.GeomAbs_Plane]),
@@ -270,6 +275,15 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
         tori=tuple(of[_Kind.GeomAbs_Torus]),
         cones=tuple(of[_Kind.GeomAbs_Cone]),
     )
+
+
+def _is_reversed(face: Face3d, adaptor: BRepAdaptor_Surface, kind: Any) -> bool:
+    """Return whether the outward normal of a face is against that of a plane or cylinder, else False."""
+    if kind not in (_Kind.GeomAbs_Plane, _Kind.GeomAbs_Cylinder):
+        return False
+    surface = adaptor.Plane() if kind == _Kind.GeomAbs_Plane else adaptor.Cylinder()
+    is_turned = face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+    return bool(is_turned == surface.Position().Direct())
 
 
 def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:
