@@ -117,8 +117,8 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     sealer.start()
     stack.callback(sealer.stop)
     registry = ImportedModelRegistry(database, catalogues, is_shared=database.is_shared)
-    registry.start()
-    stack.callback(registry.stop)
+    registry.follower.start()
+    stack.callback(registry.follower.stop)
     published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, NETWORK, SHEETS)
     calculation_cache = CalculationCache()
@@ -233,8 +233,8 @@ def published_worksheets(
     A SQLite database has a single server, so that server makes all releases.
     """
     published = WorksheetPublication(database, catalogues, is_shared=database.is_shared)
-    published.start()
-    stack.callback(published.stop)
+    published.follower.start()
+    stack.callback(published.follower.stop)
     return published
 
 

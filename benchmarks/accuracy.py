@@ -1,4 +1,4 @@
-"""Measure every level of `oil_film` against the converged solution, and what a point of it costs.
+"""Measure the error of every level of `oil_film` against the converged solution, and the cost of a point.
 
 python -m benchmarks.accuracy measure    about 9 minutes: writes templates/oil_film/*.accuracy.json
 python -m benchmarks.accuracy costs      the costs alone
@@ -6,12 +6,13 @@ python -m benchmarks.accuracy expected   the time to expect of an evaluation; af
 python -m benchmarks.accuracy own        the errors that other bearings state, from `benchmarks.shapes`
 python -m benchmarks.accuracy_picture  docs/pictures/oil_film_accuracy.png from those files
 
-The converged film: solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random places, which
-`benchmarks.film_map` keeps. Levels map, reynolds and mass_conserving are compared with those; the closed
-forms with the map on a dense grid, the map's own error added. Of each cell the largest error found counts.
-A plain, aligned bearing without grooves is measured; `benchmarks.shapes` compares meshes of the others, and
-`benchmarks.heat_balance_accuracy` measures what a heat balance adds, which stands in the same file.
-Errors are relative, of an angle to 90°, of a stiffness or damping to the largest of its four.
+The converged films are solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random points,
+which `benchmarks.film_map` stores. Levels map, reynolds and mass_conserving are compared with these
+solutions; the closed forms are compared with the map on a dense grid, and the error of the map is added. The
+error of a cell is the largest error found in it. The bearings are plain and aligned, without grooves;
+`benchmarks.shapes` compares meshes for other bearings, and `benchmarks.heat_balance_accuracy` measures the
+error that a heat balance adds, which is in the same accuracy file. Errors are relative: of an angle to 90°,
+of a stiffness or damping to the largest of its four coefficients.
 """
 
 import itertools
@@ -72,7 +73,7 @@ Errors = dict[str, Array]
 
 
 def film_errors(film: JournalFilm, truth: JournalFilm) -> Errors:
-    """Return the relative errors of every output that comes from a film, at the same load."""
+    """Return the relative errors of every output that is calculated from the film, at equal load."""
     couple, true_couple = (f.eps * f.So * np.sin(f.attitude) / 2 for f in (film, truth))
     torque = relative_error(film.shear + couple, truth.shear + true_couple)
     thickness = relative_error(1 - film.eps, 1 - truth.eps)
@@ -94,7 +95,7 @@ def film_errors(film: JournalFilm, truth: JournalFilm) -> Errors:
 
 
 def coefficient_errors(values: tuple[Array, Array], truth: tuple[Array, Array]) -> Errors:
-    """Errors of stiffness and damping over the largest of their four, and of the threshold of whirl."""
+    """Return the errors of stiffness and damping over the largest coefficient, and of the whirl threshold."""
     parts = []
     for matrix, true in zip(values, truth, strict=True):
         size = np.abs(true).max(axis=(-1, -2), keepdims=True)
@@ -111,14 +112,14 @@ def coefficient_errors(values: tuple[Array, Array], truth: tuple[Array, Array]) 
 
 
 def _threshold(K: Array, B: Array) -> Array:
-    is_finite = np.isfinite(K).all(axis=(-1, -2))
+    is_finite = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
     unit = np.broadcast_to(np.eye(2), K.shape)
     mass = threshold_mass(*(np.where(is_finite[:, None, None], matrix, unit) for matrix in (K, B)))
     return np.where(is_finite, mass, np.nan)
 
 
 def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
-    """Return FINER × FINER places in every cell, edges included, (cells, cells, FINER²)."""
+    """Return FINER × FINER points in every cell, edges included, (cells, cells, FINER²)."""
     share = np.linspace(0, 1, FINER)
     one = np.array([a + (b - a) * share for a, b in itertools.pairwise(first)])
     two = np.array([a * (b / a) ** share for a, b in itertools.pairwise(second)])
@@ -165,9 +166,9 @@ def solved(level: str) -> dict[str, Array]:
 
 
 def spread(x: Array, y: Array, error: Array) -> Array:
-    """Return scattered errors as cells.
+    """Return errors at scattered points as a table of cells.
 
-    The largest of the coarse cells that a cell touches, or next to them.
+    Each cell gets the largest error of the coarse cells that it touches and of their neighbours.
     """
     top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(WIDTH[0]), np.log(WIDTH[-1])
 
@@ -190,7 +191,7 @@ def spread(x: Array, y: Array, error: Array) -> Array:
 def paper() -> dict[str, Any]:
     """Return the largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map.
 
-    `signed` is that of the film thickness with its sign: above 0 too thick, which is unsafe.
+    `signed` is the signed error of the film thickness: above 0 the film is overestimated, which is unsafe.
     """
     So, ratio = dense(LOADS, PAPER_WIDTH)
     eps = factor_k1(So) * So ** exponent_k2(So)
@@ -208,26 +209,27 @@ def paper() -> dict[str, Any]:
 
 
 def cost(level: str) -> dict[str, float]:
-    """Return the processor seconds a point, alone and among many, at eps 0.8 and B/D 1.
+    """Return the processor time per point [s], alone and among many, at eps 0.8 and B/D 1.
 
-    True on a busy machine too.
+    The figure is also valid on a busy machine.
     """
     So, many = 3.5718, (FEWER_POINTS.get(level) and 20) or 20_000
 
     def seconds(count: int) -> float:
-        loads = np.full(count, So) if count > 1 else np.float64(So)
+        loads: Any = np.full(count, So) if count > 1 else np.float64(So)
+        ratio: Any = 1.0
         begin = process_time()
-        static_film_at(level, loads, 1.0)
+        static_film_at(level, loads, ratio)
         return (process_time() - begin) / count
 
     seconds(1)
-    return {"single": min(seconds(1) for _ in range(5)), "vectorised": min(seconds(many) for _ in range(3))}
+    return {"single": min(seconds(1) for _ in range(20)), "vectorised": min(seconds(many) for _ in range(3))}
 
 
 def content_of(
     cls: type[Template], truths: dict[str, str], axes: list[dict[str, Any]], levels: dict[str, Any]
 ) -> dict[str, Any]:
-    """Return the whole file."""
+    """Return the content of the accuracy file."""
     return {
         "template": {"id": cls.id, "version": cls.version},
         "made_by": "python -m benchmarks.accuracy measure",
@@ -245,27 +247,27 @@ def content_of(
 
 
 def rounded(table: Array) -> list[list[float | None]]:
-    """Return two digits, upwards; null where unknown."""
+    """Return a number rounded up to two digits; None if it is unknown."""
     with np.errstate(all="ignore"):
         unit = 10.0 ** (np.floor(np.log10(np.maximum(table, 1e-12))) - 1)
     up = np.ceil(table / unit) * unit
     return [[None if not np.isfinite(v) else float(f"{v:.2g}") for v in row] for row in up]
 
 
-def write(cls: type, content: dict[str, Any]) -> None:
-    """One line per row of cells, so that differences can be read."""
+def write(cls: type[Template], content: dict[str, Any]) -> None:
+    """Write the file with one line per row of cells, so that a diff is readable."""
     path = FOLDER / f"{cls.id}_v{cls.version}.accuracy.json"
     path.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
     print(path, path.stat().st_size // 1000, "kB")
 
 
 def axis(attribute: str, name: str, values: list[float]) -> dict[str, Any]:
-    """Return one axis of the tables: the edges of its cells."""
+    """Return one axis of the tables: the edges of the cells."""
     return {"attribute": attribute, "name": name, "values": values}
 
 
 def measure() -> None:
-    """Measure all and write both files."""
+    """Measure errors and costs and write both files."""
     own = solved("map")
     tables = {
         "short_bearing": closed_form("short_bearing", load_Ocvirk_1952, own),
@@ -293,9 +295,10 @@ def measure() -> None:
 
 
 def own_errors() -> dict[str, Any]:
-    """Return what bearings that are not plain state of themselves, and how often it held.
+    """Return the errors that shaped bearings state, and how often they are right.
 
-    What to expect is of the bearings of `benchmarks.shapes mesh`, what held of those of `held_out`.
+    The expected errors come from the bearings of `benchmarks.shapes mesh`, the shares from those of
+    `held_out`.
     """
     films, fresh = (shapes.measured_films(seed) for seed in (shapes.SEED, shapes.HELD_OUT))
     expected, held = {}, {}
@@ -317,7 +320,7 @@ def own_errors() -> dict[str, Any]:
 
 
 def own() -> None:
-    """Write what those bearings state again, and nothing else."""
+    """Write only the errors that shaped bearings state."""
     path = FOLDER / "oil_film_v2.accuracy.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     for level in SOLVED:
@@ -326,7 +329,7 @@ def own() -> None:
 
 
 def costs() -> None:
-    """Measure the costs again, and nothing else."""
+    """Measure and write only the costs."""
     path = FOLDER / "oil_film_v2.accuracy.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     for level, about in content["levels"].items():
@@ -336,10 +339,9 @@ def costs() -> None:
 
 
 def expected() -> None:
-    """Measure what a point takes in an evaluation, at levels that take few points, and nothing else [s].
+    """Measure the time of one point in an evaluation [s], at levels that accept few points.
 
-    The geometric mean of the measures of the film alone, and of these with stiffness and damping, over some
-    loads of the example.
+    The result is the geometric mean over some loads of the example, with and without stiffness and damping.
     """
     path = FOLDER / "oil_film_v2.accuracy.json"
     content = json.loads(path.read_text(encoding="utf-8"))

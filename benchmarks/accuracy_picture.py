@@ -16,7 +16,7 @@ PICTURE = Path("docs/pictures/oil_film_accuracy.png")
 
 
 def draw() -> None:
-    """Error against cost at three points, and maps of the error in film thickness."""
+    """Draw error against cost at three points, and maps of the error in film thickness."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -42,7 +42,7 @@ def draw() -> None:
 
 
 def _against_cost(panel: Any, content: dict[str, Any]) -> None:
-    """Each level's error and cost, for light, medium and heavy load at B/D about 0.6."""
+    """Plot each level's error and cost for light, medium and heavy load at B/D about 0.6."""
     column = np.searchsorted(WIDTH, 0.6) - 1
     for eps, mark in ((0.35, "o"), (0.75, "s"), (0.96, "^")):
         row = np.searchsorted(EPS, eps) - 1
@@ -62,7 +62,7 @@ def _against_cost(panel: Any, content: dict[str, Any]) -> None:
 
 
 def _error_map(panel: Any, level: str, content: dict[str, Any]) -> Any:
-    """Return the error of the film thickness over the plane; white where it was refused or not measured."""
+    """Return a map of the film thickness error; white where it was refused or not measured."""
     from matplotlib.colors import LogNorm
 
     table = np.array(content["levels"][level]["errors"]["minimum_film_thickness"], dtype=float)

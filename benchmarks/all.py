@@ -1,10 +1,11 @@
-"""Measure what the program costs, with the aims: `python -m benchmarks.all [films elements serving shell]`.
+"""Measure the costs of the program and compare with aims: `python -m benchmarks.all [films elements …]`.
 
-`python -m benchmarks.all kept` prints the table that is kept, without measuring.
+The arguments are kinds of work: films, elements, serving, shell. `python -m benchmarks.all kept` prints the
+stored table without measuring.
 
-Each kind of work runs in a process of its own, one after the other, on one thread of BLAS. Processor time
-decides, as other work of the machine disturbs it least; figures of wall time are marked. The whole takes less
-than 15 minutes on two idle cores. Prints a table in Markdown and, if all was measured, writes
+Each kind of work runs in its own process, one after the other, with one BLAS thread. Times are processor
+times, because other work on the machine affects them least; wall times are marked. The whole run takes less
+than 15 minutes on two idle cores. It prints a table in Markdown and, if all kinds were measured, writes
 benchmarks/results/all.json and the table of docs/costs.md.
 """
 
@@ -40,7 +41,7 @@ def figures(kind: str) -> list[Figure]:
 
 
 def main(kinds: list[str]) -> None:
-    """Measure, print and keep."""
+    """Measure, print and store the figures."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
     begin, load = time.perf_counter(), os.getloadavg()
     print(HEAD)
@@ -66,7 +67,7 @@ def main(kinds: list[str]) -> None:
 
 
 def page(text: str) -> str:
-    """Return the page of costs with the kept table and its date in the place of the former ones."""
+    """Return the page of costs, with its table and date replaced by the stored ones."""
     before, after = text[: text.index(HEAD)], text[text.index(HEAD) :]
     day = datetime.fromisoformat(json.loads(RESULTS.read_text(encoding="utf-8"))["date"])
     before = re.sub(r"\(\d+ \w+ \d{4}\)", f"({day:%-d %B %Y})", before)
@@ -74,7 +75,7 @@ def page(text: str) -> str:
 
 
 def table() -> str:
-    """Return the kept figures as a table in Markdown, as `docs/costs.md` shows them."""
+    """Return the stored figures as a table in Markdown, as in `docs/costs.md`."""
     figures = json.loads(RESULTS.read_text(encoding="utf-8"))["figures"]
     return "\n".join([HEAD, *(Figure(**without(row, "is_met")).line() for row in figures)])
 

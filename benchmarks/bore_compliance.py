@@ -1,4 +1,4 @@
-"""Compliance of a bore by finite elements: error, cost and distance from the finest level.
+"""Measure the compliance of a bore by finite elements: error, cost and difference from the finest level.
 
 python -m benchmarks.bore_compliance       about two minutes of processor time
 """
@@ -17,7 +17,7 @@ from cad.step import write_step
 
 
 def main() -> None:
-    """A table of both example solids at every level."""
+    """Print a table of both example solids at every level."""
     print("| model | level | elements | unknowns | stated error | from fine | processor s |")
     for cls in (BearingHousing, ConnectingRod):
         model = cls.from_quantities(cls.example)
@@ -29,10 +29,10 @@ def main() -> None:
             answer = bore_tables(step, place, level, lambda done, what: None)["compliance"]
             answers[level] = answer, process_time() - start
         finest = np.array(answers["fine"][0]["value"])
-        for level, (answer, seconds) in answers.items():
+        for name, (answer, seconds) in answers.items():
             away = difference(np.array(answer["value"]), finest)
             mesh = answer["mesh"]
-            print(f"| {cls.id} | {level} | {mesh['elements']} | {mesh['degrees_of_freedom']} "
+            print(f"| {cls.id} | {name} | {mesh['elements']} | {mesh['degrees_of_freedom']} "
                   f"| {answer['error']:.2%} | {away:.3%} | {seconds:.1f} |")  # fmt: skip
 
 

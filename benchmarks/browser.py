@@ -1,4 +1,4 @@
-"""A service of its own with the examples of the gallery, and Chromium to look at its pages."""
+"""Start a service with the gallery's examples, and Chromium to open its pages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FLAGS = (
 
 @contextmanager
 def examples(names: tuple[str, ...]) -> Iterator[tuple[str, list[str], Client]]:
-    """The address of a running service, the pages of designs from its gallery, and its client."""
+    """Yield the address of a running service, the pages of designs from its gallery, and a client."""
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         with httpx.Client(base_url=client.url, timeout=60, trust_env=False) as http:
             places = [http.post("/designs", data={"example": name}).headers["location"] for name in names]
@@ -36,14 +36,14 @@ def examples(names: tuple[str, ...]) -> Iterator[tuple[str, list[str], Client]]:
 
 
 def _draw_thumbnails(http: httpx.Client) -> None:
-    """Ask for every picture of the first page once, so that a visitor need not wait for its making."""
+    """Request every picture of the home page once, so that later visits need not wait for it."""
     for address in re.findall(r'<img src="([^"]+)"', http.get("/").text):
         http.get(address, headers={"Prefer": "wait=60"}).raise_for_status()
 
 
 @contextmanager
 def chromium() -> Iterator[Browser]:
-    """Debian's Chromium."""
+    """Yield Debian's Chromium."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         yield browser

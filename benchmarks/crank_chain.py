@@ -1,13 +1,13 @@
-"""A chain of throws' matrices against finite elements of the whole shaft, free and guided at all mains.
+"""Compare a chain of throw matrices with finite elements of the whole shaft, free and guided at all mains.
 
     python -m benchmarks.crank_chain [split]
 
-The shaft reaches from its first mid-main to its last, one end held. Both sides take the same level, so what
-differs is the chain: its sections are the means that loads see, and between mains it moves as loads at mains
-and pins do. The whole is the throws' solids joined, so that mid-mains are faces of its mesh. `series`: the
-stiffness of one throw with a free end, divided by their number; `series_guided`: that of a throw guided at
-its end. `throws`: of each throw in its place, torque for the rotation between its mains. The rows are printed
-and kept in benchmarks/results/crank_chain.json.
+The shaft extends from its first mid-main to its last, with one end held. Both methods use the same level, so
+the difference is due to the chain alone: it represents sections by mean displacements, and a throw moves only
+as loads at mains and pins move it. The whole shaft is the joined solids of the throws, so that mid-mains are
+faces of its mesh. `series` is the stiffness of one throw with a free end, divided by the number of throws;
+`series_guided` uses a throw guided at its end. `throws` is the torque per rotation of each throw in the
+shaft. The rows are printed and stored in benchmarks/results/crank_chain.json.
 """
 
 from __future__ import annotations
@@ -59,22 +59,22 @@ def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
 
 @cache
 def one(level: Level = LEVEL, split: float = 0.0) -> ThrowMatrix:
-    """Return the matrices of its throw."""
+    """Return the matrices of the shaft's throw."""
     step, ends, pin = throw_step(shaft((0.0,), split), 0)
     solid = read_solid(step, ends, mirrors=())
     return matrix_on(make_grid(solid, level.fineness), level.order, ends, pin)
 
 
 def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
-    """Return the stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
+    """Return the stiffness [N m/rad] of separate throws in series."""
     alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
     return 1 / sum(1 / stiffness for stiffness in alone)
 
 
 def whole(angles: Sequence[float], level: Level, split: float = 0.0) -> tuple[System, list[str]]:
-    """Return finite elements of all throws joined at mid-mains, which stay faces of the mesh.
+    """Return a mesh of all throws joined at mid-mains, which remain faces of the mesh.
 
-    The mains' names.
+    Also return the names of the faces at the mains.
     """
     drawn = shaft(tuple(angles), split)
     pieces = []
@@ -108,7 +108,7 @@ def solid_in(step: bytes) -> Any:
 
 
 def response(system: System, mains: Sequence[str]) -> Response:
-    """Return the response to a unit torque at the loaded end, the named mains kept on the axis."""
+    """Return the response to a unit torque at the loaded end, with the named mains held on the axis."""
     force, _ = system.loads()
     guides = []
     for name in mains:
@@ -133,7 +133,7 @@ def response(system: System, mains: Sequence[str]) -> Response:
 
 
 def rotations(answer: Response, mains: Sequence[str]) -> list[float]:
-    """Return the rotations about z of the mains' sections, as means that a torque sees [rad]."""
+    """Return the mean rotations about z of the sections at the mains [rad]."""
     system = answer.system
     return [
         float(
@@ -170,7 +170,7 @@ def compared(angles: Sequence[float], split: float = 0.0) -> Iterator[dict[str, 
 
 
 def main() -> None:
-    """Measure and keep all cases; with `split` in the command, those of split pins beside the kept ones."""
+    """Measure and store all cases; with `split` as argument, add those of split pins to the stored ones."""
     only_split = "split" in sys.argv[1:]
     kept = json.loads(RESULTS.read_text()) if only_split else {"level": LEVEL.name, "rows": []}
     rows = kept["rows"] = [row for row in kept["rows"] if "split" not in row]

@@ -11,6 +11,7 @@ from math import pi
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.analysis.unit_loads import Crank, LoadedThrow, UnitStresses, fillet_stresses
@@ -43,7 +44,7 @@ def stresses_of(sizes: dict[str, float]) -> UnitStresses:
 
 
 def as_inputs(found: UnitStresses) -> dict[str, Any]:
-    """Return the tensors as `fatigue_life` 1 takes them."""
+    """Return the tensors as inputs of `fatigue_life` 1."""
     tables = {}
     for load, tensors in found.tensors.items():
         unit, factor = UNITS[load.split("_")[0]]
@@ -51,17 +52,18 @@ def as_inputs(found: UnitStresses) -> dict[str, Any]:
     return tables
 
 
-def pin_forces() -> np.ndarray:
-    """Return the load of pin 1 over the cycle, along the throw and (imaginary) across it [N]."""
+def pin_forces() -> NDArray[np.complex128]:
+    """Return the load of pin 1 over the cycle, along the throw (real) and across it (imaginary) [N]."""
     engine = built_in().get("engine", 1)
     names = ["crankpin_load_x", "crankpin_load_y", "crank_angle", "crankpin_angles"]
     raw = {**IN_LINE_FOUR, "crank_angle_step": "5 deg"}
     x, y, angle, pins = (evaluate(engine, raw, outputs=names).outputs[name].value for name in names)
-    return (x[0] + 1j * y[0]) * np.exp(-1j * pi / 180 * (np.asarray(angle) + pins[0]))
+    turned = np.exp(-1j * pi / 180 * (np.asarray(angle) + pins[0]))
+    return np.asarray((x[0] + 1j * y[0]) * turned)
 
 
 def main() -> None:
-    """Print what each part takes, and the life."""
+    """Print the time of each part, and the life."""
     begin = time.perf_counter()
     found = stresses_of(SIZES)
     print(f"finite elements: {len(found.points)} points, {found.elements} elements, "

@@ -1,11 +1,11 @@
-"""The paper's study of a crankshaft as a design: four changes, each regenerated, its stiffness compared.
+"""Repeat the paper's study of a crankshaft as a design: four changes, and the stiffness of each.
 
     python -m benchmarks.crank_study
 
 Punewale, Khobragade, Chaudhari and Khandre (2015) change crankpin, journals, throw and the face inclination
-of the webs of a single-cylinder crankshaft. Its dimensions are not printed; this one is the project's own.
-Every number comes from one design on a running service: the solid is regenerated, measured and analysed by
-finite elements, and inertia and stiffness go back into `torsional_vibration` by relations. Writes
+of the webs of a single-cylinder crankshaft. The paper does not print its dimensions, so this shaft is our
+own. Every number comes from one design on a running service: the solid is regenerated, measured and analysed
+by finite elements, and relations pass inertia and stiffness to `torsional_vibration`. The script writes
 docs/crank_study.md and docs/pictures/crank_study.png.
 """
 
@@ -67,7 +67,7 @@ STOUT = {"web_thickness": "18 mm", "face_inclination": "9 deg"}
 
 @dataclass(frozen=True)
 class Change:
-    """One change of the paper, and what it did there [%]."""
+    """One change of the paper, and its effects in the paper [%]."""
 
     words: str
     parameters: Mapping[str, str]
@@ -86,7 +86,7 @@ STOUT_CHANGES = (*(c.parameters for c in CHANGES[:3]), {"face_inclination": "5.9
 
 @dataclass(frozen=True)
 class State:
-    """A shaft as one revision of the design has it."""
+    """One variant of the shaft, from one revision of the design."""
 
     stiffness: float  # [N m/rad], by finite elements
     error: float  # of that, relative, as estimated
@@ -124,7 +124,7 @@ def document(parameters: Mapping[str, str]) -> dict[str, Any]:
 
 
 def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[str, str]]) -> list[State]:
-    """Return the shaft and its changes, each a revision of one design."""
+    """Return the original shaft and its changes, each from a revision of one design."""
     design = client.create(document(base))
     listed = [state(client, design)]
     for change in changes:
@@ -138,12 +138,12 @@ def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[st
 
 
 def note_of(change: Mapping[str, str]) -> str:
-    """Return a change as the note of its revision."""
+    """Return the text of a change as the note of its revision."""
     return ", ".join(f"{name} {value}" for name, value in change.items()) or "as drawn"
 
 
 def state(client: Client, design: Design) -> State:
-    """Return results and measures of the design's newest revision, and the mode of its solid."""
+    """Return results and measurements of the newest revision, and the torsional mode of its solid."""
     revision = client.revision(design.id, design.revision)
     vibration, throw = revision.steps["vibration"], revision.steps["throw"]
     measured, crank = client.measurements(design.id)["crank"], revision.models["crank"]
@@ -153,30 +153,37 @@ def state(client: Client, design: Design) -> State:
     return State(
         stiffness=_number(stiffness.value),
         error=_number(stiffness.error),
-        frequency=vibration.outputs["natural_frequencies"].value[0],
+        frequency=_first(vibration.outputs["natural_frequencies"].value),
         mode=_number(mode.outputs["torsional_frequency"].value),
-        recommended=throw.outputs["recommended_stiffness"].value,
+        recommended=_number(throw.outputs["recommended_stiffness"].value),
         mass=measured.mass.value,
         inertia=_inertia(vibration.inputs["inertias"]),
     )
 
 
-def _number(value: float | None) -> float:
+def _number(value: object) -> float:
     """Return a value that the study needs."""
-    if value is None:
-        raise ValueError("the service has no value for an output of the study")
+    if not isinstance(value, float):
+        raise ValueError("the service has no single value for an output of the study")
     return value
 
 
+def _first(values: object) -> float:
+    """Return the first of several values."""
+    if not isinstance(values, list):
+        raise ValueError("the service has no list of values for an output of the study")
+    return _number(values[0])
+
+
 def _inertia(used: object) -> float:
-    """Return the first of the inertias that a step used."""
+    """Return the first inertia that a step used."""
     if not isinstance(used, UsedInput):
         raise ValueError("the step of the vibration waits for its inputs")
-    return float(used.value[0])
+    return _first(used.value)
 
 
 def main() -> None:
-    """Run the study on a service of its own and write page and picture."""
+    """Run the study on its own service and write page and picture."""
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         slender = states(client, SLENDER, [change.parameters for change in CHANGES])
@@ -187,13 +194,13 @@ def main() -> None:
 
 
 def gains(listed: Sequence[State], name: str) -> list[float]:
-    """Return by how much [%] each change has changed something."""
+    """Return the effect [%] of each change on one quantity."""
     base, *changed = (getattr(state, name) for state in listed)
     return [100 * (value / base - 1) for value in changed]
 
 
 def draw(slender: Sequence[State], stout: Sequence[State], picture: bytes) -> None:
-    """The stiffness gained by each change, ours beside the paper's, and the shaft."""
+    """Draw the change of stiffness for each change, ours and the paper's, and the shaft."""
     figure, (shown, axes) = plt.subplots(1, 2, figsize=(10, 4), width_ratios=[0.7, 1], layout="constrained")
     shown.imshow(Image.open(io.BytesIO(picture)))
     shown.axis("off")
@@ -217,7 +224,7 @@ def draw(slender: Sequence[State], stout: Sequence[State], picture: bytes) -> No
 
 
 def table(listed: Sequence[State]) -> str:
-    """Return one row for each change, ours beside the paper's."""
+    """Return one row for each change with our results and the paper's."""
     rows = [HEADS, ("---",) + ("---:",) * (len(HEADS) - 1)]
     columns = [gains(listed, name) for name in ("stiffness", "frequency", "mode", "recommended")]
     for i, change in enumerate(CHANGES):
@@ -232,7 +239,7 @@ def table(listed: Sequence[State]) -> str:
 
 
 def line(base: State) -> str:
-    """Return a shaft in numbers."""
+    """Return the main figures of a shaft as text."""
     return (
         f"K = {base.stiffness / 1000:.1f} kN m/rad ± {100 * base.error:.1g} %, "
         f"I = {1000 * base.inertia:.3f}e-3 kg m², {base.mass:.2f} kg; "
@@ -241,7 +248,7 @@ def line(base: State) -> str:
 
 
 def page(slender: Sequence[State], stout: Sequence[State]) -> str:
-    """Return the page in Markdown, numbers filled in."""
+    """Return the page in Markdown with its numbers."""
     text = (Path(__file__).parent / "crank_study.txt").read_text(encoding="utf-8")
     return text.format(
         dimensions=fill(f"Dimensions: {listed(SLENDER)}.", WIDTH),
@@ -253,7 +260,7 @@ def page(slender: Sequence[State], stout: Sequence[State]) -> str:
 
 
 def listed(parameters: Mapping[str, str]) -> str:
-    """Return parameters in words."""
+    """Return parameters as text."""
     return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in parameters.items())
 
 

@@ -1,8 +1,9 @@
-"""The example of `cycle_heat_balance`, with and without shear thinning, at two levels; what a point costs.
+"""Calculate the example of `cycle_heat_balance` with and without shear thinning at two levels, with cost.
 
 python -m benchmarks.cycle_heat             half a minute
 
-At level mobility_grooved, and at level supplied, whose side flow is all the oil that leaves by the ends.
+The levels are mobility_grooved and supplied; at supplied, the side flow is all the oil that leaves at the
+ends.
 """
 
 from time import process_time

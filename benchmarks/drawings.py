@@ -1,7 +1,7 @@
 """Draw every model at three sizes, for `docs/drawings`: `python -m benchmarks.drawings [MODEL_vN ...]`.
 
-A size is the example of a model with all its lengths multiplied; a model whose sizes are standardised, and
-that refuses the product, is drawn at the nearest size of its own.
+A size is the example of a model with all its lengths multiplied by a factor. If a model has standardised
+sizes and refuses the multiplied one, its nearest standard size is drawn.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def sized(model: type[CadModel], factor: float) -> Build:
 
 
 def main(names: list[str]) -> None:
-    """Write the drawings, and the page that shows them."""
+    """Write the drawings and the list of pictures on their page."""
     FOLDER.mkdir(exist_ok=True)
     for model in latest():
         if names and f"{model.id}_v{model.version}" not in names:

@@ -1,15 +1,15 @@
-"""Main and big-end bearings of random engines: how many are decided or have a stated error, and the cost.
+"""Count the bearings of random engines that are decided or have a stated error, and measure the cost.
 
     nice python -m benchmarks.engine_bearings [engines] [seed]
 
-Each engine is drawn by chance within what engines of cars and trucks have: bore, stroke, rod, masses, speed,
-gas cycle, sizes of its bearings, clearance, oil and supply; a hole may be at any angle, under the load too.
-The loads are those of template `engine`. Of each engine one main and one big end are calculated as designs
-are: at the level at which `oil_film_cycle` starts, and then by `decide`. The criteria are the smallest film
-and the largest pressure, with limits that lie anywhere about usual values. A bearing counts if both are
-decided, or if an error is stated where a limit lies within it. One whose film starves is refused by that
-name, and counted apart. Results are in benchmarks/results/engine_bearings.json, written after every engine; a
-run goes on from there.
+Each engine has random values in the usual ranges of car and truck engines: bore, stroke, rod, masses, speed,
+gas cycle, bearing sizes, clearance, oil and supply; a hole may be at any angle, also under the load. Template
+`engine` calculates the loads. For each engine, one main bearing and one big end are calculated like designs:
+at the default level of `oil_film_cycle`, and then by `decide`. The criteria are the minimum film and the
+largest pressure, with random limits about usual values. A bearing counts if both criteria are decided, or if
+an error is stated and a limit lies within it. A bearing whose film starves is refused with that reason and
+counted separately. Results are written to benchmarks/results/engine_bearings.json after every engine; a later
+run continues from there.
 """
 
 import json
@@ -40,7 +40,7 @@ Row = dict[str, Any]
 
 
 def engine_inputs(rng: np.random.Generator) -> Row:
-    """Return the inputs of a four-stroke engine in line."""
+    """Return the inputs of an in-line four-stroke engine."""
     cylinders = int(rng.choice([1, 2, 3, 4, 6]))
     order = {1: [1], 2: [1, 2], 3: [1, 3, 2], 4: [1, 3, 4, 2], 6: [1, 5, 3, 6, 2, 4]}[cylinders]
     bore = float(rng.uniform(70, 150))
@@ -82,7 +82,7 @@ def engine_inputs(rng: np.random.Generator) -> Row:
 
 
 def film_inputs(rng: np.random.Generator, loads: Row, engine: Row, *, big_end: bool) -> Row:
-    """Return the inputs of a film of one bearing: of the first cylinder, or of the second main."""
+    """Return the inputs for the film of one bearing: the first big end or the second main."""
     bore = float(engine["bore"].split()[0])
     diameter = bore * float(rng.uniform(0.55, 0.75))
     width = diameter * float(rng.uniform(0.3, 0.55))
@@ -121,13 +121,13 @@ def hole(part: str, diameter: float, rng: np.random.Generator) -> Row:
 
 
 def row(curve: Row, number: int) -> Row:
-    """Return the curve of one bearing."""
+    """Return the load curve of one bearing."""
     values = np.asarray(curve["value"], dtype=float)
     return {"value": (values[number] if values.ndim > 1 else values).tolist(), "unit": curve["unit"]}
 
 
 def decided(inputs: Row) -> Row:
-    """Return how a bearing ends, and what it costs."""
+    """Return the outcome for a bearing, and its cost."""
     begin = process_time()
     step = {"template": "oil_film_cycle", "version": 1, "inputs": inputs}
     document = Document.model_validate({"name": "bearing", "steps": {"film": step}})
@@ -168,7 +168,7 @@ def bearings(seed: int, number: int) -> Row:
 
 
 def main() -> None:
-    """Calculate what is not kept yet, and print the counts."""
+    """Calculate the engines that are not stored yet, and print the counts."""
     engines, seed = (int(one) for one in [*sys.argv[1:], *map(str, (ENGINES, SEED)[len(sys.argv) - 1 :])])
     kept: Row = json.loads(KEPT.read_text("utf-8")) if KEPT.exists() else {}
     evaluate(ENGINE, engine_inputs(np.random.default_rng(0)), outputs=["crankpin_load_max"])  # compiles

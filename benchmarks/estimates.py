@@ -1,14 +1,15 @@
-"""How well times are estimated before a calculation: the estimate over the processor time that it took.
+"""Check estimates of times before a calculation: ratio of the estimate to the processor time used.
 
     python -m benchmarks.estimates levels [template …]
     python -m benchmarks.estimates studies [template …]
 
-`levels`: one step at each level whose cost is stated, alone and as a table of 4 rows, as `decide` estimates
-a climb; the costs of `oil_film_cycle` at level supplied are compared with marches of fresh engines.
-`studies`: samples and sensitivities over the example of each template, as their form and page estimate them.
+`levels` calculates one step at each level with a stated cost, alone and as a table of 4 rows, as `decide`
+does for its estimate; the costs of `oil_film_cycle` at level supplied are compared with calculations of other
+engines. `studies` runs samples and sensitivities of the example of each template, with the estimates of the
+form and the page.
 
-Inputs are the examples, each single quantity multiplied by a random factor. Ratios are of processor time, so
-that they hold on a busy machine; what is loaded once does not count.
+The inputs are the examples with each single quantity multiplied by a random factor. The ratios use processor
+time, so that they are valid on a busy machine; one-time loading does not count.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ STUDIES = (
 
 
 def scalable(cls: type[Template]) -> list[str]:
-    """Return the inputs of the example that are single quantities, no angles and no temperatures."""
+    """Return the inputs of the example that are single quantities, except angles and temperatures."""
     return [
         name for name, raw in cls.example.items() if isinstance(raw, str) and _is_scalable(cls, name, raw)
     ]
@@ -69,7 +70,7 @@ def _is_scalable(cls: type[Template], name: str, raw: str) -> bool:
 
 
 def drawn(cls: type[Template], random: np.random.Generator, listed: str = "") -> dict[str, Any]:
-    """Return the example with every single quantity multiplied by a factor; one of them has some rows."""
+    """Return the example with random factors on all single quantities; one quantity has several rows."""
     inputs = dict(cls.example)
     for name in scalable(cls):
         typed, rows = read_any(inputs[name]), ROWS if name == listed else 1
@@ -79,14 +80,14 @@ def drawn(cls: type[Template], random: np.random.Generator, listed: str = "") ->
 
 
 def judged(cls: type[Template]) -> list[str]:
-    """Return the outputs with a stated error that criteria compare, as `decide` calculates them."""
+    """Return the outputs in criteria that have a stated error, which `decide` calculates."""
     measured = accuracy(cls)
     texts = " ".join(str(one) for one in cls.criteria.values())
     return [name for name in (measured.outputs if measured else ()) if name in texts] or list(cls.formulas)
 
 
 def levels(wanted: Collection[str]) -> None:
-    """Print how the stated costs of levels hold."""
+    """Print how accurate the stated costs of levels are."""
     random = np.random.default_rng(SEED)
     for cls in built_in():
         measured = accuracy(cls) if not wanted or cls.id in wanted else None
@@ -102,7 +103,7 @@ def levels(wanted: Collection[str]) -> None:
 
 
 def _listed(cls: type[Template], level: str, random: np.random.Generator) -> str:
-    """Return the first input that may have rows."""
+    """Return the first input that may have several rows."""
     for name in scalable(cls):
         for _ in range(COUNT):
             try:
@@ -114,7 +115,7 @@ def _listed(cls: type[Template], level: str, random: np.random.Generator) -> str
 
 
 def _ratios(cls: type[Template], level: str, listed: str, random: np.random.Generator) -> Iterator[float]:
-    """Yield the estimate over the processor time of random inputs that the level accepts."""
+    """Yield the ratio of estimate to processor time for random inputs that the level accepts."""
     outputs, count = judged(cls), 0
     for _ in range(MOST_DRAWN):
         inputs = drawn(cls, random, listed)
@@ -133,7 +134,7 @@ def _ratios(cls: type[Template], level: str, listed: str, random: np.random.Gene
 
 
 def marches() -> None:
-    """Print how the times to expect of level supplied hold for the engines that did not make them."""
+    """Print how accurate the expected times of level supplied are for engines not used to derive them."""
     lines = film_cycle_ensemble.fresh_engines()
     expected = film_cycle_ensemble.expected_seconds(film_cycle_ensemble.first_duties())["cases"]
     ratios = []
@@ -145,7 +146,7 @@ def marches() -> None:
 
 
 def studies(wanted: Collection[str]) -> None:
-    """Print how the estimates of studies hold, over the examples of templates."""
+    """Print how accurate the estimates of studies are, for the examples of templates."""
     catalogues = Catalogues(built_in(), models())
     every: dict[str, list[float]] = defaultdict(list)
     for cls in built_in():
@@ -166,7 +167,7 @@ def studies(wanted: Collection[str]) -> None:
 def _of_study(
     cls: type[Template], catalogues: Catalogues, asked: dict[str, Any]
 ) -> tuple[float, float] | None:
-    """Return the estimate of a study over its processor time, and that time [s]; None of one that is long."""
+    """Return the ratio of estimate to processor time of a study, and that time [s]; None if it is long."""
     places = scalable(cls)[:3]
     if not places:
         return None
@@ -195,7 +196,7 @@ def _of_study(
 
 
 def single(cls: type[Template]) -> list[str]:
-    """Return the outputs that are one number."""
+    """Return the outputs that are single numbers."""
     return [name for name, formula in cls.formulas.items() if type(formula).__name__ == "Formula"]
 
 

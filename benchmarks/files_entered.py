@@ -1,13 +1,13 @@
-"""Files of `app` and of `templates` that a request enters, counted on the design of the paper.
+"""Count the files of `app` and `templates` that a request enters, for the paper's design.
 
 `python -m benchmarks.files_entered` prints them for a change from the merge patch to the checked STEP file
 (without HTTP, queue and the kernel's process), and for a PATCH of one closed-form step and an evaluation,
 with HTTP. With `--list` it names the files.
 
-A file counts once one of its functions is called while the request is answered, in any thread of the service
-but those of `BACKGROUND`, which look for work from time to time. With HTTP it counts if each of six such
-requests enters it: the thread that writes to the database serves others as well. Each is sent a few times
-before, so that every cache is warm, and each time with a new value.
+A file counts if one of its functions is called while the request is answered, in any thread of the service
+except those in `BACKGROUND`, which poll for work. With HTTP a file counts if each of six such requests enters
+it, because the thread that writes to the database also serves other requests. Each request is first sent a
+few times to warm all caches, each time with a new value.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ class Files:
 
     @property
     def app(self) -> int:
-        """Return how many files of `app`."""
+        """Return the number of files of `app`."""
         return len(self.by_package["app"])
 
     @property
     def templates(self) -> int:
-        """Return how many files of `templates`."""
+        """Return the number of files of `templates`."""
         return len(self.by_package["templates"])
 
 
@@ -132,7 +132,7 @@ def _counted(calls: Calls, root: Path, ask: Callable[[int], httpx.Response]) -> 
 
 @contextmanager
 def _profiled(root: Path) -> Iterator[Calls]:
-    """Count the calls of all threads that start meanwhile."""
+    """Count the calls of all threads that start in the meantime."""
     calls = Calls(root)
     threading.setprofile(calls)
     try:
@@ -163,7 +163,7 @@ def _server(folder: Path) -> Iterator[httpx.Client]:
 
 
 def main() -> None:
-    """Print the counts; with `--list` the files too."""
+    """Print the counts; with `--list` also the files."""
     for name, count in COUNTED.items():
         files = count()
         print(f"{name}: {files.app} files of app (limit {LIMITS[name]}), {files.templates} of templates")

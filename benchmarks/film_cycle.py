@@ -1,12 +1,13 @@
-"""Cost of `oil_film_cycle`, and its levels without a supply side by side on one big end of published size.
+"""Measure the cost of `oil_film_cycle`, and compare its levels without supply for one published big end.
 
     python -m benchmarks.film_cycle
 
-Two minutes. Writes benchmarks/results/film_cycle.json and docs/pictures/oil_film_cycle.png, prints the table
-of docs/oil_film_cycle.md. The bearing has the size of a big end that is often calculated (Ruston & Hornsby
-6VEB-X Mk III): bore 0.2032 m, width 0.127 m (Mechanics & Industry 19, 2018, 607, table 3), here without its
-groove. Its load diagram was not at hand: the load is that of an idealised diesel cylinder with masses of our
-own, as are clearance, viscosity and speed.
+The script takes two minutes. It writes benchmarks/results/film_cycle.json and
+docs/pictures/oil_film_cycle.png, and prints the table of docs/oil_film_cycle.md. The bearing has the size of
+a big end that is often used in publications (Ruston & Hornsby 6VEB-X Mk III): bore 0.2032 m, width 0.127 m
+(Mechanics & Industry 19, 2018, 607, table 3), here without its groove. Its load diagram was not available:
+the load is that of an idealised diesel cylinder, and masses, clearance, viscosity and speed are our own
+choice.
 """
 
 import json
@@ -40,7 +41,7 @@ LEVELS = ("mobility_short", "mobility", "flooded")
 
 
 def firing(angle: Array, at: float, width: float, period: float) -> Array:
-    """Return a pressure that rises fast and falls slowly, 1 at its top, over a cycle."""
+    """Return a pressure curve over a cycle that rises fast and falls slowly, with a maximum of 1."""
     late = (angle - at + period / 2) % period - period / 2
     return np.asarray(np.exp(-((late / np.where(late < 0, width / 3, width)) ** 2)))
 
@@ -51,9 +52,9 @@ def quantity(value: Any, unit: str) -> dict[str, Any]:
 
 
 def big_end(step: float = 1.0, sizes: Array | None = None) -> dict[str, Any]:
-    """Return inputs.
+    """Return the inputs of the big end.
 
-    The rod's load on the crankpin, seen from the engine, and the rod as a sleeve that swings.
+    The load is that of the rod on the crankpin, in the axes of the engine; the rod is a swinging sleeve.
     """
     angle = np.radians(np.arange(0, 720, step))
     tilt = np.arcsin(np.sin(angle) / ROD_RATIO)
@@ -95,7 +96,7 @@ def orbit_seconds(level: str) -> float:
 
 
 def levels() -> dict[str, Any]:
-    """Return every level on the big end at 1°, with its cost."""
+    """Return the results of every level for the big end at 1°, with its cost."""
     by_level: dict[str, Any] = {}
     for level in LEVELS:
         answers = evaluate(OilFilmCycle, big_end(), level=level).outputs
@@ -107,7 +108,7 @@ def levels() -> dict[str, Any]:
 
 
 def costs() -> dict[str, float]:
-    """One cycle of 720 points to periodicity, and each of a thousand at once, by finite-length mobility."""
+    """Return the cost of one periodic cycle of 720 points at level mobility, alone and among a thousand."""
     one = OilFilmCycle.from_quantities(big_end()).at("mobility").fed
     sizes = np.linspace(0.5, 1.5, CASES)
     many = OilFilmCycle.from_quantities(big_end(sizes=sizes)).at("mobility").fed
@@ -126,7 +127,7 @@ def costs() -> dict[str, float]:
 
 
 def draw(by_level: dict[str, Any]) -> None:
-    """The orbits, and the films over the cycle."""
+    """Draw the orbits, and the films over the cycle."""
     mpl.use("Agg")
     figure, (left, right) = plt.subplots(
         1, 2, figsize=(10, 4.6), width_ratios=(1, 1.35), layout="constrained"
@@ -155,7 +156,7 @@ def draw(by_level: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Measure, write, print."""
+    """Measure, write and print the results."""
     by_level, cost = levels(), costs()
     draw(by_level)
     summary = {

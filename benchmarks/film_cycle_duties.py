@@ -1,13 +1,14 @@
-"""Random duties of one kind of supply, marched at level `supplied` and compared with the cheap levels.
+"""Calculate random duties of one kind of supply at level `supplied`, and compare the cheap levels.
 
-Used by `benchmarks.film_cycle_ensemble`, which says how they are drawn. Each duty is one line of
-benchmarks/results/film_cycle_ensemble.jsonl, with the number of the march (`MARCH`). Lines of another march
-count no more. What a march found is kept in build/film_cycle_truths as well, so that the errors of a cheap
-level that changes are found without marching again (`again`).
+`benchmarks.film_cycle_ensemble` uses this module and explains how the duties are chosen. Each duty is one
+line of benchmarks/results/film_cycle_ensemble.jsonl with the version of the calculation (`MARCH`); lines of
+another version do not count. The results at level `supplied` are also stored in build/film_cycle_truths, so
+that the errors of a changed cheap level can be found without calculating them again (`again`).
 
-Errors are relative to the march, of a curve to its largest value. Lines that were marched while errors were
-relative to the cheap answer have those of gap and eccentricity from the two answers; of the other outputs
-they have e/(1 − e), which no error relative to the march exceeds, or none from e = 1 on.
+Errors are relative to level `supplied`, for a curve to its largest value. In older lines the errors e were
+relative to the cheap level. Their errors of gap and eccentricity have been recalculated from both results;
+for the other outputs they state e/(1 − e), an upper bound of the error relative to `supplied`, or nothing if
+e ≥ 1.
 """
 
 import json
@@ -48,6 +49,8 @@ SEED, OTHER_SEED = 1, 3
 """Seed 2 belongs to version 2, on which the law of mobility_grooved was chosen."""
 CLEAR = 0.1
 """Share of the cycle for which a well placed hole is under the load at most."""
+PRESSURES = 0.02, 1.0
+"""Relative supply pressures of the duties that count [-]."""
 CHEAP = ("mobility_short", "mobility", "mobility_grooved")
 OUTPUTS = ("minimum_film_thickness", "maximum_eccentricity", "film_thickness", "eccentricity_x",
            "eccentricity_y", "power_loss", "side_flow")  # fmt: skip
@@ -59,7 +62,7 @@ EVERY_BAND: Bands = frozenset(
 
 
 def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDuty]]:
-    """Yield numbered duties of a kind of supply, from one on."""
+    """Yield random duties of a kind of supply, numbered from one."""
     while True:
         names = KINDS[kind]
         duty = random_duty(seed, number, names[number // 2 % len(names)])
@@ -68,13 +71,14 @@ def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDu
             (pocket,) = duty.supply.pockets
             half = float(rng.uniform(np.pi / 3, 2 * np.pi / 3))
             duty = replace(duty, supply=replace(duty.supply, pockets=(replace(pocket, half_angle=half),)))
-        if kind.endswith("groove") or (moved := well_placed(duty, rng)):
-            yield number, duty if kind.endswith("groove") else moved
+        placed = duty if kind.endswith("groove") else well_placed(duty, rng)
+        if placed is not None:
+            yield number, placed
         number += 1
 
 
 def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None:
-    """Return the duty with its hole where it is seldom under the load; None where twenty places are not."""
+    """Return the duty with its hole seldom under the load; None if twenty random positions fail."""
     (pocket,) = duty.supply.pockets
     for centre in rng.uniform(-np.pi, np.pi, 20):
         supply = replace(duty.supply, pockets=(replace(pocket, centre=float(centre)),))
@@ -85,36 +89,41 @@ def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None
 
 
 def course(duty: RandomDuty) -> list[float | None]:
-    """Return how the load varies, as `LoadCourse`."""
+    """Return the course of the load as `LoadCourse`."""
     return [digits(v) for v in astuple(load_course(duty.load.angle, *duty.load.S[:, 0]))]
 
 
 def fed(duty: RandomDuty) -> FedDuty:
-    """Return the same as templates know it; everything is dimensionless: the crank turns at 1, F is S."""
-    load, one = duty.load, np.float64(1.0)
+    """Return the duty as templates use it, in dimensionless form: the crank turns at 1, F is S."""
+    load, one = duty.load, _single(1.0)
     journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
-    asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
+    F_x, F_y = load.S[:, 0]
+    asked = Duty(load.angle, F_x, F_y, journal, sleeve, np.zeros(1), one, one, _single(duty.ratio))
     pocket = duty.supply.pockets[0]
     start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
     share = pocket.half_length if duty.fed_by in GROOVED else 0.0
-    groove = tuple(np.float64(v) for v in (share, start, extent))
-    pressure = np.float64(duty.supply.pressure)
-    return FedDuty(asked, *groove, pressure, np.array(duty.supply, dtype=object))
+    groove = (_single(share), _single(start), _single(extent))
+    return FedDuty(asked, *groove, _single(duty.supply.pressure), np.array(duty.supply, dtype=object))
+
+
+def _single(value: float) -> Array:
+    """Return a number as the type of arrays and single values that films take."""
+    single: Array = np.float64(value)  # type: ignore[assignment]
+    return single
 
 
 def under_load(duty: RandomDuty) -> float:
     """Return the share of the cycle for which the hole is under the load."""
     (pocket,) = duty.supply.pockets
-    none, length = np.float64(np.nan), np.float64(pocket.half_length)
-    hole = (length, np.float64(pocket.half_angle), np.float64(pocket.centre))
-    no_hole = (none, none, none)
-    holes = (*no_hole, *hole) if pocket.on_journal else (*hole, *no_hole)
-    one = np.float64(1.0)
+    one, none = _single(1.0), _single(np.nan)
+    hole = [_single(v) for v in (pocket.half_length, pocket.half_angle, pocket.centre)]
+    no_hole = [none, none, none]
+    holes = [*no_hole, *hole] if pocket.on_journal else [*hole, *no_hole]
     return float(feed_under_load(fed(duty).duty, SupplyGeometry(one, one, none, none, none, *holes)))
 
 
 def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
-    """Return the values by which levels are compared."""
+    """Return the values for the comparison of levels."""
     compared = (
         1 - orbit.eps_max,
         orbit.eps_max,
@@ -128,7 +137,7 @@ def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
 
 
 def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
-    """Return one duty at every level: a line of the record."""
+    """Return the results of one duty at every level, as a line of the record."""
     asked, begin = fed(duty), process_time()
     orbit = fed_orbit("supplied", asked)
     (marched,) = orbit.marches
@@ -148,19 +157,19 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
 
 
 def keep(line: Line, truth: dict[str, Array]) -> None:
-    """Keep the values of a march on this machine."""
+    """Store the values of a calculation on this machine."""
     TRUTHS.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(truth_file(line), **truth)
+    np.savez_compressed(truth_file(line), allow_pickle=True, **truth)
 
 
 def truth_file(line: Line) -> Path:
-    """Return where the values of a march are kept on this machine."""
+    """Return the file in which the values of a calculation are stored on this machine."""
     name = f"{line.get('kind', 'engine')}-{line['seed']}-{line['number']}"
     return TRUTHS / f"{MARCH}-{name}.npz"
 
 
 def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float | None]]:
-    """Return errors of every cheap level, in the order of `OUTPUTS`."""
+    """Return the errors of every cheap level, in the order of `OUTPUTS`."""
     asked, errors = fed(duty), {}
     for level in CHEAP:
         if level == "mobility_grooved" and duty.fed_by not in GROOVED:
@@ -172,12 +181,12 @@ def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float
 
 
 def error(value: Array, truth: Array) -> float:
-    """Return the error of a value, or of a curve relative to the largest of the truth; NaN without one."""
+    """Return the error of a value, or of a curve relative to the largest true value; NaN if there is none."""
     return float(np.max(relative_error(value, truth, np.abs(truth).max())))
 
 
 def digits(value: Any) -> float | None:
-    """Return four digits; None where there is no value."""
+    """Return a number with four digits; None if there is no value."""
     return float(f"{float(value):.4g}") if np.isfinite(value) else None
 
 
@@ -189,12 +198,12 @@ def recorded() -> list[Line]:
 
 
 def kept() -> list[Line]:
-    """Return the lines of this march."""
+    """Return the lines of the current calculation version."""
     return [line for line in recorded() if line.get("march") == MARCH]
 
 
 def again() -> int:
-    """Compare the cheap levels again with the marches that are kept on this machine; how many there are."""
+    """Compare the cheap levels again with the results stored on this machine; return their number."""
     lines, done = recorded(), 0
     for line in lines:
         if line.get("march") == MARCH and "errors" in line and truth_file(line).exists():
@@ -213,7 +222,7 @@ def band(S: float, b: float) -> tuple[int, int]:
 
 
 def march(seed: int, kinds: list[str], most: int, bands: Bands = EVERY_BAND) -> None:
-    """March so many duties in every one of the bands, with the other seed so many in all."""
+    """Calculate this many duties in each of the bands, or in all together for the other seed."""
     own = [line for line in kept() if line["seed"] == seed]
     done = {(line["kind"], line["number"]) for line in own}
     for kind in kinds:
@@ -225,7 +234,7 @@ def march(seed: int, kinds: list[str], most: int, bands: Bands = EVERY_BAND) -> 
 
 
 def wanted(seed: int, kind: str, most: int, bands: Bands = EVERY_BAND) -> Iterator[tuple[int, RandomDuty]]:
-    """Yield the first so many duties of each of the bands; with the other seed of all bands together."""
+    """Yield the first duties of each of the bands, or of all bands together for the other seed."""
     counts: Counter[tuple[int, int]] = Counter()
     for number, duty in drawn(seed, kind):
         place = band(float(np.hypot(*duty.load.S).max()), duty.ratio)

@@ -1,16 +1,16 @@
-"""Random engine bearings of every supply, marched at level `supplied`, and a share of them twice as fine.
+"""Calculate random engine bearings of every supply at level `supplied`, and a share on a finer mesh.
 
-    nice python -m benchmarks.film_cycle_engines SEED [duties] [finer]     marches what is not kept yet
+    nice python -m benchmarks.film_cycle_engines SEED [duties] [finer]     calculates what is not stored yet
     python -m benchmarks.film_cycle_engines                                prints the tables
 
-Duties are the engines of `supplied_duties`: big ends and main bearings of idealised two- and four-stroke
-cylinders; load number 0.3 … 105, B/D 0.15 … 1.2, supply pressure 0.02 … 4 (relative). Supplies take turns:
-half groove, full groove, hole in the pin, hole in the sleeve, slot, a groove of any extent, and a groove with
-a hole in the pin; holes are anywhere, under the load too. Each duty is one line of
-benchmarks/results/film_cycle_engines.jsonl, with the errors of the cheap levels. `finer` marches so many of
-the duties on a mesh that is 1.5 times as fine each way, and in time, as well. The bounds of the
-mobility levels stand on the duties of seeds 101 and 202, and on those of `film_cycle_duties`; they are tried
-on those of seed 303, of which only duties that may have a bound are marched (`film_cycle_ensemble`).
+The duties are the engines of `supplied_duties`: big ends and main bearings of idealised two- and four-stroke
+cylinders; load number 0.3 … 105, B/D 0.15 … 1.2, supply pressure 0.02 … 4 (relative). The kinds of supply
+alternate: half groove, full groove, hole in the pin, hole in the sleeve, slot, a groove of any extent, and a
+groove with a hole in the pin; holes may be anywhere, also under the load. Each duty is one line of
+benchmarks/results/film_cycle_engines.jsonl, with the errors of the cheap levels. `finer` also calculates this
+many duties on a mesh that is 1.5 times as fine in space and time. The bounds of the mobility levels are
+derived from the duties of seeds 101 and 202 and from those of `film_cycle_duties`. They are tested on the
+duties of seed 303, of which only those that may have a bound are calculated (`film_cycle_ensemble`).
 """
 
 import json
@@ -25,6 +25,7 @@ import numpy as np
 from benchmarks.film_cycle_duties import (
     CLEAR,
     GROOVED,
+    PRESSURES,
     course,
     digits,
     errors_of,
@@ -54,14 +55,15 @@ from templates.physics.supplied.supply_geometry import HALF
 KEPT = Path("benchmarks/results/film_cycle_engines.jsonl")
 SUPPLIES = ("half_groove", "full_groove", "pin_hole", "sleeve_hole", "slot", "part_groove", "several")
 FINER = 1.5
-TRIED = 303
+FITTED, TRIED, JUDGED = (101, 202), 303, 404
+"""Seeds on which the bounds stand; one by which they may be withdrawn; one that changes nothing."""
 LOWEST, HIGHEST = 0.02, 4.0
 """Relative supply pressures [-]."""
 Line = dict[str, Any]
 
 
 def engine_duty(seed: int, number: int) -> RandomDuty:
-    """Return an engine's bearing; the supplies take turns."""
+    """Return the bearing of an engine; the kinds of supply alternate."""
     fed_by = SUPPLIES[number % len(SUPPLIES)]
     known = {"part_groove": "half_groove", "several": "full_groove"}.get(fed_by, fed_by)
     duty = random_duty(seed, 2 * number, known)
@@ -81,7 +83,7 @@ def engine_duty(seed: int, number: int) -> RandomDuty:
 
 
 def compared(seed: int, number: int, *, finer: bool) -> Line:
-    """Return one duty at every level: a line of the record."""
+    """Return the results of one duty at every level, as a line of the record."""
     duty = engine_duty(seed, number)
     asked, begin = fed(duty), process_time()
     orbit = fed_orbit("supplied", asked)
@@ -110,7 +112,7 @@ def compared(seed: int, number: int, *, finer: bool) -> Line:
 
 
 def finer_march(duty: RandomDuty, marched: SuppliedOrbit) -> list[float | None] | None:
-    """Return the changes on a mesh `FINER` times as fine, also in time; None where that has no film."""
+    """Return the changes on a mesh `FINER` times as fine in space and time; None if there is no film."""
     near = NEAR_HOLES if marched.under_load > STAYS else ()
     last = near[-1] if near else FINE
     thin = MORE_ROWS if marched.least_gap < THIN else 0
@@ -130,26 +132,28 @@ def kept() -> list[Line]:
 
 
 def is_placed(duty: RandomDuty) -> bool:
-    """Return whether a duty may have a bound, by its groove or by how long a hole is under the load."""
+    """Return whether a duty may have a bound: by pressure, groove, or how long a hole is under the load."""
+    if not PRESSURES[0] <= duty.supply.pressure <= PRESSURES[1]:
+        return False
     if duty.fed_by == "part_groove":
         return abs(2 * duty.supply.pockets[0].half_angle - np.pi) <= HALF
     return duty.fed_by in GROOVED[:2] or (duty.fed_by != "several" and under_load(duty) <= CLEAR)
 
 
 def march(seed: int, duties: int, finer: int) -> None:
-    """March what is not kept yet; of the seed that tries the bounds, only what may have one."""
+    """Calculate what is not stored yet; of the test seed, only duties that may have a bound."""
     done = {(line["seed"], line["number"]) for line in kept()}
     for number in range(duties):
-        if (seed, number) not in done and (seed != TRIED or is_placed(engine_duty(seed, number))):
+        if (seed, number) not in done and (seed in FITTED or is_placed(engine_duty(seed, number))):
             line = compared(seed, number, finer=number < finer)
             with KEPT.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(line, separators=(",", ":")) + "\n")
 
 
 def held(line: Line, times: float = 1.0) -> list[bool]:
-    """Return whether the errors that level supplied states hold against the finer mesh, in order of `Totals`.
+    """Return whether the errors stated at level supplied are right on the finer mesh, in order of `Totals`.
 
-    `times`: the error over the change to that mesh.
+    `times` is the ratio of the stated error to the change on that mesh.
     """
     least = LEAST if any(line["fed_by"] == one for one in GROOVED[:2]) else LEAST_OF_HOLES
     stated = astuple(Totals(*line["change"]).error(line["repeat"], least))
@@ -157,7 +161,7 @@ def held(line: Line, times: float = 1.0) -> list[bool]:
 
 
 def tables() -> None:
-    """Print how many stated errors hold, by seed."""
+    """Print how many stated errors are right, by seed."""
     for seed in sorted({line["seed"] for line in kept()}):
         own = [line for line in kept() if line["seed"] == seed]
         finer = [line for line in own if line.get("finer")]

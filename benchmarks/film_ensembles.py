@@ -1,4 +1,4 @@
-"""Errors of the levels of `thrust_bearing`, `mixed_friction` and `thermal_film` on random bearings.
+"""Measure errors of levels of `thrust_bearing`, `mixed_friction` and `thermal_film` on random bearings.
 
 python -m benchmarks.film_ensembles write NAME    its accuracy file, with a held-out check; minutes
 python -m benchmarks.film_ensembles check NAME    how often its bounds hold on bearings of another seed
@@ -17,6 +17,7 @@ from functools import partial
 from itertools import pairwise
 from time import process_time
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from templates.core.language.levels import SINGLE, accuracy_file
 from templates.core.language.template import Template
 from templates.physics.journals import mixed_journal
 from templates.physics.pads import thrust_collar
+from templates.physics.roughness.flow_factors import rough_journal
 
 SEED, OTHER_SEED = 36, 63
 CHUNK = 50
@@ -45,7 +47,7 @@ Raw = dict[str, Any]
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Random bearings of a template: how they are drawn, at which levels solved, against which truth."""
+    """A random ensemble of bearings of a template, with the levels to compare and their reference."""
 
     id: str
     levels: tuple[str, ...]
@@ -73,7 +75,7 @@ def _listed(values: Numbers, unit: str) -> Raw:
 
 
 def collars(rng: np.random.Generator, count: int) -> Raw:
-    """Return thrust bearings of 4 to 12 pads, 30 to 600 mm inside, at 0.1 to 4 MPa and 100 to 6000 rpm."""
+    """Return random thrust bearings: 4 to 12 pads, 30 to 600 mm inside, 0.1 to 4 MPa, 100 to 6000 rpm."""
     inner, reach, pads = _ten(rng, 30, 600, count), rng.uniform(1.2, 3, count), rng.integers(4, 13, count)
     share = rng.uniform(0.7, 0.9, count)
     area = share * np.pi / 4 * inner**2 * (reach**2 - 1)
@@ -88,7 +90,7 @@ def collars(rng: np.random.Generator, count: int) -> Raw:
 
 
 def rough_journals(rng: np.random.Generator, count: int) -> Raw:
-    """Return bearings of 20 to 200 mm with roughness from 0.005 to 0.05 of the clearance, slow and fast."""
+    """Return random bearings of 20 to 200 mm, slow and fast, with roughness of 0.005 to 0.05 clearances."""
     D, b = _ten(rng, 20, 200, count), rng.uniform(0.2, 1.1, count)
     clearance = D * _ten(rng, 5e-4, 2e-3, count)
     sigma, part = clearance / 2 * _ten(rng, 5e-3, 5e-2, count), rng.uniform(0, np.pi / 2, count)
@@ -107,7 +109,7 @@ def rough_journals(rng: np.random.Generator, count: int) -> Raw:
 
 
 def warm_journals(rng: np.random.Generator, count: int) -> Raw:
-    """Return bearings of ordinary machines, engines to turbines, with one kind of wall for a chunk."""
+    """Return random bearings of common machines, engines to turbines, with one kind of wall per chunk."""
     D, b = _ten(rng, 30, 400, count), rng.uniform(0.3, 1.1, count)
     slide = _ten(rng, 1, 50, count)
     raw = {
@@ -131,7 +133,7 @@ def warm_journals(rng: np.random.Generator, count: int) -> Raw:
 
 
 def at(cls: type[Template], raw: Raw, outputs: tuple[str, ...], level: str) -> tuple[Values, Template]:
-    """Return the outputs of many bearings in SI at a level, NaN where there is none, and the template."""
+    """Return the outputs of many bearings in SI at a level, with NaN for missing ones, and the template."""
     named = None if level == SINGLE else level
     answer = evaluate(cls, raw, outputs=outputs, level=named, judge=False)
     values = {name: np.asarray(answer.outputs[name].value, dtype=float) for name in outputs}
@@ -139,7 +141,7 @@ def at(cls: type[Template], raw: Raw, outputs: tuple[str, ...], level: str) -> t
 
 
 def finer_collars(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Values:
-    """Return the answers on a mesh twice as fine each way."""
+    """Return the results on a mesh twice as fine in each direction."""
     before = thrust_collar._MESH
     thrust_collar._MESH = MESH
     try:
@@ -149,18 +151,15 @@ def finer_collars(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Va
 
 
 def refined_films(cls: type[Template], raw: Raw, outputs: tuple[str, ...]) -> Values:
-    """Return the answers of level averaged, solved on twice the mesh at twice as many eccentricities."""
-    before = mixed_journal.rough_journal, mixed_journal._NODES
-    finer = partial(mixed_journal.rough_journal, around=ROUGH_MESH[0], across=ROUGH_MESH[1])
-    mixed_journal.rough_journal, mixed_journal._NODES = finer, 2 * mixed_journal._NODES
-    try:
+    """Return the results of level averaged on a mesh twice as fine, at twice as many eccentricities."""
+    finer = partial(rough_journal, around=ROUGH_MESH[0], across=ROUGH_MESH[1])
+    twice = 2 * mixed_journal._NODES
+    with patch.multiple(mixed_journal, rough_journal=finer, _NODES=twice):
         return at(cls, raw, outputs, "averaged")[0]
-    finally:
-        mixed_journal.rough_journal, mixed_journal._NODES = before
 
 
 def of_level(level: str) -> Callable[[type[Template], Raw, tuple[str, ...]], Values]:
-    """Return the truth that a level is."""
+    """Return a function that calculates the reference at a level."""
     return lambda cls, raw, outputs: at(cls, raw, outputs, level)[0]
 
 
@@ -198,7 +197,7 @@ ENSEMBLES = {
 
 @dataclass
 class Sample:
-    """Bearings solved: their places on the axes, and relative errors by level and output."""
+    """Calculated bearings: their coordinates on the axes, and relative errors by level and output."""
 
     places: tuple[Numbers, Numbers]
     errors: dict[str, Values]
@@ -206,7 +205,7 @@ class Sample:
 
 
 def chunks(ensemble: Ensemble, seed: int, count: int) -> Iterator[Raw]:
-    """Yield inputs of many bearings at once, as many as every level takes."""
+    """Yield inputs of many bearings at once, as many as every level accepts."""
     rng = np.random.default_rng(seed)
     most = min([CHUNK, *ensemble.template.most_points.values()])
     for start in range(0, count, most):
@@ -214,7 +213,7 @@ def chunks(ensemble: Ensemble, seed: int, count: int) -> Iterator[Raw]:
 
 
 def sampled(ensemble: Ensemble, seed: int, count: int) -> Sample:
-    """Return random bearings at all levels and their truth."""
+    """Return random bearings calculated at all levels and by their reference."""
     cls, parts = ensemble.template, list[Sample]()
     for raw in chunks(ensemble, seed, count):
         try:
@@ -249,7 +248,7 @@ def _part(ensemble: Ensemble, raw: Raw, truth: Mapping[str, Numbers]) -> Sample:
 
 
 def _scale(ensemble: Ensemble, truth: Mapping[str, Numbers], output: str) -> Numbers:
-    """Return what the error of an output is relative to: its truth, or the largest of several."""
+    """Return the reference value of an error: the true value, or the largest of several."""
     sizes = [np.abs(truth[name]) for name in ensemble.relative_to.get(output, (output,))]
     return np.asarray(np.maximum.reduce(sizes))
 
@@ -264,7 +263,7 @@ def cells(ensemble: Ensemble, sample: Sample) -> list[list[NDArray[np.bool_]]]:
 
 
 def bounds(ensemble: Ensemble, sample: Sample) -> dict[str, dict[str, list[list[float | None]]]]:
-    """Return the bound of each level and output in each cell; None where there are too few."""
+    """Return the bound of each level and output in each cell; None if there are too few bearings."""
     inside = cells(ensemble, sample)
     return {
         level: {
@@ -281,7 +280,7 @@ def _bound(errors: Numbers) -> float | None:
 
 
 def held(ensemble: Ensemble, sample: Sample, stated: Mapping[str, Any]) -> dict[str, dict[str, list[int]]]:
-    """Return by level and output in how many bearings with a bound it holds, and how many these are."""
+    """Return, by level and output, the number of bearings with a right bound, and with any bound."""
     inside = cells(ensemble, sample)
     found: dict[str, dict[str, list[int]]] = {}
     for level, outputs in stated.items():
@@ -298,7 +297,7 @@ def held(ensemble: Ensemble, sample: Sample, stated: Mapping[str, Any]) -> dict[
 
 
 def costs(ensemble: Ensemble, level: str, vectorised: float) -> dict[str, float]:
-    """Return processor seconds of one bearing alone, and of one among many."""
+    """Return the processor time of one bearing alone, and of one among many [s]."""
     cls, times = ensemble.template, []
     for _ in range(5):
         start = process_time()

@@ -44,21 +44,24 @@ def axes() -> tuple[Axis, Axis]:
 
 
 def encoded(eps: float, ratio: float, around: int, across: int) -> Array:
-    """Return all values of the map from one solution, (16,)."""
+    """Return all values of the map from one solution (16,)."""
     field = static_field(eps, ratio, around, across)
     forces = linear_forces(eps, ratio, field.mesh, field.rupture)
     return np.concatenate([encode(eps, ratio, measure(field)), encode_linear(eps, forces)])
 
 
 def extrapolated(eps: float, ratio: float, around: int = 128, across: int = 16) -> Array:
-    """Return the same, the film by Richardson's extrapolation; stiffness and damping, which jitter, not."""
+    """Return all values with the film extrapolated (Richardson).
+
+    Stiffness and damping are too noisy for it.
+    """
     eps = min(max(eps, CENTRED), ECCENTRICITY_LIMIT)
     coarse, fine = encoded(eps, ratio, around, across), encoded(eps, ratio, 2 * around, 2 * across)
     return fine + (fine - coarse) / 3 * (np.arange(16) < 8)
 
 
 def build() -> None:
-    """Solve at the nodes and keep the splines."""
+    """Solve at the nodes and store the splines."""
     eccentricity, width = axes()
     values = np.array([
         [extrapolated(float(np.tanh(x)), float(np.exp(y))) for y in width.places()]
@@ -76,14 +79,14 @@ def build() -> None:
 
 
 def check_points() -> tuple[Array, Array]:
-    """Return random places over the whole map, (POINTS,) each, in its coordinates."""
+    """Return random points over the whole map, (POINTS,) each, in its coordinates."""
     _, width = axes()
     draw = np.random.default_rng(7).random((2, POINTS))
     return draw[0] * np.arctanh(ECCENTRICITY_LIMIT), width.first + draw[1] * width.step * (width.nodes - 1)
 
 
 def measure_error() -> None:
-    """Compare with solutions on twice the mesh, and keep the largest error of each cell."""
+    """Compare with solutions on a mesh twice as fine, and store the largest error of each cell."""
     x, y = check_points()
     truth = np.array(
         [extrapolated(float(np.tanh(a)), float(np.exp(b)), 256, 32) for a, b in zip(x, y, strict=True)]
@@ -93,7 +96,7 @@ def measure_error() -> None:
 
 
 def errors() -> tuple[Array, Array, Array]:
-    """Return places and absolute errors of the map in its own values, (POINTS, 16)."""
+    """Return points and absolute errors of the map in its own values, (POINTS, 16)."""
     with np.load(CHECKS) as checks:
         x, y, truth = checks["x"], checks["y"], checks["truth"]
     data = film_map()
@@ -102,7 +105,7 @@ def errors() -> tuple[Array, Array, Array]:
 
 
 def keep_error() -> None:
-    """Largest error of each cell and its neighbours, with a margin, into the data."""
+    """Store the largest error of each cell and its neighbours, with a margin."""
     x, y, errors_there = errors()
     eccentricity, width = axes()
     row = np.clip((x / (eccentricity.step * (NODES[0] - 1)) * CELLS[0]).astype(int), 0, CELLS[0] - 1)

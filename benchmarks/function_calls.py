@@ -1,4 +1,4 @@
-"""Function calls of one changed bearing width, from the merge patch to the checked STEP file.
+"""Count the function calls for one changed bearing width, from the merge patch to the checked STEP file.
 
 `python benchmarks/function_calls.py` counts this program; with the folder of another checkout it counts that.
 
@@ -36,7 +36,7 @@ BEGINS, LOCATION = 0, 3  # the argument of RESUME where a function begins, and t
 
 
 class Calls:
-    """A profile function that counts calls per function, while it is switched on."""
+    """A profile function that counts calls per function while it is switched on."""
 
     def __init__(self, root: Path) -> None:
         self.counts: Counter[CodeType] = Counter()
@@ -44,7 +44,7 @@ class Calls:
         self._is_on = False
 
     def __call__(self, frame: FrameType, event: str, _: Any) -> None:
-        """Count the call, if it is one of ours."""
+        """Count the call if it is one of this program."""
         code = frame.f_code
         is_ours = self._is_on and event == "call" and code.co_filename.startswith(self._folders)
         if is_ours and not threading.current_thread().name.startswith(BACKGROUND):
@@ -53,7 +53,7 @@ class Calls:
 
     @contextmanager
     def counting(self) -> Iterator[None]:
-        """Count from zero, in this thread and in those that were started under `threading.setprofile`."""
+        """Count from zero in this thread and in threads started under `threading.setprofile`."""
         self.counts.clear()
         self._is_on = True
         sys.setprofile(self)
@@ -77,7 +77,7 @@ class Calls:
 
 
 class Bench:
-    """The services that a change passes through, on a database in a folder of its own."""
+    """The services that process a change, on a database in a separate folder."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         from app.catalogue.discovery import find_templates
@@ -101,7 +101,7 @@ class Bench:
         stack.callback(self.database.close)
         catalogues = Catalogues(find_templates(()), models())
         self.jobs = Jobs(self.database, Inline(), Settings(data=folder), problems.describe)
-        builds = Builds(self.database, store, *_folders(Builds))
+        builds = Builds(self.database, store)
         analysing = AnalysisRunner(self.database, store, Limits())
         self.designs = Designs(self.database, self.jobs, catalogues)
         self.regeneration = Regeneration(
@@ -109,7 +109,7 @@ class Bench:
         )
 
     def create(self, document: dict[str, Any]) -> str:
-        """Create a design and build it; its id."""
+        """Create a design, build it, and return its id."""
         return str(self._finished(self.designs.create(document, None, _once())).design)
 
     def change(self, design: str, width: str) -> None:
@@ -143,12 +143,7 @@ class Bench:
 
 
 def _forget(*progress: Any) -> None:
-    """Store no progress: how often that happens depends on the machine."""
-
-
-def _folders(builds: type) -> list[tuple[()]]:
-    """Return the folders of a team's models, which older programs hand to the builds."""
-    return [()] if "folders" in signature(builds).parameters else []
+    """Discard progress, because its frequency depends on the machine."""
 
 
 def _recent(designs: Any) -> dict[str, Any]:

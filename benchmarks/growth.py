@@ -1,11 +1,12 @@
 """Measure how cost grows with points, mesh, designs, steps, variants and clients.
 
-Takes about three minutes on two idle cores, prints each line, keeps all in benchmarks/results/growth.json and
-draws docs/pictures/growth.svg; `python -m benchmarks.growth draw` draws the picture again from what is kept.
+The script takes about three minutes on two idle cores, prints each line, stores all in
+benchmarks/results/growth.json and draws docs/pictures/growth.svg; `python -m benchmarks.growth draw` draws
+the picture again from the stored results.
 
 Cost is processor time: of this process for points and meshes, of the service with its descendants for the
-others. The exponent of a line is the slope of its last two points in logarithms: 1 says that twice as many
-cost twice as much.
+others. The exponent of a line is the slope between its last two points in logarithms: 1 means that twice as
+many cost twice as much.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ Line = list[tuple[int, float]]
 
 
 def points() -> Line:
-    """Return all outputs of `oil_film` 1 at so many points in one call [s]."""
+    """Return the time for all outputs of `oil_film` 1 at this many points in one call [s]."""
     line = []
     for number in POINTS:
         loads = {"value": np.linspace(6.3, 200, number), "unit": "kN"}
@@ -60,7 +61,7 @@ def points() -> Line:
 
 
 def meshes() -> Line:
-    """Return one film by the Reynolds equation, eccentricity ratio 0.8 and B/D 0.5 [s]."""
+    """Return the time for one Reynolds film, eccentricity ratio 0.8 and B/D 0.5 [s]."""
     line = []
     for around in MESHES:
         action = partial(static_film, 0.8, 0.5, around, around // 8)
@@ -69,7 +70,7 @@ def meshes() -> Line:
 
 
 class Served:
-    """The service, and a client of it."""
+    """The service and a client."""
 
     def __init__(self, server: Server, http: httpx.Client) -> None:
         self.server, self.http = server, http
@@ -95,7 +96,7 @@ class Served:
             self.http.get(API).raise_for_status()
 
     def spent(self, actions: Iterable[Callable[[], object]]) -> float:
-        """Return the median processor time of actions after the first of them [s]."""
+        """Return the median processor time of all actions but the first [s]."""
         times = []
         for action in actions:
             before = used(self.server.pid)
@@ -106,7 +107,7 @@ class Served:
     def loads_spent(self, design: Mapping[str, Any]) -> float:
         """Return the median processor time of ten changes of `a`, a load [s].
 
-        One takes few ticks of the clock.
+        Ten are measured together, because one takes only a few clock ticks.
         """
         tens = [[f"{21 + turn}.{n} kN" for n in range(10)] for turn in range(TURNS + 1)]
         return self.spent(partial(self.changed, design, *ten) for ten in tens)
@@ -114,7 +115,7 @@ class Served:
 
 @contextmanager
 def serving() -> Iterator[Served]:
-    """A new service on an empty folder."""
+    """Yield a new service on an empty folder."""
     with (
         tempfile.TemporaryDirectory() as folder,
         crankwright(Path(folder)) as server,
@@ -125,7 +126,7 @@ def serving() -> Iterator[Served]:
 
 
 def designs() -> dict[str, Line]:
-    """Ten changes of one design, and ten looks at the first page of the list, among so many designs [s]."""
+    """Return the times of ten changes and ten reads of the first list page, with this many designs [s]."""
     change: Line = []
     look: Line = []
     with serving() as it:
@@ -141,7 +142,7 @@ def designs() -> dict[str, Line]:
 
 
 def steps() -> Line:
-    """Return ten changes of a design with so many steps that all read them [s]."""
+    """Return the times of ten changes of a design with this many steps that all use the changed value [s]."""
     line = []
     with serving() as it:
         for number in STEPS:
@@ -153,7 +154,7 @@ def steps() -> Line:
 
 
 def variants() -> Line:
-    """Return ten changes that all of so many variants of a design read [s]."""
+    """Return the times of ten changes that affect all of this many variants of a design [s]."""
     line = []
     with serving() as it:
         for number in VARIANTS:
@@ -169,7 +170,7 @@ def variants() -> Line:
 
 
 def clients() -> Line:
-    """Return one evaluation of one output, while so many clients ask at once [s]."""
+    """Return the time of one evaluation of one output while this many clients ask at once [s]."""
     body = {"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}
     line = []
     with serving() as it:
@@ -214,7 +215,7 @@ def measured() -> dict[str, Line]:
 
 
 def draw(kept: Mapping[str, Any]) -> None:
-    """All lines, cost against number, in logarithms."""
+    """Draw all lines: cost against number, in logarithmic scales."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -240,7 +241,7 @@ def draw(kept: Mapping[str, Any]) -> None:
 
 
 def main() -> None:
-    """Measure and draw, or draw again."""
+    """Measure and draw, or draw the stored results."""
     if sys.argv[1:] != ["draw"]:
         load = os.getloadavg()
         lines = measured()

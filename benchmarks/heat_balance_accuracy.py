@@ -1,21 +1,23 @@
 """Measure how much a heat balance adds to the errors of `oil_film` 2, on random bearings.
 
-    python -m benchmarks.heat_balance_accuracy     three minutes; prints what the accuracy file states
+    python -m benchmarks.heat_balance_accuracy     three minutes; prints the values of the accuracy file
 
-`benchmarks.accuracy measure` calls it and writes the file. The errors of its tables are those of a film at a
-given viscosity. With a heat balance, friction and side flow make the temperature, and the temperature the
-viscosity, so the errors of the map, from which every level takes both, reach every output.
+`benchmarks.accuracy measure` calls this module and writes the file. The errors in its tables are those of a
+film at a given viscosity. With a heat balance, friction and side flow determine the temperature, and the
+temperature determines the viscosity. Every level takes friction and side flow from the map, so errors of the
+map affect every output.
 
-At each of the 1500 places (eps, B/D) of the film's checks a bearing is drawn, for three oils, with a supply
-temperature and once more with air that cools it. The true temperature is the one at which the power loss of
-the *converged* film is carried off; the load is what that film bears. What a level answers at the temperature
-of its balance, less what it answers at the true one, is what the balance adds. The largest of all, half of it
-added, stands in the table.
+At each of the 1500 points (eps, B/D) of the film's checks there is a random bearing for each of three oils,
+once with cooling by the oil and once with cooling by air. The true temperature is the one at which the power
+loss of the *converged* film is removed; the load is the one that this film carries. The added error is the
+result of a level at the temperature of its balance minus its result at the true temperature. The table
+contains 1.5 times the largest of these.
 
-Level mass_conserving takes 0.2 s a bearing: it calculates 64 of each oil and way of cooling, and where
-the map adds more to all bearings than that level to these, the map's counts. Its friction has another
-convention than the balance: of friction and power nothing is stated there. Last it is printed what a balance
-of the other convention would change. That is no error, as ISO 7902-1 has shear all around.
+Level mass_conserving takes 0.2 s per bearing, so it calculates only 64 bearings of each oil and kind of
+cooling. If the map adds more to all bearings than that level to these, the value of the map is used. The
+friction of that level follows another convention than the balance, so no error of friction and power is
+stated there. Finally the script prints the effect of a balance with the other convention. That effect is not
+an error, because ISO 7902-1 has shear over the full circle.
 """
 
 from collections.abc import Iterator
@@ -23,6 +25,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
@@ -65,15 +68,15 @@ class Bearings:
         return OilFilm.from_quantities(self.inputs)
 
     def in_equilibrium(self, level: str) -> OilFilm:
-        """Return the same at a level, at the true temperature."""
+        """Return the bearings at a level, at the true temperature."""
         template = self.template().at(level)
         vars(template)["balance"] = HeatBalance(self.T, self.T_out, np.zeros(self.T.shape))
         return template
 
-    def some(self, rows: Array) -> "Bearings":
-        """Return some of them."""
+    def some(self, rows: NDArray[np.intp]) -> "Bearings":
+        """Return a subset of the bearings."""
         inputs = {
-            n: replace(v, si=v.si[rows]) if isinstance(v, TypedQuantity) else v
+            n: replace(v, si=np.asarray(v.si)[rows]) if isinstance(v, TypedQuantity) else v
             for n, v in self.inputs.items()
         }
         film = replace(self.film, **{f.name: getattr(self.film, f.name)[rows] for f in fields(self.film)})
@@ -83,7 +86,7 @@ class Bearings:
 def drawn(
     rng: np.random.Generator, film: JournalFilm, ratio: Array, grade: str, *, supplied: bool
 ) -> Bearings:
-    """Return a bearing for each film, cooled by its oil or by air."""
+    """Return a random bearing for each film, cooled by its oil or by air."""
     count = ratio.size
     D, psi, omega = (
         np.exp(rng.uniform(np.log(low), np.log(high), count))
@@ -98,7 +101,7 @@ def drawn(
         return _viscosity(oil, T)
 
     def power(T: Array) -> Array:
-        return scale * viscosity(T) * psi * D / 2 * (film.shear + couple) * omega
+        return np.asarray(scale * viscosity(T) * psi * D / 2 * (film.shear + couple) * omega)
 
     carried = HEAT_CAPACITY * film.side_flow * (D / 2) ** 3 * psi * omega * 2
     rise = np.exp(rng.uniform(np.log(2), np.log(120), count))
@@ -131,16 +134,16 @@ def _viscosity(oil: OilFilm, T: Array) -> Array:
 
 
 def change(output: str, value: Array, true: Array, largest: Array) -> Array:
-    """Return the difference of two answers, in the measure of the tables."""
+    """Return the difference of two results, in the error measure of the tables."""
     return np.asarray(relative_error(value, true, np.pi / 2 if output in ANGLES else largest))
 
 
 def sizes(template: OilFilm, output: str) -> Array:
-    """Return the scale of an error: the largest of four coefficients, else the value itself."""
+    """Return the reference value of an error: the largest of four coefficients, or the value itself."""
     kind = output.partition("_")[0]
     if kind in ("stiffness", "damping") and not output.endswith("scale"):
         names = [f"{kind}_{xy}" for xy in ("xx", "xy", "yx", "yy")]
-        return np.max([np.abs(value_of(template, name)) for name in names], axis=0)
+        return np.asarray(np.max([np.abs(value_of(template, name)) for name in names], axis=0))
     return np.abs(value_of(template, output))
 
 
@@ -150,7 +153,7 @@ def value_of(template: OilFilm, output: str) -> Array:
 
 
 def dependent() -> list[str]:
-    """Return the outputs that a heat balance reaches."""
+    """Return the outputs that depend on a heat balance."""
     return [
         name
         for name, formula in OilFilm.formulas.items()
@@ -161,7 +164,7 @@ def dependent() -> list[str]:
 
 
 def ensemble(seed: int, *, streamers: bool = False) -> Iterator[Bearings]:
-    """Yield all bearings, by oil and way of cooling; with `streamers` heated by shear where oil is."""
+    """Yield all bearings by oil and kind of cooling; with `streamers`, shear acts only where there is oil."""
     rng = np.random.default_rng(seed)
     _, y, film, _ = converged(streamers=streamers)
     for grade in GRADES:
@@ -170,7 +173,7 @@ def ensemble(seed: int, *, streamers: bool = False) -> Iterator[Bearings]:
 
 
 def added(bearings: Bearings, level: str) -> dict[str, float]:
-    """Return the largest change of each output at a level; none where the level has no such output."""
+    """Return the largest change of each output at a level; None if the level does not have the output."""
     own, true = bearings.template().at(level), bearings.in_equilibrium(level)
     with np.errstate(all="ignore"):
         shares = {
@@ -182,7 +185,7 @@ def added(bearings: Bearings, level: str) -> dict[str, float]:
 
 
 def upwards(value: float) -> float:
-    """Return two digits, upwards."""
+    """Return a number rounded up to two digits."""
     unit = 10.0 ** (np.floor(np.log10(max(value, 1e-12))) - 1)
     return float(f"{np.ceil(value / unit) * unit:.2g}")
 
@@ -197,9 +200,9 @@ def largest(each: Iterator[dict[str, float]]) -> dict[str, float]:
 
 
 def slowly(every: list[Bearings], of_map: dict[str, float]) -> dict[str, float]:
-    """Return the addition at the slow level.
+    """Return the added error at the slow level.
 
-    Measured on some bearings, and at least what the map adds to all.
+    It is measured on some bearings, and is at least the error that the map adds to all.
     """
     rng = np.random.default_rng(SEED)
     some = [one.some(rng.choice(one.T.size, PICKED, replace=False)) for one in every]
@@ -212,7 +215,7 @@ def slowly(every: list[Bearings], of_map: dict[str, float]) -> dict[str, float]:
 
 
 def other_convention() -> None:
-    """Print what the film would change if the balance took the shear where oil is."""
+    """Print the change of the film if the balance used shear only where there is oil."""
     film = "minimum_film_thickness"
     shares = []
     for one in ensemble(SEED, streamers=True):
@@ -224,7 +227,7 @@ def other_convention() -> None:
 
 
 def heat_balance() -> dict[str, Any]:
-    """Measure what a heat balance adds at each level, as the accuracy file states it."""
+    """Return the error that a heat balance adds at each level, for the accuracy file."""
     every = list(ensemble(SEED))
     count = sum(one.T.size for one in every)
     fast = {level: largest(added(one, level) for one in every) for level in set(LEVELS.values())}

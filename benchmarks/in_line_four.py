@@ -1,4 +1,4 @@
-"""Inputs of `engine` for an in-line four of 86 mm stroke, by which tests and benchmarks calculate."""
+"""Inputs of `engine` for an in-line four of 86 mm stroke, which tests and benchmarks use."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Processor time of tests, by file and by test: where the time of the quick suite goes.
+"""Measure the processor time of tests by file and by test, to show where the quick suite spends its time.
 
 Run with: python -m benchmarks.lanes [files, folders and options of pytest, such as tests/physics -n 2]
 
@@ -38,14 +38,14 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 
 def read() -> tuple[float, float]:
-    """Return the processor time of this process and its family, and what it takes to read that [s]."""
+    """Return the processor time of this process and its descendants, and the time to read it [s]."""
     begin = time.process_time()
     family = used(os.getpid())
     return family, time.process_time() - begin
 
 
 def main(arguments: list[str]) -> int:
-    """Run pytest and print what its tests take, the longest files first."""
+    """Run pytest and print the times of its tests, the slowest files first."""
     with tempfile.TemporaryDirectory() as folder:
         costs = Path(folder, "costs")
         costs.touch()
@@ -65,9 +65,9 @@ def report(lines: list[str]) -> None:
     sums = {file: sum(cost for cost, _ in tests) for file, tests in files.items()}
     for file in sorted(files, key=sums.__getitem__, reverse=True):
         print(f"{sums[file]:8.1f} s  {file} ({len(files[file])})")
-        for cost, test in sorted(files[file], reverse=True):
-            if cost >= 0.5:
-                print(f"          {cost:8.1f} s  {test}")
+        for seconds, test in sorted(files[file], reverse=True):
+            if seconds >= 0.5:
+                print(f"          {seconds:8.1f} s  {test}")
     print(f"{sum(sums.values()):8.1f} s  all tests")
 
 

@@ -1,9 +1,10 @@
-"""One bearing at all five levels of `oil_film` 2, side by side, as a table in Markdown.
+"""Compare one bearing at all five levels of `oil_film` 2 in a Markdown table.
 
     python -m benchmarks.levels
 
-The bearing is the template's example. The error is what the template states for the minimum film thickness
-there; the cost is processor time a point among many, stiffness apart, as a multiple of the closed form's.
+The bearing is the template's example. The error is the one that the template states for the minimum film
+thickness; the cost is the processor time of a point among many without stiffness, as a multiple of the closed
+form's.
 """
 
 from benchmarks.accuracy import cost
@@ -20,7 +21,7 @@ COLUMNS = {
 
 
 def row(level: str) -> list[str]:
-    """Return the cells of one level but for its cost."""
+    """Return the cells of one level except its cost."""
     units = {name: unit for name, (_, unit, _) in COLUMNS.items()}
     evaluation = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
     values = [evaluation.outputs[name].value for name in COLUMNS]

@@ -68,7 +68,7 @@ def place(x: float, v: float) -> tuple[float, float]:
 
 
 def encoded(xi: float, eta: float, ratio: float, around: int, across: int) -> Array:
-    """Return all values of the map from one solution, (4,)."""
+    """Return all values of the map from one solution (4,)."""
     eps, chi = min(float(np.hypot(xi, eta)), ECCENTRICITY_LIMIT), float(np.arctan2(-eta, xi))
     motion = film_mobility(eps, ratio, chi, around, across)
     turn = np.array([[np.cos(chi), np.sin(chi)], [-np.sin(chi), np.cos(chi)]])
@@ -76,13 +76,13 @@ def encoded(xi: float, eta: float, ratio: float, around: int, across: int) -> Ar
 
 
 def extrapolated(xi: float, eta: float, ratio: float, finer: int = 1) -> Array:
-    """Return the same by Richardson's extrapolation."""
+    """Return all values by Richardson's extrapolation."""
     coarse, fine = (encoded(xi, eta, ratio, n * finer * MESH[0], n * finer * MESH[1]) for n in (1, 2))
     return fine + (fine - coarse) / 3
 
 
 def build() -> None:
-    """Solve at the nodes and keep the splines."""
+    """Solve at the nodes and store the splines."""
     KEPT.mkdir(parents=True, exist_ok=True)
     begin = perf_counter()
     gap, chord, width = axes()
@@ -115,7 +115,7 @@ def coefficients(values: Array) -> Array:
 
 
 def check_points() -> Array:
-    """Return random places over the whole map in its coordinates, (3, POINTS)."""
+    """Return random points over the whole map in its coordinates, (3, POINTS)."""
     low = np.array([axis.first for axis in axes()])
     high = np.array([axis.first + axis.step * (axis.nodes - 1) for axis in axes()])
     high[0] = np.log(2 * LARGEST) + 2 * LARGEST
@@ -126,7 +126,7 @@ def check_points() -> Array:
 
 
 def measure_error() -> None:
-    """Compare with solutions on twice the mesh, and keep the largest error of each cell."""
+    """Compare with solutions on a mesh twice as fine, and store the largest error of each cell."""
     places = check_points()
     truth = []
     for k, (x, v, y) in enumerate(places.T):
@@ -153,7 +153,7 @@ def errors() -> tuple[Array, Array]:
 
 
 def keep_error() -> None:
-    """Largest error of each cell and its neighbours, with a margin, into the data."""
+    """Store the largest error of each cell and its neighbours, with a margin."""
     places, errors_there = errors()
     index = cell_of(axes(), places.T, np.array(CELLS))
     table = np.zeros((*CELLS, 4))

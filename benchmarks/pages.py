@@ -1,4 +1,4 @@
-"""Size of the pages and their time to answer, which docs/pages.md quotes.
+"""Measure the size and response time of the pages, which docs/pages.md quotes.
 
     python -m benchmarks.pages
 
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _visit(browser: Browser, address: str) -> dict[str, Any]:
-    """Return requests, compressed bytes, and times of a first visit."""
+    """Return the number of requests, compressed bytes, and times of a first visit."""
     page = browser.new_page(viewport={"width": 1440, "height": 900})
     session = page.context.new_cdp_session(page)
     session.send("Network.enable")
@@ -61,7 +61,7 @@ def _visit(browser: Browser, address: str) -> dict[str, Any]:
 
 
 def _previews(url: str, pages: tuple[str, ...]) -> dict[str, float]:
-    """Return the time of a preview, each of other values."""
+    """Return the time of a preview, each with other values."""
     times = {}
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
         for page, (name, patch) in zip(pages, CHANGES.items(), strict=True):

@@ -2,9 +2,9 @@
 
     python -m benchmarks.paper_fit
 
-At the width of the paper's bearing, W/D = 32/85, isothermal, Swift–Stieber film: both films at the same
-Sommerfeld number, so that viscosity and loads drop out. The converged film is that of the map, its own error
-printed beside.
+The bearing has the width of the paper's, W/D = 32/85, and an isothermal Swift–Stieber film. Both films have
+the same Sommerfeld number, so that viscosity and load cancel. The converged film is that of the map, whose
+own error is printed too.
 """
 
 import numpy as np

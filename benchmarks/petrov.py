@@ -13,6 +13,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from matplotlib import pyplot as plt
@@ -38,7 +39,7 @@ POINTS = 100_000
 
 
 def error(eps: Array, ratio: Array) -> Array:
-    """Return Petrov's friction over that of the loaded film, less 1."""
+    """Return Petrov's friction over that of the loaded film, minus 1."""
     return 1 / friction_over_Petrov(eps, ratio) - 1
 
 
@@ -50,9 +51,10 @@ def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
 
 
 def seconds_a_point(count: int) -> float:
-    """Return the cost of Petrov's force among so many, the best of some runs."""
+    """Return the cost per point of Petrov's force among many points, the shortest of some runs [s]."""
     clearance = np.full(count, 2.5e-4) if count > 1 else np.float64(2.5e-4)
-    runs = [_seconds(lambda: friction_Petrov_1883(0.025, 0.1, clearance, 0.0119, 157.1)) for _ in range(9)]
+    journal: tuple[Any, ...] = (0.025, 0.1, clearance, 0.0119, 157.1)
+    runs = [_seconds(lambda: friction_Petrov_1883(*journal)) for _ in range(9)]
     return float(f"{min(runs) / count:.1e}")
 
 
@@ -63,8 +65,9 @@ def _seconds(run: Callable[[], object]) -> float:
 
 
 def measure() -> None:
-    """Fill the table, draw the picture, print the figures."""
+    """Fill the table, draw the picture and print the figures."""
     errors = [[cell(eps, ratio) for ratio in pairwise(RATIO)] for eps in pairwise(EPS)]
+    cost = {"single": seconds_a_point(1), "vectorised": seconds_a_point(POINTS)}
     table = {
         "template": {"id": JournalFriction.id, "version": JournalFriction.version},
         "made_by": "python -m benchmarks.petrov",
@@ -79,7 +82,7 @@ def measure() -> None:
         ],
         "levels": {
             "only": {
-                "cost": {"single": seconds_a_point(1), "vectorised": seconds_a_point(POINTS)},
+                "cost": cost,
                 "truth": dict.fromkeys(OUTPUTS, FULL_SHEAR),
                 "errors": dict.fromkeys(OUTPUTS, errors),
             }
@@ -90,11 +93,11 @@ def measure() -> None:
     for eps in (0.2, 0.5, 0.9, 0.99):
         low, high = 100 * error(np.array(eps), np.array([NARROWEST, WIDEST]))
         print(f"eps {eps}: {low:.1f} % at B/D {NARROWEST}, {high:.1f} % at B/D {WIDEST:g}")
-    print("seconds a point", table["levels"]["only"]["cost"])
+    print("seconds a point", cost)
 
 
 def draw() -> None:
-    """The picture: film friction over Petrov's, over eccentricity."""
+    """Draw film friction over Petrov's against eccentricity."""
     plt.rcParams.update({"svg.hashsalt": "crankwright", "svg.fonttype": "none"})  # the same bytes again
     gap = np.geomspace(1e-3, 1, 400)
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
@@ -117,7 +120,7 @@ def draw() -> None:
 
 
 def check() -> None:
-    """The map's friction against full solutions, extrapolated."""
+    """Compare the map's friction with full solutions, extrapolated."""
     rng, worst = np.random.default_rng(2), 0.0
     for eps, ratio in zip(1 - 10 ** rng.uniform(-4, 0, 60), 10 ** rng.uniform(-1, 1, 60), strict=True):
         full = extrapolated_film(float(eps), float(ratio))[0].friction / np.pi

@@ -1,4 +1,4 @@
-"""Processor time and memory by /proc: of a process with its descendants, and of the machine."""
+"""Read processor time and memory from /proc: of a process with its descendants, and of the machine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of a `stat` be
 
 
 def environment() -> dict[str, str]:
-    """Return the environment of this process, but Python keeps bytecode, as it does for users.
+    """Return the environment of this process, except that Python stores bytecode, as it does for users.
 
     Where the variable is set, each process compiles the whole program, which takes as long as importing it.
     """
@@ -28,33 +28,33 @@ class Cores:
 
     @classmethod
     def now(cls) -> Cores:
-        """Return the counter now."""
+        """Return the current counter."""
         line = Path("/proc/stat").read_text().partition("\n")[0]
         user, nice, system, idle, waiting, *more = (int(text) * _TICK for text in line.split()[1:8])
         return cls(user + nice + system + sum(more), idle + waiting)
 
     def share_since(self, before: Cores) -> float:
-        """Return the share of all cores that has been in use since then, by whatever process."""
+        """Return the share of all cores that any process has used since then."""
         busy, idle = self.busy - before.busy, self.idle - before.idle
         return busy / (busy + idle)
 
 
 def used(pid: int) -> float:
-    """Processor time of a process, its living descendants and the children that it has waited for [s]."""
+    """Return the processor time of a process, its living descendants and its awaited children [s]."""
     processes = _processes()
     return sum(_seconds(fields) for one in _family(pid, processes) if (fields := processes.get(one)))
 
 
 def proportional_megabytes(pid: int) -> float:
-    """Return memory of a process and its living descendants.
+    """Return the memory of a process and its living descendants [MB].
 
-    What several share is divided among them [MB].
+    Shared memory is divided among the processes that share it.
     """
     return sum(_proportional(one) for one in _family(pid, _processes())) / 1e6
 
 
 def anonymous_megabytes(pid: int) -> float:
-    """Return memory of a process and its living descendants that holds no file [MB], shared parts divided."""
+    """Return the memory of a process and its descendants that backs no file [MB], shared parts divided."""
     return sum(_proportional(one, "Pss_Anon:") for one in _family(pid, _processes())) / 1e6
 
 

@@ -1,10 +1,11 @@
-"""Friction over speed of a published rig beside `mixed_friction` 1.
+"""Compare friction over speed of a published test rig with `mixed_friction` 1.
 
     python -m benchmarks.published_friction
 
-A big end runs between two supports that bear half its load each. The source of the torques is named in
-tests/references/sander_2016_friction_torque.csv. The summit slenderness is that with which the contact factor
-of the paper, K = 16 sqrt(2) pi/15 (product)**2 sqrt(slenderness), is 0.001 at a roughness product of 0.05.
+A big end runs between two supports that carry half of its load each.
+tests/references/sander_2016_friction_torque.csv names the source of the torques. The summit slenderness is
+chosen so that the paper's contact factor, K = 16 sqrt(2) pi/15 (product)**2 sqrt(slenderness), is 0.001 at a
+roughness product of 0.05.
 """
 
 import csv
@@ -27,7 +28,7 @@ PRODUCT, FACTOR = 0.05, 0.001
 
 
 def rows(path: Path) -> list[list[float]]:
-    """Return a reference table, without its comments and its heading."""
+    """Return a reference table without its comments and its heading."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     return [[float(value) for value in row] for row in list(csv.reader(lines))[1:]]
 

@@ -1,4 +1,4 @@
-"""Draw the README's picture from a running service: the worksheet beside the part that it drives.
+"""Draw the README's picture from a running service: the worksheet and the part that it drives.
 
     python -m benchmarks.readme_picture
 
@@ -15,7 +15,7 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image, ImageChops
 
-from app.calculations.schemas.evaluations import Output
+from app.calculations.schemas.evaluations import Output, UsedInput
 from app.cli.demonstration import service
 from app.client import Client
 from app.designs.bodies import PAPER
@@ -29,7 +29,7 @@ WIDEST = 116  # of what is shown of a part [mm]
 
 
 def main() -> None:
-    """Create the paper's design at two scales and draw both, the parts in true proportion to each other."""
+    """Create the paper's design at two scales and draw both, with the parts in true proportion."""
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         formulas = {f.name: f.latex for f in client.template("oil_film", 1).formulas}
@@ -48,12 +48,13 @@ def _document(scale: str) -> dict[str, Any]:
 
 
 def _worksheet(axes: Any, client: Client, design: Design, formulas: dict[str, str]) -> None:
-    """The relation and three of the formulas with their results, as a worksheet shows them."""
+    """Draw the relation and three formulas with their results, as a worksheet shows them."""
     step = client.revision(design.id, design.revision).steps["film"]
-    diameter = step.inputs["bearing_diameter"].value
+    diameter = step.inputs["bearing_diameter"]
+    assert isinstance(diameter, UsedInput)
     lines = [
         f"SCALE := {design.parameters['scale']}",
-        f"D := SCALE · 48 mm = {diameter:g} mm",
+        f"D := SCALE · 48 mm = {diameter.value:g} mm",
         *(f"${formulas[name]}$  =  {_shown(step.outputs[name])}" for name in SHOWN),
     ]
     axes.axis("off")
@@ -66,7 +67,7 @@ def _shown(output: Output) -> str:
 
 
 def _part(axes: Any, client: Client, design: Design) -> None:
-    dimensions = client.measurements(design.id)["model"].dimensions
+    dimensions: dict[str, Any] = dict(client.measurements(design.id)["model"].dimensions)
     bore, outside = (dimensions[name].value for name in ("inner_diameter", "outer_diameter"))
     picture = _trimmed(Image.open(io.BytesIO(client.model(design.id, "png"))).convert("RGB"))
     half, height = outside / 2, outside * picture.height / picture.width / 2

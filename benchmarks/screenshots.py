@@ -1,9 +1,9 @@
-"""Draw docs/pictures/{home,template,worksheet,design,shell,throw,report}-{wide,narrow}.png by a service.
+"""Take the screenshots docs/pictures/{home,template,…}-{wide,narrow}.png from a running service.
 
     python -m benchmarks.screenshots
 
-Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first; some
-are painted by a click.
+The script needs Debian's package chromium. The screenshots are not retouched: they show each page as a
+visitor first sees it, for some pages after a click on a picture.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ def main() -> None:
 
 
 def _with_pressure(page: Page) -> None:
-    """A shell with the pressure of its film."""
+    """Open a shell with the pressure of its film."""
     page.get_by_label("show the film pressure").check()
     page.locator(".solid .colours").wait_for()
     page.evaluate("scrollTo(0, 0)")
 
 
 def _with_stress(page: Page) -> None:
-    """A throw under a torque."""
+    """Open a throw under a torque."""
     panel = page.locator("[data-elements]")
     panel.wait_for(timeout=LONGEST)
     panel.get_by_role("button", name="Analyse").click()
@@ -67,7 +67,7 @@ def _with_stress(page: Page) -> None:
 
 
 def _with_a_fault(page: Page) -> None:
-    """A worksheet with a wrong unit in line 22, explained under it."""
+    """Open a worksheet with a wrong unit in line 22, which is explained below it."""
     page.locator("#text").evaluate("""(area) => {
       const place = area.value.indexOf("= D - c") + 6;
       area.focus({ preventScroll: true });
@@ -88,7 +88,7 @@ PAINTED: dict[str, Callable[[Page], None]] = {
 
 
 def _seen(page: Page, address: str, painted: Callable[[Page], None] | None) -> bytes:
-    """Return the picture of a page, once all that it shows is drawn."""
+    """Return the screenshot of a page once everything on it is drawn."""
     answer = page.goto(address, wait_until="networkidle")
     assert answer is not None
     assert answer.ok, f"{address} answers {answer.status}"

@@ -1,4 +1,4 @@
-"""The page of all settings, docs/operating/settings.md, from the class that reads them.
+"""Generate the page of all settings, docs/operating/settings.md, from the class `Settings`.
 
 python -m benchmarks.settings_page
 """
@@ -32,7 +32,7 @@ that are not in this table, so check the spelling first. Lists and objects are w
 
 
 def page() -> str:
-    """Return the page."""
+    """Return the page in Markdown."""
     prefix = Settings.model_config["env_prefix"]
     rows = (_row(f"{prefix}{name}".upper(), name, field) for name, field in Settings.model_fields.items())
     return HEAD + "".join(rows)
@@ -66,7 +66,7 @@ def _type(field: FieldInfo) -> str:
 
 
 def _words(kind: Any) -> str:
-    """Return a type in words that an operator reads."""
+    """Return a type in words for operators."""
     origin, inside = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _words(inside[0])

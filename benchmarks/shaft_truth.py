@@ -1,4 +1,4 @@
-"""Stiffnesses and the torsional frequency of a shaft, true enough to judge the levels of `cad.analysis`.
+"""Compute stiffnesses and torsional frequency of a shaft accurately enough to judge `cad.analysis`.
 
 Against the levels three things differ. The mesh is another one. Along sharp inner edges it is not refined
 evenly but in layers, each 0.15 times as thick as the one before (`RefineHP`): they resolve the singular field
@@ -73,14 +73,14 @@ def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Foun
 
 
 def by_orders(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> list[Found]:
-    """Return what `truth` extrapolates: outputs by rising orders."""
+    """Return the values that `truth` extrapolates: outputs by ascending order."""
     grid = layered_grid(read_solid(step, shaft), LAYERS)
     orders = SHARP_ORDERS if grid.is_sharp else ORDERS
     return [outputs_by(grid, order, shaft, outputs) for order in orders]
 
 
 def extrapolated(found: list[Found]) -> Found:
-    """Return the limits of values by rising orders."""
+    """Return the limits of values by ascending order."""
     limits: Found = {}
     for name, last in found[-1].items():
         change = found[-2][name] - last
@@ -91,7 +91,7 @@ def extrapolated(found: list[Found]) -> Found:
 
 
 def layered_grid(solid: Solid, layers: int) -> Grid:
-    """Return a mesh for the truth, with layers of prisms around sharp inner edges if there are any."""
+    """Return an accurate mesh, with layers of prisms around any sharp inner edges."""
     edges = sharp_edges(solid, MESH)
     is_sharp = len(edges.ends) > 0
     fineness = SHARP_MESH if is_sharp else MESH
@@ -109,12 +109,12 @@ def layered_grid(solid: Solid, layers: int) -> Grid:
 
 
 def _edges_at(solid: Solid, edges: Edges) -> list[Any]:
-    """Return the kernel's edges to which pieces belong."""
+    """Return the kernel's edges to which segments belong."""
     proper = [edge for edge in solid.shape.edges if edge.mass > 0]
-    lines = [
-        np.array([[*edge.Value(t)] for t in np.linspace(*edge.parameter_interval, _SAMPLES)])
-        for edge in proper
-    ]
+    lines = []
+    for edge in proper:
+        low, high = edge.parameter_interval
+        lines.append(np.array([[*edge.Value(t)] for t in np.linspace(low, high, _SAMPLES)]))
     nearest = {
         int(np.argmin([np.linalg.norm(line - middle, axis=1).min() for line in lines]))
         for middle in edges.ends.mean(axis=1)
@@ -170,7 +170,7 @@ def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = 
 
 
 def guided_compliance(free: Response) -> float:
-    """Return the compliance [rad/(N·mm)] with the forces of a guide, from the response without."""
+    """Return the compliance [rad/(N·mm)] with the forces of a guide, from the unguided response."""
     system = free.system
     _, guides = system.loads()
     moved = [system.solve(guide) for guide in guides]
@@ -211,7 +211,7 @@ def torsional_frequency(free: Response) -> float:
 
 
 def _mass(system: System) -> Any:
-    """Return the product with the matrix of mass, which is that of one component for each."""
+    """Return the product with the mass matrix, which is equal for each component."""
     scalar = ng.H1(system.space.mesh, order=system.order)
     u, v = scalar.TnT()
     form = ng.BilinearForm(scalar, symmetric=True, symmetric_storage=True)
@@ -229,9 +229,9 @@ def _mass(system: System) -> Any:
 
 
 def checked(step: bytes, shaft: Shaft) -> dict[str, Any]:
-    """Return one shaft up to an order more than `truth` has.
+    """Return the results of one shaft up to one order more than `truth` uses.
 
-    Limits without it, with it, and with a layer less.
+    The results are the limits without this order, with it, and with one layer less.
     """
     grid = layered_grid(read_solid(step, shaft), LAYERS)
     usual = SHARP_ORDERS if grid.is_sharp else ORDERS
@@ -256,7 +256,7 @@ CHECKED = ("stiffness", "bending stiffness")
 
 
 def main(numbers: list[int]) -> None:
-    """Check the truth of some of the kept shafts, print and keep."""
+    """Check the reference values of some stored shafts, print and store the result."""
     from benchmarks.torsion_levels import RESULTS as SHAFTS
     from benchmarks.torsion_levels import drawn
 

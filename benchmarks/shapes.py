@@ -1,4 +1,4 @@
-"""Bearings of `oil_film` 2 that are not plain: meshes, start line, and grooves under load.
+"""Measure bearings of `oil_film` 2 that are not plain: meshes, start line, and grooves under load.
 
     python -m benchmarks.shapes mesh        ten minutes: 310 bearings, benchmarks/results/shapes_mesh.json
     python -m benchmarks.shapes held_out    320 others by which nothing was chosen: shapes_held_out.json
@@ -68,20 +68,20 @@ def drawn(number: int, seed: int = SEED) -> BearingCase:
 
 
 def stated(loaded: BearingCase) -> tuple[Balance, dict[str, Any]]:
-    """Return the balance, and the fields of `StaticFilm` that `shaped_journal` states."""
+    """Return the equilibrium, and the fields of `StaticFilm` that `shaped_journal` states."""
     balanced = balance(loaded)
     return balanced, measured_film(balanced, loaded.bore, loaded.tilt, 1.0)
 
 
 def values_of(film: dict[str, Any]) -> dict[str, Array]:
-    """Return what is compared; the place as a vector."""
+    """Return the values to compare; the journal position as a vector."""
     place = film["eps"] * np.array([np.cos(film["attitude"]), np.sin(film["attitude"])])
     return {"gap": np.array(film["least"]), "place": place, "pressure": np.array(film["P_max"]),
             "side_flow": np.array(film["side_flow"])}  # fmt: skip
 
 
 def truth_of(loaded: BearingCase, balanced: Balance) -> dict[str, Array]:
-    """Return the film extrapolated to from a mesh twice as fine each way as the answer's finest."""
+    """Return the film extrapolated from a mesh twice as fine each way as the finest of the result."""
     mesh = {128: (256, 32), 256: (512, 64)}[around(balanced)]
     fine = balanced.fine
     finest = shaped_balance.stable_film(loaded, fine.lie.e, mesh, fine.film)
@@ -94,12 +94,12 @@ def truth_of(loaded: BearingCase, balanced: Balance) -> dict[str, Array]:
 
 
 def around(balanced: Balance) -> int:
-    """Return the intervals around of the finest mesh."""
+    """Return the number of intervals around the bearing of the finest mesh."""
     return int(balanced.fine.film.nodes.shape[0])
 
 
 def measured(number: int, seed: int = SEED) -> dict[str, Any]:
-    """Return the true and the stated errors of one bearing, relative, and what it cost."""
+    """Return the true and the stated relative errors of one bearing, and its cost."""
     loaded, begin = drawn(number, seed), process_time()
     about: dict[str, Any] = {"seed": number, "So": loaded.So}
     try:
@@ -116,12 +116,12 @@ def measured(number: int, seed: int = SEED) -> dict[str, Any]:
 
 
 def measured_films(seed: int = SEED) -> list[dict[str, Any]]:
-    """Return the bearings of a seed measured so far that have a film."""
+    """Return the measured bearings of a seed that have a film."""
     return [one for one in json.loads(RESULTS[seed].read_text(encoding="utf-8")) if "errors" in one]
 
 
 def mesh(seed: int = SEED) -> None:
-    """Measure what is not yet, and print the table of docs/oil_film_shapes.md."""
+    """Measure missing bearings, and print the table of docs/oil_film_shapes.md."""
     path = RESULTS[seed]
     kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     for number in range(len(kept), COUNTS[seed]):
@@ -150,7 +150,7 @@ def mesh(seed: int = SEED) -> None:
 
 
 def start_line() -> None:
-    """Print K_xx over W/c and the whirl limit at level map, B/D 1, with both start lines."""
+    """Print K_xx over W/c and the whirl threshold at level map, B/D 1, with both start lines."""
     print("| eps | K_xx fixed | K_xx moving | whirl limit moving over fixed |\n|---|---|---|---|")
     for eps in (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8):
         So, ratio = mapped_load(np.array(eps), np.array(1.0)), np.array(1.0)
@@ -162,7 +162,7 @@ def start_line() -> None:
 
 
 def groove() -> None:
-    """Print the load along the groove's direction that a film bears where none stands across it.
+    """Print the load along the groove's direction that a film carries without a force across it.
 
     A plain bearing, B/D 0.5, with a groove of 20° over the whole width. The journal is where the force across
     the load vanishes: there is an equilibrium only if the force along reaches the load.
@@ -175,7 +175,7 @@ def groove() -> None:
 
 
 def _borne(angle: float, pressure: float, eps: float) -> str:
-    """The largest load that is borne at an eccentricity, over the attitudes at which none stands across."""
+    """Return the largest load carried at an eccentricity, over attitudes without a force across it."""
     attitudes = np.radians(np.linspace(-90, 90, 49))
     forces = np.array([_force(angle, pressure, eps, attitude) for attitude in attitudes])
     along, across = forces.T

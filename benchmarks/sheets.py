@@ -1,4 +1,4 @@
-"""Cost of a worksheet beside the Python file of the same template, `oil_film` 1, and the time to read it.
+"""Compare the cost of a worksheet with the Python file of the same template, `oil_film` 1.
 
     python -m benchmarks.sheets      half a minute; prints processor times, each the smallest of several runs
 
@@ -37,7 +37,7 @@ def every_formula(cls: type[Template], values: Values) -> None:
 
 
 def least(work: Callable[[], object], runs: int, times: int = 1) -> float:
-    """Return the smallest processor time of some runs, each of the work so many times [s]."""
+    """Return the smallest processor time of some runs, each of which repeats the work [s]."""
     took = []
     for _ in range(runs):
         start = process_time()
@@ -73,7 +73,7 @@ def compare(words: str, film: type[Template], inputs: Mapping[str, Any], runs: i
 
 
 def main() -> None:
-    """Print the table, and how far both differ."""
+    """Print the table, and the largest difference between both."""
     film = read(TEXT).template("oil_film", 1)
     print(f"{'':24} {'worksheet':>12} {'file':>12} {'ratio':>7}")
     compare("1 point", film, OilFilm.example, 200, 50)

@@ -1,4 +1,4 @@
-"""Random bearings, sized: least power with a film of at least a limit, explored cheaply and then confirmed.
+"""Size random bearings: minimise the power loss with a minimum film, explore cheaply, then confirm.
 
     python -m benchmarks.sizing [--count 50] [--seed 0] [--explore map] [--within 1e-3]
 
@@ -42,7 +42,7 @@ NAMES = ("diameter", "width", "clearance")
 
 @dataclass
 class Sizing:
-    """The question of one sizing, in the units of its names, and its result."""
+    """One sizing problem with its result; the units are in the names."""
 
     diameter_mm: float
     width_ratio: float
@@ -69,18 +69,18 @@ def sizing(random: np.random.Generator, heat: bool) -> Sizing:
     oil = (
         {"supply_temperature": f"{temperature} degC"} if heat else {"dynamic_viscosity": f"{viscosity} mPa*s"}
     )
-    numbers = {
-        "diameter_mm": random.uniform(30, 90),
-        "width_ratio": random.uniform(0.3, 0.55),
-        "clearance_ratio": 10 ** random.uniform(-3.1, -2.7),
-        "pressure_MPa": random.uniform(5, 35),
-        "speed_rpm": random.uniform(1500, 7000),
-    }
-    return Sizing(**{name: float(number) for name, number in numbers.items()}, oil=oil)
+    return Sizing(
+        diameter_mm=float(random.uniform(30, 90)),
+        width_ratio=float(random.uniform(0.3, 0.55)),
+        clearance_ratio=float(10 ** random.uniform(-3.1, -2.7)),
+        pressure_MPa=float(random.uniform(5, 35)),
+        speed_rpm=float(random.uniform(1500, 7000)),
+        oil=oil,
+    )
 
 
 def space(of: Sizing) -> Space:
-    """Return the box [m]: diameter ± 10 %, width from 0.8 to 1.25 times, clearance from 0.5 to 1.7 times."""
+    """Return the ranges [m]: diameter ± 10 %, width 0.8 to 1.25 times, clearance 0.5 to 1.7 times."""
     diameter = of.diameter_mm / 1e3
     middle = (diameter, diameter * of.width_ratio, diameter * of.clearance_ratio)
     around = ((0.9, 1.1), (0.8, 1.25), (0.5, 1.7))
@@ -89,7 +89,7 @@ def space(of: Sizing) -> Space:
 
 
 def engine(of: Sizing) -> DesignEngine:
-    """Return the design of a sizing, of one step."""
+    """Return the design of a sizing, which has one step."""
     diameter = of.diameter_mm
     width, clearance = diameter * of.width_ratio, diameter * of.clearance_ratio
     inputs = {
@@ -109,7 +109,7 @@ def engine(of: Sizing) -> DesignEngine:
 
 
 def level(design: DesignEngine, name: str, limit: float) -> Answer:
-    """Return the answer of a design at a level; the cost is processor time."""
+    """Return the results of a design at a level; the cost is processor time."""
 
     def answer(rows: Array) -> Columns:
         start = process_time()
@@ -118,25 +118,32 @@ def level(design: DesignEngine, name: str, limit: float) -> Answer:
         film, loss, error = table.columns[FILM], table.columns[LOSS], table.errors[FILM]
         reasons = {row: refusal.detail for row, refusal in table.refusals.items()}
         least, most = film / (1 + error), film / np.maximum(1 - error, 1e-300)
-        columns = (loss, film, np.full_like(film, limit), least - limit, most - limit)
+        parts = {
+            "objectives": loss,
+            "values": film,
+            "limits": np.full_like(film, limit),
+            "low": least - limit,
+            "high": most - limit,
+        }
         seconds = process_time() - start
-        return Columns(*(each[:, None] for each in columns), reasons=reasons, seconds=seconds)
+        columns: dict[str, Any] = {name: part[:, None] for name, part in parts.items()}
+        return Columns(**columns, reasons=reasons, seconds=seconds)
 
     return answer
 
 
 def thickest(of: Sizing, design: DesignEngine, explore: str) -> float:
-    """Return the thickest film [m] in the box of a sizing, at the exploring level."""
+    """Return the thickest film [m] in the ranges of a sizing, at the exploring level."""
     return float(np.nanmax(level(design, explore, 0.0)(Sobol(space(of), 1024, 0).rows(0, 1024)).values))
 
 
 def problem(of: Sizing) -> Problem:
-    """Return the least loss with a film of at least the limit."""
+    """Return the optimisation problem: least loss with a film of at least the limit."""
     return Problem(space(of), (Objective("loss"),), (Held("film", ">="),))
 
 
 def run(of: Sizing, design: DesignEngine, explore: str, seed: int, within: float) -> None:
-    """Optimise one sizing, and note what came of it."""
+    """Optimise one sizing and record the result."""
     limit = of.limit_um / 1e6
     answers = level(design, explore, limit), level(design, FINE, limit)
     optimum = optimise(problem(of), *answers, seed=seed, within=within)
@@ -149,7 +156,7 @@ def run(of: Sizing, design: DesignEngine, explore: str, seed: int, within: float
 
 
 def full_seconds(of: Sizing, design: DesignEngine) -> float:
-    """Time that the scan would take at the confirming level [s]."""
+    """Return the time of a complete scan at the confirming level [s]."""
     answer = level(design, FINE, of.limit_um / 1e6)
     return answer(Sobol(space(of), MEASURED, 0).rows(0, MEASURED)).seconds / MEASURED * SCANNED
 
@@ -163,7 +170,7 @@ def started(random: np.random.Generator, number: int, explore: str) -> tuple[Siz
 
 
 def all_sizings(options: argparse.Namespace) -> list[Sizing]:
-    """Run as many sizings as asked for; print each, and write what there is."""
+    """Run the requested number of sizings; print each, and write the results."""
     random, done = np.random.default_rng(options.seed), []
     for number in range(options.count):
         one, design = started(random, number, options.explore)
@@ -186,7 +193,7 @@ def levels_of_one(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def entry(optimum: Optimum, limit: float) -> dict[str, Any]:
-    """Return one row of the trade."""
+    """Return one row of the trade-off table."""
     best = optimum.best
     return {
         "promised loss [W]": float(best.promise[0]),
@@ -223,7 +230,7 @@ def write(explore: str, done: list[Sizing], levels: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Run, summarise and write."""
+    """Run the sizings, summarise and write them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--seed", type=int, default=0)

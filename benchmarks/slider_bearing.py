@@ -40,7 +40,7 @@ HEIGHTS = np.linspace(0, 1, 9)
 
 
 def errors(film: PadFilm, true: PadFilm) -> dict[str, Array]:
-    """Return the error of every output of a pad, by name."""
+    """Return the error of every output of a pad by name."""
     profile = np.abs(film.pressure(STATIONS) - true.pressure(STATIONS)).max(axis=-1) / true.P_max
     slope, straight = (np.stack([f.gradient(np.array(x)) for x in PLACES], axis=-1) for f in (film, true))
     H = true.a[..., None] - (true.a[..., None] - 1) * PLACES
@@ -76,25 +76,26 @@ def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> 
 
 
 def table(level: str) -> dict[str, list[list[float]]]:
-    """Return the largest errors of every output in every cell; none where the film is ruptured."""
+    """Return the largest errors of every output in every cell; None where the film is ruptured."""
     cells = [[cell(level, ratio, width) for width in pairwise(WIDTH)] for ratio in pairwise(RATIO)]
     names = cells[-1][-1]
     return {name: [[one.get(name, 0.0) for one in row] for row in cells] for name in names}
 
 
 def seconds_a_point(level: str, count: int) -> float:
-    """Return the cost of a pad among so many, the best of some runs."""
-    a = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
+    """Return the cost of a pad among many, the shortest of some runs [s]."""
+    a: Any = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
+    single: Any = 1.0
     runs = []
     for _ in range(5):
         begin = perf_counter()
-        pad_film(level, a, 1.0)
+        pad_film(level, a, single)
         runs.append(perf_counter() - begin)
     return float(f"{min(runs) / count:.1e}")
 
 
 def costs(level: str) -> dict[str, float]:
-    """Return the cost a point, alone and among many."""
+    """Return the cost per point, alone and among many."""
     return {"single": seconds_a_point(level, 1), "vectorised": seconds_a_point(level, POINTS)}
 
 

@@ -1,9 +1,10 @@
-"""Stated errors of `oil_film` 2 at every level, held against converged films of 1 000 fresh plain bearings.
+"""Check the stated errors of `oil_film` 2 at every level on 1 000 new plain bearings.
 
     python -m benchmarks.static_film    some minutes: benchmarks/results/static_film.json
 
-Places are uniform over atanh(eps) from 0.02 to 6 and over ln(B/D) from 0.02 to 20; no table was made from
-them. The truth is extrapolated from 256 × 32 and 512 × 64 intervals. A level refuses some: those count apart.
+The random points are uniform over atanh(eps) from 0.02 to 6 and over ln(B/D) from 0.02 to 20; no table was
+derived from them. The reference is extrapolated from 256 × 32 and 512 × 64 intervals. Points that a level
+refuses are counted separately.
 """
 
 import json
@@ -36,8 +37,8 @@ def places(seed: int, count: int) -> tuple[Array, Array]:
 
 
 def stated(level: str, So: Array, b: Array) -> dict[str, Array]:
-    """Return the error that an answer at a level states for each output, by points."""
-    given = {
+    """Return the error that a level states for each output at the points."""
+    given: dict[str, tuple[Any, str]] = {
         "radial_load": (So * b * D**2 * ETA * OMEGA / PSI**2, "N"), "bearing_width": (b * D, "m"),
         "bearing_diameter": (D, "m"), "diametral_clearance": (PSI * D, "m"),
         "dynamic_viscosity": (ETA, "Pa*s"), "speed": (OMEGA, "rad/s"),
@@ -46,7 +47,7 @@ def stated(level: str, So: Array, b: Array) -> dict[str, Array]:
     parts = []
     for some in np.array_split(np.arange(So.size), -(-So.size // OilFilm.most_points.get(level, So.size))):
         part = {
-            n: q if np.ndim(q.si) == 0 else TypedQuantity(None, q.unit, q.si[some], {})
+            n: q if np.ndim(q.si) == 0 else TypedQuantity(None, q.unit, np.asarray(q.si)[some], {})
             for n, q in raw.items()
         }
         error = evaluate(OilFilm, part, level=level, judge=False).error
@@ -55,7 +56,7 @@ def stated(level: str, So: Array, b: Array) -> dict[str, Array]:
 
 
 def held(level: str, eps: Array, b: Array, solutions: Array) -> dict[str, Any]:
-    """Return how many points have a stated error for each output, and in how many it is at least the true."""
+    """Return, for each output, the number of points with a stated error, and with a right one."""
     truth, matrices = decoded(eps, b, solutions, streamers=truth_of(level, "power_loss") == OIL_SHEAR)
     film = static_film_at(level, truth.So, b)
     own = np.where(np.isfinite(film.eps), film.eps, np.nan)
@@ -72,9 +73,11 @@ def held(level: str, eps: Array, b: Array, solutions: Array) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Measure all levels, and print the share that holds."""
+    """Measure all levels, and print the shares of right errors."""
     eps, b = places(SEED, COUNT)
-    solutions = np.array([extrapolated(*map(float, place), 256, 32) for place in zip(eps, b, strict=True)])
+    solutions = np.array(
+        [extrapolated(float(at), float(width), 256, 32) for at, width in zip(eps, b, strict=True)]
+    )
     found = {}
     for level in OilFilm.levels:
         some = slice(FEWER.get(level, COUNT))

@@ -1,9 +1,10 @@
-"""Count how often the stated bound of an orbit's smallest gap holds, on random duties.
+"""Count how often the stated bound of an orbit's minimum gap is right, on random duties.
 
     python -m benchmarks.step_bound [duties]      two minutes for 400, and as many for grooved ones
 
-Prints the shares and keeps them in benchmarks/results/step_bound.json. Grooved duties are those of level
-`mobility_grooved` of `oil_film_cycle` 1, with a groove of any place, extent and width up to half the bearing.
+The script prints the shares and stores them in benchmarks/results/step_bound.json. Grooved duties are for
+level `mobility_grooved` of `oil_film_cycle` 1, with a groove of any position and extent, and up to half as
+wide as the bearing.
 
 The truth is the orbit with steps sixteen times as fine. `step_error` is what `oil_film_cycle` 1 answers, the
 change at shared nodes; `step_bound` is that of `templates/physics/orbits/step_bound.py`.
@@ -50,7 +51,7 @@ class Shares:
 
 
 def random_duties(rng: np.random.Generator, count: int, points: int) -> tuple[CyclicLoad, Array]:
-    """Harmonics and a firing at random, six decades of load, speeds of both signs and none, B/D 0.05 … 5."""
+    """Return random loads: harmonics and a firing, six decades, any sign of speed, B/D 0.05 … 5."""
     angle = np.arange(points) * 4 * np.pi / points
     order = np.arange(8)[:, None, None]
     size = rng.random((8, count, 4)) * (rng.random((8, count, 1)) < 0.5) / (1 + order)
@@ -64,7 +65,7 @@ def random_duties(rng: np.random.Generator, count: int, points: int) -> tuple[Cy
 
 @contextmanager
 def finer_steps(times: float) -> Iterator[None]:
-    """Orbits with so many times finer steps, and none refined beyond."""
+    """Return orbits with steps this many times finer, without further refinement."""
     kept = journal_orbit.LARGEST_STEP, journal_orbit.ROUGHEST
     journal_orbit.LARGEST_STEP, journal_orbit.ROUGHEST = kept[0] / times, np.inf
     try:
@@ -74,7 +75,7 @@ def finer_steps(times: float) -> Iterator[None]:
 
 
 def measured(seed: int, duties: int, finer: float = FINER) -> Shares:
-    """Compare both estimates with the truth."""
+    """Compare both estimates with the true error."""
     load, ratio = random_duties(np.random.default_rng(seed), duties, POINTS)
     law = MapLaw(ratio)
     orbit = periodic_orbit(load, law)
@@ -84,7 +85,7 @@ def measured(seed: int, duties: int, finer: float = FINER) -> Shares:
 
 
 def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Shares:
-    """Return the same of bearings with a groove in a sleeve at rest."""
+    """Compare both estimates for bearings with a groove in a fixed sleeve."""
     rng = np.random.default_rng(seed)
     load, ratio = random_duties(rng, duties, POINTS)
     ratio = np.maximum(ratio, 0.1)
@@ -98,7 +99,7 @@ def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Share
 
 
 def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
-    """Return the shares, of the orbits that both have."""
+    """Return the shares for the orbits that both calculations have."""
     present = np.isfinite(orbit.least_gap) & np.isfinite(true)
     bound, error = orbit.step_bound[present], np.abs(orbit.between / true - 1)[present]
     at_nodes = np.abs(orbit.least_gap / true - 1)[present]
@@ -115,7 +116,7 @@ def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
 
 
 def main() -> None:
-    """Measure, keep, print."""
+    """Measure, store and print the shares."""
     duties = int(sys.argv[1]) if len(sys.argv) > 1 else DUTIES
     shares = {"mobility": measured(SEED, duties), "mobility_grooved": measured_with_grooves(SEED, duties)}
     kept = {"duties": duties, **{level: asdict(share) for level, share in shares.items()}}

@@ -45,7 +45,7 @@ NOUNS = frozenset({"spring", "string", "bearing", "typesetting", "imported_model
 
 
 def layers() -> tuple[frozenset[str], ...]:
-    """The layers of `app` as the import contracts of `pyproject.toml` draw them, from the top down."""
+    """Return the layers of `app` as the import contracts of `pyproject.toml` list them, from the top down."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     (drawn,) = (one["layers"] for one in contracts if one["name"] == "the layers of app")
     parts = [frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn]
@@ -60,15 +60,15 @@ LAYERS = layers()
 def part_of(module: str) -> str:
     """Return the part of `app` to which a module belongs: `app.designs.document` → `designs`.
 
-    The routes of all resources are one part: they stand above every room, though each is in the folder of its
-    resource.
+    The routes of all resources form one part: their layer is above the resources, although each is in the
+    folder of its resource.
     """
     part, *inside = module.split(".")[1:]
     return "routes" if inside[:1] == ["routes"] and part != "web" else part
 
 
 def imports(path: Path) -> Iterator[str]:
-    """The modules of `app` that a file imports, wherever in the file."""
+    """Return the modules of `app` that a file imports, anywhere in the file."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [f"{node.module}.{alias.name}" for alias in node.names]
@@ -78,7 +78,7 @@ def imports(path: Path) -> Iterator[str]:
 
 
 def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
-    """How many imports lead from one part to another."""
+    """Return the number of imports from one part to another."""
     counted: Counter[tuple[str, str]] = Counter()
     for path in sorted(app.rglob("*.py")):
         source = part_of("app." + ".".join(path.relative_to(app).with_suffix("").parts))
@@ -88,7 +88,7 @@ def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
 
 
 def words(pattern: str, app: Path = APP) -> Counter[str]:
-    """How often a word that matches stands in each file, imports and comments included."""
+    """Return the number of matching words in each file, including imports and comments."""
     counts = Counter[str]()
     for path in app.rglob("*.py"):
         count = len(re.findall(rf"\b(?:{pattern})\b", path.read_text(encoding="utf-8")))
@@ -97,7 +97,7 @@ def words(pattern: str, app: Path = APP) -> Counter[str]:
 
 
 def named(banned: Container[str], root: Path = APP) -> Counter[str]:
-    """How often each file below a folder gives a value, an argument or a function one of these names."""
+    """Return how often each file below a folder uses one of these names for a value, argument or function."""
     counts = Counter[str]()
     for path in root.rglob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
@@ -107,7 +107,7 @@ def named(banned: Container[str], root: Path = APP) -> Counter[str]:
 
 
 def _given(node: ast.AST) -> str | None:
-    """The name that a node gives to something, if it gives one."""
+    """Return the name that a syntax node defines, if any."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return node.name.lower()
     if isinstance(node, ast.arg):
@@ -118,12 +118,12 @@ def _given(node: ast.AST) -> str | None:
 
 
 def rank(part: str) -> int:
-    """The layer of a part, counted from the top; the lowest for one that no layer names."""
+    """Return the layer of a part, counted from the top; the lowest for a part in no layer."""
     return next((number for number, layer in enumerate(LAYERS) if part in layer), len(LAYERS))
 
 
 def upward(counted: Counter[tuple[str, str]]) -> list[tuple[str, str]]:
-    """The arrows that point to the same layer or to a higher one."""
+    """Return the imports into the same layer or a higher one."""
     return sorted(pair for pair in counted if rank(pair[1]) <= rank(pair[0]))
 
 
@@ -151,13 +151,13 @@ def imported(path: Path, known: Container[str], name: str) -> set[str]:
 
 
 def graph(root: Path = ROOT, packages: tuple[str, ...] = PACKAGES) -> dict[str, set[str]]:
-    """Return for each module those that it imports."""
+    """Return the imported modules of each module."""
     known = modules(root, packages)
     return {name: imported(path, known, name) for name, path in known.items()}
 
 
 def circles(arrows: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the groups of modules that import each other, directly or by way of others."""
+    """Return the groups of modules that import each other, directly or indirectly."""
     reached = {name: _reached(name, arrows) for name in arrows}
     groups = {
         tuple(sorted({name} | {other for other in reached[name] if name in reached[other]}))
@@ -168,7 +168,7 @@ def circles(arrows: Mapping[str, set[str]]) -> list[list[str]]:
 
 
 def _reached(name: str, arrows: Mapping[str, set[str]]) -> set[str]:
-    """Return what a module imports, directly or by way of others."""
+    """Return the modules that a module imports, directly or indirectly."""
     found, left = set[str](), [name]
     while left:
         for other in arrows.get(left.pop(), ()):
@@ -179,7 +179,7 @@ def _reached(name: str, arrows: Mapping[str, set[str]]) -> set[str]:
 
 
 def single_importers(arrows: Mapping[str, set[str]], root: Path = ROOT) -> dict[str, str]:
-    """Return the short modules of `app` that one other module alone imports, and that module."""
+    """Return the short modules of `app` with exactly one importing module, and that module."""
     known = modules(root)
     found = {}
     for name, path in known.items():
@@ -194,12 +194,12 @@ def single_importers(arrows: Mapping[str, set[str]], root: Path = ROOT) -> dict[
 
 
 def _may_be_short(name: str) -> bool:
-    """Return whether the name says why a module may be short: one of a resource, or a command's."""
+    """Return whether the name allows a short module: a standard file of a resource, or a command."""
     return bool(RESOURCE & set(name.split("."))) or name.startswith("app.cli.")
 
 
 def pairs(root: Path = ROOT) -> list[tuple[str, str]]:
-    """Return the modules of one folder whose names differ by -ing, -ed, -s or the like alone."""
+    """Return the modules of one folder whose names differ only by -ing, -ed, -s or the like."""
     folders: dict[Path, dict[str, list[str]]] = {}
     for path in sorted((root / "app").rglob("*.py")):
         stem = ENDINGS.sub("", path.stem)
@@ -222,7 +222,7 @@ def participles(root: Path = ROOT) -> list[str]:
 
 
 def main() -> None:
-    """Print the counts, every arrow that points upwards, and every file with `Any`."""
+    """Print the counts, every upward import, and every file with `Any`."""
     counted, graphed = arrows(), graph()
     against = upward(counted)
     print(

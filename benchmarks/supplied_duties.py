@@ -22,7 +22,7 @@ SMALLEST, LARGEST = 0.3, 105.0
 
 @dataclass(frozen=True)
 class RandomDuty:
-    """One duty and where it comes from."""
+    """One duty and its origin."""
 
     load: CyclicLoad
     sliding: Array
@@ -35,7 +35,7 @@ class RandomDuty:
 
 
 def random_duty(seed: int, number: int, fed_by: str | None = None) -> RandomDuty:
-    """Return a duty; engines have even numbers, and the kinds of supply take turns unless one is given."""
+    """Return a duty; even numbers are engines, and the kinds of supply alternate unless one is given."""
     rng = np.random.default_rng([seed, number])
     fed_by = SUPPLIES[(number // 2) % len(SUPPLIES)] if fed_by is None else fed_by
     kind, load, sliding = _engine(rng) if number % 2 == 0 else _fourier(rng)
@@ -57,7 +57,7 @@ def _supply(rng: np.random.Generator, fed_by: str) -> Supply:
 
 
 def _engine(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
-    """Return the load with which the journal of a big end or a main bearing pushes, seen from the block."""
+    """Return the load of the journal on a big end or a main bearing, in the axes of the block."""
     strokes, big = int(rng.choice([2, 4])), bool(rng.random() < 0.6)
     period = strokes * np.pi
     theta = np.arange(POINTS) * period / POINTS
@@ -82,7 +82,7 @@ def _engine(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
 
 
 def _fourier(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
-    """Return harmonics of the cycle, and a firing in half of them; sleeve at rest."""
+    """Return a load of random harmonics, half of them with a firing; the sleeve is fixed."""
     period = float(rng.choice([2, 4]) * np.pi)
     theta = np.arange(POINTS) * period / POINTS
     order = np.arange(6)

@@ -1,4 +1,4 @@
-"""Level `supplied` on random duties: how marches end, what they cost, and what a finer mesh changes.
+"""Run level `supplied` on random duties: verdicts, cost, and the change on a finer mesh.
 
     nice python -m benchmarks.supplied_orbits ensemble [duties]     marches, 300 unless given
     nice python -m benchmarks.supplied_orbits finer [duties]        a fifth of them twice as fine
@@ -63,7 +63,7 @@ def marched(
 
 
 def row(duty: RandomDuty) -> Row:
-    """Return the kept row of a duty."""
+    """Return the stored row of a duty."""
     orbit, seconds = marched(duty)
     return {
         "kind": duty.kind,
@@ -88,13 +88,13 @@ def row(duty: RandomDuty) -> Row:
 def sampled(number: int) -> bool:
     """Return whether a duty is one of two in ten.
 
-    In five tens there is each supply with each kind of load once.
+    Fifty duties contain each supply with each kind of load once.
     """
     return number // 10 % 5 == number % 5
 
 
 def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Row:
-    """The march of a kept duty, then one with so many times the cells, around and across, and the steps."""
+    """Return a stored duty continued for more cycles, then with more cells and steps."""
     base = replace(FINE, around=kept["around"])
     across = cells * base.across
     if kept["least_gap"] < THIN:  # the orbit adds as many rows to every mesh
@@ -112,7 +112,7 @@ def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Ro
 
 
 def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
-    """Return effects of more cycles, of more cells and of smaller steps, each alone."""
+    """Return the separate effects of more cycles, of more cells and of smaller steps."""
     return {
         "cycles": continued(duty, kept),
         "cells": continued(duty, kept, cells=2),
@@ -121,7 +121,7 @@ def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
 
 
 def near(duty: RandomDuty) -> Row:
-    """Smallest gap of the meshes of version 3, the error that it states for them, and that of the finest."""
+    """Return the minimum gap near holes on the added meshes, its stated error, and the finest result."""
     orbit, seconds = marched(duty, near_holes=NEAR_HOLES)
     finest, _ = marched(duty, near_holes=(*NEAR_HOLES, FINEST))
     return {
@@ -135,12 +135,12 @@ def near(duty: RandomDuty) -> Row:
 
 
 def change(kept: Row, other: Row) -> float:
-    """Return the relative error of the least gap [-]."""
+    """Return the relative error of the minimum gap [-]."""
     return float(kept["least_gap"] / other["least_gap"] - 1)
 
 
 def results() -> dict[str, Any]:
-    """Return the kept results; empty at first."""
+    """Return the stored results; empty at first."""
     if RESULTS.exists():
         kept: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8"))
         return kept
@@ -148,7 +148,7 @@ def results() -> dict[str, Any]:
 
 
 def run(what: str, duties: int) -> None:
-    """March what is not kept yet."""
+    """Calculate the duties that are not stored yet."""
     kept = results()
     rows = kept["duties"]
     marched(random_duty(SEED, 1))  # compiles
@@ -173,12 +173,12 @@ def stays(kept: Row) -> bool:
 
 
 def missed(kept: Row) -> bool:
-    """Return whether a finer mesh changes the least gap by more than `MISS`."""
+    """Return whether a finer mesh changes the minimum gap by more than `MISS`."""
     return "finer" in kept and abs(change(kept, kept["finer"])) > MISS
 
 
 def tables(rows: list[Row]) -> None:
-    """Endings for each supply, cost, and the change by a finer mesh."""
+    """Print the verdicts for each supply, the cost, and the change on a finer mesh."""
     print(f"{len(rows)} duties")
     verdicts = ("repeating", "wandering", "starved", "unsettled")
     print("supply       " + "".join(f"{verdict:>11}" for verdict in verdicts))
@@ -198,7 +198,7 @@ def tables(rows: list[Row]) -> None:
 
 
 def finer_tables(rows: list[Row]) -> None:
-    """The change by a finer mesh, for each supply and in all; what changes the worst."""
+    """Print the change on a finer mesh for each supply and in total, and what causes the largest ones."""
     for name in (*SUPPLIES, "all"):
         changes = np.array([
             abs(change(r, r["finer"])) for r in rows if "finer" in r and name in ("all", r["fed_by"])
@@ -220,7 +220,7 @@ def finer_tables(rows: list[Row]) -> None:
 
 
 def near_table() -> None:
-    """Meshes near holes under the load: error of both versions against the finest mesh, and that stated."""
+    """Print the errors near holes under the load relative to the finest mesh, and the stated errors."""
     for number, kept in results()["duties"].items():
         if (own := kept.get("near")) and own["finest"]["verdict"] in FILMS:
             print(f"duty {number}: under the load {kept['under_load']:.2f}, version 2 "

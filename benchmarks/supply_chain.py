@@ -1,10 +1,11 @@
-"""Parts of the service: hashes, a bill of materials and licences of all pinned distributions.
+"""Generate hashes, a bill of materials and the list of licences of all pinned distributions.
 
     python -m benchmarks.supply_chain            # docs/licences.md, docs/sbom.cdx.json: of what is installed
     python -m benchmarks.supply_chain --hashes   # the lock as well: asks the package index by pip
 
-Run it in the environment that `constraints.txt` describes. The lock holds the hashes of the files that pip
-takes on this platform: `pip install --require-hashes --no-deps -r docs/requirements.lock` accepts no others.
+Run the script in the environment that `constraints.txt` describes. The lock contains the hashes of the files
+that pip uses on this platform: `pip install --require-hashes --no-deps -r docs/requirements.lock` accepts no
+others.
 """
 
 import argparse
@@ -18,6 +19,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "docs" / "requirements.lock"
@@ -50,30 +52,30 @@ class Component:
 
 
 def pins() -> dict[str, str]:
-    """Return the name → version of all that is pinned."""
+    """Return name → version of all pinned distributions."""
     lines = CONSTRAINTS.read_text().split()
     return dict(line.split("==") for line in lines)
 
 
 def normalised(name: str) -> str:
-    """Return a name as PEP 503 compares it."""
+    """Return a name in the normalised form of PEP 503."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def component(name: str) -> Component:
-    """Return what an installed distribution says of itself."""
+    """Return the metadata of an installed distribution."""
     package = distribution(name)
     return Component(name, package.version, _licence(package), _home(package), _needs(package))
 
 
 def _needs(package: Distribution) -> tuple[str, ...]:
-    """Return the names, normalised, of what a distribution needs without any extra."""
+    """Return the normalised names of the dependencies of a distribution without extras."""
     needs = (need for need in package.requires or () if "extra ==" not in need)
     return tuple(sorted({normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in needs}))
 
 
 def _licence(package: Distribution) -> str:
-    metadata = package.metadata
+    metadata: Any = package.metadata
     classified = [
         line.rpartition("::")[2].strip()
         for line in metadata.get_all("Classifier", ())
@@ -85,7 +87,7 @@ def _licence(package: Distribution) -> str:
 
 
 def _from_text(package: Distribution) -> str:
-    """Return the first line of the licence's own text, which names most of them."""
+    """Return the first line of the licence text, which usually names the licence."""
     for path in package.files or ():
         if re.match(r"(licen[cs]e|copying)", path.name.lower()):
             lines = (line.strip() for line in path.read_text().splitlines())
@@ -94,10 +96,11 @@ def _from_text(package: Distribution) -> str:
 
 
 def _home(package: Distribution) -> str:
-    urls = dict(line.split(", ", 1) for line in package.metadata.get_all("Project-URL", ()))
+    metadata: Any = package.metadata
+    urls = dict(line.split(", ", 1) for line in metadata.get_all("Project-URL", ()))
     named = {name.lower(): url for name, url in urls.items()}
     ways = ("homepage", "home", "source", "repository", "source code", "github", "documentation")
-    return package.metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
+    return metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
 
 
 EXTRAS = {
@@ -114,7 +117,7 @@ OFFERED = ("study", "team", "traces")  # extras that a user may install
 
 
 def needed(components: dict[str, Component], extra: str | None = None) -> set[str]:
-    """Return the names, normalised, of what the service needs to run, or what one of its extras needs."""
+    """Return the normalised names of all distributions that the service or one of its extras needs."""
     wanted, seen = {*_needed_directly(extra), *([] if extra else EXTRAS)}, set[str]()
     while more := wanted - seen:
         seen |= more
@@ -151,7 +154,7 @@ def licences(components: dict[str, Component]) -> str:
 
 
 def bill(components: dict[str, Component], hashes: dict[str, str]) -> str:
-    """Return the bill of materials, CycloneDX 1.6; equal components give equal text."""
+    """Return the bill of materials (CycloneDX 1.6); equal components give equal text."""
     ours = distribution("crankwright").version
     root = {"type": "application", "bom-ref": "crankwright", "name": "crankwright", "version": ours}
     return json.dumps(
@@ -185,7 +188,7 @@ def _reference(one: Component) -> str:
 
 
 def _graph(components: dict[str, Component]) -> Iterator[dict[str, object]]:
-    """Yield the dependencies of each component on others."""
+    """Yield the dependencies between the components."""
     yield _edges("crankwright", tuple(sorted(_needed_directly())), components)
     for _, one in sorted(components.items()):
         yield _edges(_reference(one), one.needs, components)
@@ -197,7 +200,7 @@ def _edges(reference: str, needs: tuple[str, ...], components: dict[str, Compone
 
 
 def index_hashes() -> dict[str, str]:
-    """Return the name → SHA-256 of the file that pip takes for each pin here; nothing is installed."""
+    """Return name → SHA-256 of the file that pip uses for each pin; nothing is installed."""
     with tempfile.NamedTemporaryFile(suffix=".json") as report:
         options = ["--dry-run", "--ignore-installed", "--no-deps", "--quiet", "--report", report.name]
         subprocess.run([sys.executable, "-m", "pip", "install", *options, "-r", str(CONSTRAINTS)], check=True)
@@ -213,7 +216,7 @@ def locked() -> dict[str, str]:
 
 
 def write_lock() -> None:
-    """Write names, versions and hashes, and no address."""
+    """Write names, versions and hashes, without addresses."""
     hashes = index_hashes()
     lines = [
         f"{name}=={version} --hash=sha256:{hashes[normalised(name)]}" for name, version in pins().items()
@@ -223,7 +226,7 @@ def write_lock() -> None:
 
 
 def main() -> None:
-    """Write the files, and the lock if asked for."""
+    """Write the files, and the lock if requested."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--hashes", action="store_true", help="ask the index, and write requirements.lock")
     if parser.parse_args().hashes:

@@ -1,4 +1,4 @@
-"""Print a random sample of the texts of the project, for a reader who has not seen them.
+"""Print a random sample of the project's texts for a fresh reader.
 
 `python -m benchmarks.text_sample --seed 7 --count 60` prints docstrings of functions and of modules,
 messages and paragraphs of docs, in equal numbers. Each text is named by its file and line. Messages are the
@@ -22,7 +22,7 @@ SHORTEST = 4  # words: a shorter literal is a name, not a message
 
 @dataclass(frozen=True, order=True)
 class Text:
-    """A text and the place where it stands."""
+    """A text with its file and line."""
 
     place: str
     content: str

@@ -1,8 +1,8 @@
-"""Cost of the torsional stiffness of the reference throw, at each level.
+"""Measure the cost of the torsional stiffness of the reference throw at each level.
 
     python -m benchmarks.torsion
 
-Each run has a process of its own on one thread; loading the libraries is not timed. Results in
+Each run has its own process with one thread; loading the libraries is not timed. The results are in
 benchmarks/results/torsion.json.
 """
 
@@ -31,14 +31,14 @@ TOLERANCE = 5e-3
 
 
 def throw() -> dict[str, Any]:
-    """Return the STEP file of the reference throw, drawn in a process of its own: no other loads CadQuery."""
+    """Return the STEP file of the reference throw, built in a separate process that loads CadQuery."""
     from cad.regenerate import regenerate
 
     return {"step": regenerate("crank_throw", 1, THROW).step}
 
 
 def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
-    """Return the stiffness [N·m/rad], and what it took."""
+    """Return the stiffness [N·m/rad], and its cost."""
     stiffness = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
     return {
         "stiffness": stiffness["value"],
@@ -49,7 +49,7 @@ def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
 
 
 def greatest_stress(step: bytes) -> dict[str, Any]:
-    """Return the greatest stress [MPa] under 1 N·m, and what it took."""
+    """Return the greatest stress [MPa] under 1 N·m, and its cost."""
     outputs = ["maximum_stress"]
     stress = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
         "maximum_stress"
@@ -58,7 +58,7 @@ def greatest_stress(step: bytes) -> dict[str, Any]:
 
 
 def alone(action: Callable[..., dict[str, Any]], *inputs: Any, times: int = 3) -> dict[str, Any]:
-    """Do something in a new process, some times, and measure it; the quickest counts."""
+    """Run a function in new processes several times and return the fastest measurement."""
     runs = []
     for _ in range(times):
         with ProcessPoolExecutor(1, get_context("spawn")) as pool:
@@ -67,7 +67,7 @@ def alone(action: Callable[..., dict[str, Any]], *inputs: Any, times: int = 3) -
 
 
 def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
-    """Do something here; adds seconds, error, and memory [MB]: all, and above the libraries'."""
+    """Run a function here; add seconds, error, and memory [MB], in total and above the libraries'."""
     loaded = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     start = perf_counter()
     result = action(*inputs)
@@ -85,7 +85,7 @@ def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
 
 
 def main() -> None:
-    """Measure, print and keep the results."""
+    """Measure, print and store the results."""
     os.environ["OMP_NUM_THREADS"] = "1"
     step = alone(throw, times=1)["step"]
     own = alone(ours, step, AnalysisRequest(tolerance=TOLERANCE))

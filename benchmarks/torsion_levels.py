@@ -2,14 +2,15 @@
 
     python -m benchmarks.torsion_levels [COUNT] [SEED] [FILE]
 
-COUNT shafts, every third of them a crankshaft with plain ends, the others throws. For each shaft and level
-the true error of every output but stress, and the change from one order less, whose multiple is stated as
-the error, above a floor. Every second shaft has no fillets: its corners are sharp. The truth is that of
-`benchmarks.shaft_truth`. `share` is the true error by the stated one, which must be below 1.
+There are COUNT shafts; every third is a crankshaft with plain ends, the others are throws. For each shaft and
+level the script determines the true error of every output except stress, and the change from the next lower
+order; a multiple of this change plus a constant is the stated error. Every second shaft has no fillets, so
+its corners are sharp. The reference is that of `benchmarks.shaft_truth`. `share` is the true error over the
+stated one, which must be below 1.
 
-Everything is kept in FILE, by default benchmarks/results/torsion_levels.json, after every shaft. What is kept
-there for the same shaft, mesh and orders is not computed again. So a run that was broken off goes on, and one
-changed level costs only itself. With COUNT 0 what is kept is judged by the present table.
+All results are stored in FILE, by default benchmarks/results/torsion_levels.json, after every shaft. Stored
+results for the same shaft, mesh and orders are not computed again, so an interrupted run continues, and a
+changed level costs only its own time. With COUNT 0 the stored results are judged by the present table.
 """
 
 import json
@@ -53,7 +54,7 @@ ENDS = {
 
 
 def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Yield parameters [SI] of throws that can be drawn.
+    """Yield parameters [SI] of throws that can be built.
 
     Half of them have no fillets; half of them have each bore, drilling or counterweight.
     """
@@ -74,7 +75,7 @@ def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
 
 
 def random_crankshafts(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Yield parameters [SI] of crankshafts that can be drawn: a random throw, a nose and a plain flange."""
+    """Yield parameters [SI] of crankshafts that can be built: a random throw, a nose and a plain flange."""
     rng = np.random.default_rng(seed + 1)
     for thrown in random_throws(10 * count, seed):
         size = thrown["journal_diameter"]
@@ -103,13 +104,13 @@ def possible(model: type[CadModel], parameters: dict[str, Any]) -> bool:
 
 
 def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
-    """Return a throw's STEP file, and where it is held and loaded."""
+    """Return a throw's STEP file, and the positions at which it is held and loaded."""
     half = 500 * (parameters["pin_length"] + 2 * parameters["web_thickness"] + parameters["journal_length"])
     return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
 
 
 def drawn(model: str, parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
-    """Return the STEP file of a shaft of a model, and where it is held and loaded."""
+    """Return the STEP file of a model of a shaft, and the positions at which it is held and loaded."""
     cls = {one.id: one for one in (CrankThrow, Crankshaft)}[model]
     shaft = cls.from_si(parameters).shaft()
     assert shaft is not None
@@ -124,7 +125,7 @@ PASSES = (LEVELS[:-1], LEVELS[-1:])
 
 
 def measure(row: Row, levels: Iterable[Level]) -> None:
-    """Add to a row what it lacks: the values that its truth is extrapolated from, and those of levels."""
+    """Add missing values to a row: those from which its reference is extrapolated, and those of levels."""
     if row.get("truth", {}).get("by") == KEY and not any(lacks(row, level) for level in levels):
         return
     step, shaft = drawn(row["model"], row["parameters"])
@@ -156,17 +157,17 @@ def measure(row: Row, levels: Iterable[Level]) -> None:
 
 
 def mesh_of(level: Level) -> str:
-    """Return what values of a level depend on."""
+    """Return the parameters on which the values of a level depend."""
     return f"{level.fineness}, order {level.order}, ngsolve {ng.__version__}"
 
 
 def lacks(row: Row, level: Level) -> bool:
-    """Return whether a row has no values of a level as it is."""
+    """Return whether a row lacks values of a level with its present parameters."""
     return bool(row.get(level.name, {}).get("mesh") != mesh_of(level))
 
 
 def summary(rows: list[Row]) -> dict[str, Any]:
-    """Return the greatest true error, change and share of the stated error by level and sort of corners."""
+    """Return the largest true error, change and share of the stated error, by level and kind of corners."""
     return {
         f"{level.name}, {'sharp' if sharp else 'filleted'}": worst(
             level,
@@ -179,7 +180,7 @@ def summary(rows: list[Row]) -> dict[str, Any]:
 
 
 def worst(level: Level, rows: list[Row], *, is_sharp: bool) -> dict[str, Any]:
-    """Return the greatest of each output, in magnitude."""
+    """Return the largest magnitude of each output."""
     worst_ones: dict[str, Any] = {"shafts": len(rows)}
     for name in OUTPUTS:
         found = [judged(row, level, name, is_sharp=is_sharp) for row in rows]
@@ -191,9 +192,9 @@ CRITERIA = ("true error", "change", "share", "truth's last step")
 
 
 def judged(row: Row, level: Level, name: str, *, is_sharp: bool) -> dict[str, float]:
-    """Return one output of one shaft at one level.
+    """Return the errors of one output of one shaft at one level.
 
-    The last step is by how much the truth was extrapolated.
+    The last value is the extrapolation step of the reference.
     """
     low, high = (row[level.name][order][name] for order in ("low", "high"))
     orders = row["truth"]["orders"]
@@ -208,7 +209,7 @@ def judged(row: Row, level: Level, name: str, *, is_sharp: bool) -> dict[str, fl
 
 
 def main(count: int, seed: int, results: Path) -> None:
-    """Measure what is not kept yet, print and keep the table."""
+    """Measure what is not stored yet, print and store the table."""
     rows: list[Row] = json.loads(results.read_text())["rows"] if results.exists() else []
     shafts = [(model.id, parameters) for model, parameters in random_shafts(count, seed)]
     for (model, parameters), row in zip(shafts, rows, strict=False):
@@ -226,7 +227,7 @@ def main(count: int, seed: int, results: Path) -> None:
 
 
 def table(kept: dict[str, Any]) -> Iterator[str]:
-    """The greatest true errors with their shares of the stated ones, as the documentation quotes them."""
+    """Print the largest true errors and their ratios to the stated ones, as the documentation quotes them."""
     corners = ("filleted", "sharp")
     heads = [f"{load}, {kind}" for kind in corners for load in LOADS]
     yield f"| level | {' | '.join(heads)} | shafts, filleted and sharp |"
@@ -244,7 +245,7 @@ def table(kept: dict[str, Any]) -> Iterator[str]:
 
 
 def keep(rows: list[Row], seed: int, results: Path) -> None:
-    """Write what is known so far."""
+    """Store the results so far."""
     record = {"shafts": len(rows), "seed": seed, "summary": summary(rows), "rows": rows}
     results.write_text(json.dumps(record, indent=1) + "\n")
 

@@ -1,4 +1,4 @@
-"""Solutions against which errors are measured: their names, their conventions, the converged films."""
+"""Reference solutions for errors: their names, their conventions, and the converged films."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ FRICTION = ("shear_torque", "friction_torque", "friction_coefficient", "power_lo
 
 
 def meanings(*names: str) -> dict[str, str]:
-    """Return the names that a table uses, with their meanings."""
+    """Return the names of references in a table, with their meanings."""
     return {name: TRUTHS[name] for name in names}
 
 
@@ -41,9 +41,9 @@ RELATIVE_TO: dict[str, float | list[str]] = {
 
 
 def truth_of(level: str, output: str) -> str:
-    """Return against which film the error of an output is measured.
+    """Return the reference film for the error of an output.
 
-    `mass_conserving` has a convention of shear.
+    `mass_conserving` has its own convention of shear.
     """
     if output not in FRICTION:
         return FILM
@@ -51,7 +51,7 @@ def truth_of(level: str, output: str) -> str:
 
 
 def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
-    """Return places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions."""
+    """Return points x = atanh(eps), y = ln(B/D), with films and coefficients of the converged solutions."""
     with np.load(CHECKS) as checks:
         x, y, truth = checks["x"], checks["y"], checks["truth"]
     return x, y, *decoded(np.tanh(x), np.exp(y), truth, streamers=streamers)

@@ -17,7 +17,7 @@ from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
 from cad.step import Body
-from cad.view import RIGHT, TOWARDS
+from cad.view import view_of
 
 _TURN = 0.1  # [rad] between two pieces of a curve
 _SMOOTH = 1e-3  # of the drawing's size: the greatest distance of a piece from its curve
@@ -39,7 +39,9 @@ def write_svg(bodies: Sequence[Body]) -> bytes:
 
 
 def _projected(shape: Shape) -> HLRBRep_HLRToShape:
-    eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*TOWARDS), gp_Dir(*RIGHT))
+    box = shape.BoundingBox()
+    right, _, towards = view_of(np.array([box.xlen, box.ylen, box.zlen])).T
+    eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*towards), gp_Dir(*right))
     algorithm = HLRBRep_Algo()
     algorithm.Add(shape.wrapped)
     algorithm.Projector(HLRAlgo_Projector(eye))

@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 from cad.mesh import Mesh, placed
-from cad.view import RIGHT, TOWARDS, UP
+from cad.view import view_of
 from templates.core.arrays import Array, Integers, Mask
 
 SIZE = (640, 480)  # [pixels]
@@ -66,7 +66,7 @@ def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
 
 def _scene(triangles: Scene, width: int, height: int) -> Scene:
     """Return the triangles that face the viewer, in the frame of the picture."""
-    frame = np.stack([RIGHT, UP, TOWARDS], axis=1)
+    frame = view_of(np.ptp(triangles.corners, axis=(0, 1)))
     corners = _fitted(triangles.corners @ frame, width, height)
     # y points downwards in a picture: a triangle that faces the eye runs clockwise there.
     seen = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < -1e-9

@@ -20,6 +20,7 @@ from OCP.GeomAbs import GeomAbs_SurfaceType as _Kind
 from OCP.TopAbs import TopAbs_Orientation
 
 from cad.on_demand import constant
+from templates.core.arrays import Array
 
 X = constant(lambda: Vector(1, 0, 0))
 Y = constant(lambda: Vector(0, 1, 0))
@@ -32,9 +33,11 @@ _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's 
 
 Face = tuple[str, int]
 """The name of a part, and the number of one of its faces in the order of the solid."""
-Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle"]
+Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
+Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
 """What a size is. The faces of a `distance` from an axis are those about it; a `circle` has the diameter of
-that through the axes of its faces, which are holes; a `chamfer` is of 45°."""
+that through the axes of its faces, which are holes; a `chamfer` is of 45°;
+an `edge` is where its faces meet, dimensioned from the axis."""
 
 
 @dataclass(frozen=True)
@@ -137,12 +140,27 @@ def faces_of(surfaces: Iterable[Surface]) -> tuple[Face, ...]:
 class Surface:
     """A plane, cylinder, sphere, torus or cone with its position, its normal or axis, and its diameter.
 
-    Attributes ---------- point, direction For a plane, a point on it and its normal; for other surfaces, a
-    point on the axis and its direction. The point of a sphere or torus is its centre. diameter Diameter of a
-    cylinder or sphere, tube diameter of a torus, mean of the end diameters of a cone [mm]. reach Start and
-    end of a cylinder or cone along its axis [mm]. about_radius Radius of the centre line of a torus [mm].
-    face Name of the part, and number of the face. middle Centroid of the face of a plane. is_reversed
-    Whether the material is outside a cylinder, or on the side of a plane to which its normal points.
+    Attributes
+    ----------
+    point, direction
+        A point of the plane and its normal; of other surfaces a point of the axis and its direction. The
+        point of a sphere or torus is its centre.
+    diameter
+        Of a cylinder or sphere; of a torus that of its tube, of a cone the mean one of its ends [mm].
+    reach
+        Of a cylinder or cone: where along its axis it begins and ends [mm].
+    about_radius
+        Of a torus: the radius of the circle on which the middle of its tube runs [mm].
+    half_angle
+        Of a cone: between its axis and its side [rad].
+    face
+        The part and the number of its face.
+    middle
+        Of a plane: the centre of area of its face.
+    is_reversed
+        Whether the material is outside a cylinder, or on the side of a plane to which its normal points.
+    form
+        What it is.
     """
 
     point: Vector
@@ -150,13 +168,24 @@ class Surface:
     diameter: float = 0.0
     reach: tuple[float, float] = (0.0, 0.0)
     about_radius: float = 0.0
+    half_angle: float = field(default=0.0, compare=False)
     face: Face = field(default=("", -1), compare=False)
     middle: Vector | None = field(default=None, compare=False)
+    form: Form = field(default="plane", compare=False)
     is_reversed: bool = field(default=False, compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is parallel to the axis."""
         return bool(self.direction.cross(axis).Length < _COINCIDENT)
+
+    def moved(self, turn: Array, shift: Array) -> Surface:
+        """Return the surface after its part was turned (3, 3) and then shifted (3,) [mm]."""
+        point = Vector(*(turn @ self.point.toTuple() + shift))
+        direction = Vector(*(turn @ self.direction.toTuple()))
+        along = point.dot(direction) - self.point.dot(self.direction)
+        low, high = self.reach
+        reach = (low + along, high + along) if self.reach != (0.0, 0.0) else self.reach
+        return replace(self, point=point, direction=direction, reach=reach)
 
     def about(self, axis: Vector) -> bool:
         """Return whether the surface is coaxial with that axis through the origin."""
@@ -173,7 +202,10 @@ class Surface:
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
-        return replace(self, direction=-self.direction, reach=(-high, -low))
+        flips = self.form == "plane"
+        return replace(
+            self, direction=-self.direction, reach=(-high, -low), is_reversed=self.is_reversed != flips
+        )
 
 
 @dataclass(frozen=True)
@@ -291,17 +323,18 @@ def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:
     surface = _surface(cylinder.Axis())
     start = surface.point.dot(surface.direction)
     reach = start + adaptor.FirstVParameter(), start + adaptor.LastVParameter()
-    return replace(surface, diameter=2 * cylinder.Radius(), reach=reach)
+    return replace(surface, form="cylinder", diameter=2 * cylinder.Radius(), reach=reach)
 
 
 def _sphere(adaptor: BRepAdaptor_Surface) -> Surface:
     sphere = adaptor.Sphere()
-    return Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius())
+    return Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius(), form="sphere")
 
 
 def _torus(adaptor: BRepAdaptor_Surface) -> Surface:
     torus = adaptor.Torus()
-    return replace(_surface(torus.Axis()), diameter=2 * torus.MinorRadius(), about_radius=torus.MajorRadius())
+    tube, about = 2 * torus.MinorRadius(), torus.MajorRadius()
+    return replace(_surface(torus.Axis()), form="torus", diameter=tube, about_radius=about)
 
 
 def _cone(adaptor: BRepAdaptor_Surface) -> Surface:
@@ -310,7 +343,8 @@ def _cone(adaptor: BRepAdaptor_Surface) -> Surface:
     start = surface.point.dot(surface.direction)
     ends = adaptor.FirstVParameter(), adaptor.LastVParameter()
     low, high = sorted(start + v * cos(angle) for v in ends)
-    return replace(surface, diameter=2 * cone.RefRadius() + sum(ends) * sin(angle), reach=(low, high))
+    mean = 2 * cone.RefRadius() + sum(ends) * sin(angle)
+    return replace(surface, form="cone", diameter=mean, reach=(low, high), half_angle=abs(angle))
 
 
 def _surface(axis: Any) -> Surface:

@@ -1,4 +1,4 @@
-"""With this module come all routes of the program, analysed; servers that are forked then need not do it."""
+"""Import all routes of the program in an analysed state, so that forked servers need not analyse them."""
 
 from fastapi.routing import iter_route_contexts
 from one_analysis import share_one_analysis

@@ -1,4 +1,4 @@
-"""The lanes of the tests: one thread for numerical libraries, deadlines, and who shares a worker."""
+"""Quick and slow tests: one thread for numerical libraries, deadlines, and shared workers."""
 
 import gc
 import os

@@ -1,4 +1,4 @@
-"""Which tests share a worker: those of one file, and those of one server, so that each is started once.
+"""Groups of tests that share a worker: those of one file, and those of one server, which starts once.
 
 `--dist loadgroup` gives a group to whichever worker is free, in the order of collection. The groups that take
 longest come first, so that both workers end at about the same time. The order is of measured processor times;

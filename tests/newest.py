@@ -1,4 +1,4 @@
-"""Of templates and models the newest versions, which sweeps take in the quick lane; older ones are slow.
+"""Newest versions of templates and models, which quick tests use; older versions are slow tests.
 
 Golden results and digests of every version stay in the quick lane: they hold an older version as it is.
 """

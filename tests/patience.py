@@ -14,7 +14,7 @@ BUDGET = float(os.environ.get("CRANKWRIGHT_TEST_BUDGET", "0"))  # to begin slow 
 GLANCE, LONGEST_GLANCE = 0.02, 0.2  # between two looks at a condition, at first and at last [s]
 
 
-def patient(seconds):
+def patient(seconds: float) -> float:
     """A deadline on this machine, from what suffices on an idle one [s]."""
     return seconds * FACTOR
 

@@ -1,4 +1,4 @@
-"""Where random tests begin: the same requests in every run, others by `CRANKWRIGHT_TEST_SEED`.
+"""Seeds of random tests: the same requests in every run, others by `CRANKWRIGHT_TEST_SEED`.
 
 `.ci/nightly` sets a new seed and prints it. Hypothesis takes it too, unless `--hypothesis-seed` is given.
 Random tests take all their examples with a chosen seed, else a third of them.

@@ -1,4 +1,4 @@
-"""The repository and its documents: what stands at the top, few decision pages, no dead reference."""
+"""The repository and its documents: files at the top level, number of decision pages, references."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""The documentation says what the code does: README, tutorial, how-to pages, the pages made from the code."""
+"""The documentation agrees with the code: README, tutorial, how-to pages, and generated pages."""
 
 import ast
 import json

@@ -1,4 +1,4 @@
-"""The script of the mutation tests: which tests are about a file, what a record amounts to, which mutants."""
+"""The script of the mutation tests: related tests of a file, the figure of a record, the mutants."""
 
 import ast
 import json
@@ -147,7 +147,7 @@ class TestPlaces:
 
     def test_annotations_are_no_places(self, places):
         source = "def f(a: int | None = 1) -> int | str:\n    b: int | None = a\n    return b\n"
-        spans = places.annotations(source)
+        spans = places.annotated(source)
         assert sorted(span[0] for span in spans) == [(1, 9), (1, 28), (2, 7)]
 
     def test_a_call_that_nobody_uses_is_dropped(self, places):

@@ -1,7 +1,7 @@
 """The recipes of docs/contributing.md, carried out literally on a copy of the tree.
 
-Blocks count in their order: a shell block is run, a block with a file's name is written, a difference is
-given to `git apply`, and a block of plain text is what the shell block before it prints.
+Blocks are handled in order: a shell block is run, a block with a file name is written, a diff is applied by
+`git apply`, and a block of plain text is the expected output of the shell block before it.
 """
 
 import json

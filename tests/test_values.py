@@ -1,4 +1,4 @@
-"""Property: values that modules hand to each other cannot be changed by whoever receives them."""
+"""Property: values that modules pass to each other are immutable."""
 
 import importlib
 import pkgutil

@@ -1,8 +1,8 @@
-"""Sentences that compare two numbers, and whether they are true of them."""
+"""Sentences that compare two numbers, and whether they are true."""
 
 import re
 
-_NUMBER = re.compile(r"(?<![\w.])[-−]?\d[\d.]*(?:e[-+]?\d+)?(?!\w)")
+_NUMBER = re.compile(r"(?<![\w.])[-−]?\d[\d.]*(?:e[-+]?\d+)?(?![\w/])")  # not the 1 of the unit 1/mm³
 _RELATION = re.compile(r" is (not below|below|not above|above) ")
 _COUNTED = re.compile(r" \((?:worst|one) of [^)]*\)")
 TRUE_OF = {

@@ -155,8 +155,8 @@ class Designs:
         InvalidInputs
             With all faults; nothing is saved then.
         """
-        if saved_before := self._repeated(once):
-            return saved_before
+        if before := once.find_in(self.database):
+            return _saved_before(before)
         draft = self.draft(raw, note, action)
 
         def unit(session: Session) -> SaveResult:
@@ -230,7 +230,8 @@ class Designs:
         self, id: str, apply: bool, expected: str | None, once: Once
     ) -> tuple[list[Proposal], SaveResult | None]:
         """Return proposals for unset model parameters, and the new revision if they are applied."""
-        repeated = self._repeated(once) if apply else None
+        before = once.find_in(self.database) if apply else None
+        repeated = _saved_before(before) if before else None
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
             document = repository.revision(session, id, number).document
@@ -396,13 +397,6 @@ class Designs:
         if saved.job:
             self.jobs.wake(draft.kind)
         return saved
-
-    def _repeated(self, once: Once) -> SaveResult | None:
-        if not once.key:
-            return None
-        with self.database.read() as session:
-            before = once.find(session)
-        return _saved_before(before) if before else None
 
 
 def _with_builds(session: Session, draft: Draft) -> Draft:

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Iterable, Iterator
 
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.follower import Follower
 from app.catalogue.sheets import Key
 from app.imported_models import repository
 from app.storage.database import Database
@@ -15,9 +16,6 @@ from cad.imported_models import ImportedModel
 from cad.model_classes import class_of
 
 logger = logging.getLogger(__name__)
-
-EVERY = 1.0
-"""Time between two looks of a server for what another one on its database has imported [s]."""
 
 
 def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
@@ -34,21 +32,10 @@ class ImportedModelRegistry:
 
     def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
         self.database, self.catalogues = database, catalogues
-        self._is_shared, self._ending = is_shared, threading.Event()
         self._looking, self._count = threading.Lock(), 0
-        self._thread = threading.Thread(target=self._watch, name="imported models", daemon=True)
+        self.follower = Follower("imported models", self.look, lambda: is_shared)
+        """Looks for the models that other servers import, if the database may have other servers."""
         self.look()
-
-    def start(self) -> None:
-        """Start to check for models that other servers import, if several servers share the database."""
-        if self._is_shared:
-            self._thread.start()
-
-    def stop(self) -> None:
-        """Stop the checks."""
-        self._ending.set()
-        if self._thread.is_alive():
-            self._thread.join()
 
     def look(self) -> None:
         """Publish new versions in the database."""
@@ -58,10 +45,3 @@ class ImportedModelRegistry:
             rows = repository.all_rows(session)
             self.catalogues.bring(dict(_classes(rows)))
             self._count = count
-
-    def _watch(self) -> None:
-        while not self._ending.wait(EVERY):
-            try:
-                self.look()
-            except Exception:
-                logger.exception("The imported models could not be read")

@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from app.plain import JsonObject
 from app.storage.clock import now, operated
+from app.storage.database import Database
 from app.storage.errors import KeyReused
 from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import DRIVER, Statement, Values, insert_new_values, repeatable, upsert_values
@@ -53,6 +54,13 @@ class Once:
         asked = {"of": self.key, "within": self.scope, "by": self.client}
         kept = next(iter(_KEPT.run(session, asked)), None)
         return self._answer(*kept) if kept else None
+
+    def find_in(self, database: Database) -> JsonObject | None:
+        """Return what `find` does, in a transaction of its own, before a request causes any work."""
+        if not self.key:
+            return None
+        with database.read() as session:
+            return self.find(session)
 
     def begin(self, session: Session) -> JsonObject | None:
         """Return the stored answer of an equal earlier request; else reserve the key and return None.

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.follower import Follower
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
 from app.pool.sources import SheetSource, class_of
 from app.storage.database import Database
@@ -22,7 +23,6 @@ from templates.core.language.template import Template
 
 logger = logging.getLogger(__name__)
 
-EVERY = 1.0  # interval at which a server checks for releases of other servers on its database [s]
 AT_ONCE = 15.0  # largest time of one update; the remaining releases are read while the service runs [s]
 WAITING = "its release is being verified after the start of the service; try again in a few seconds"
 
@@ -43,25 +43,14 @@ class WorksheetPublication:
         self._states: tuple[repository.State, ...] = ()
         self._read: dict[Key, tuple[str, ReleasedSheet | str]] = {}  # results with the edit that was read
         self._waiting: set[Key] = set()
-        self._is_shared, self._ending = is_shared, threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="worksheets", daemon=True)
+        self.follower = Follower("worksheets", self.look, lambda: is_shared or bool(self._waiting))
+        """Reads the remaining releases and, on a shared database, those of other servers."""
         self.look()
 
     @property
     def broken(self) -> dict[Key, str]:
         """Return the broken released versions, each with its reason."""
         return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
-
-    def start(self) -> None:
-        """Start a thread that reads remaining releases and, on a shared database, those of other servers."""
-        if self._is_shared or self._waiting:
-            self._thread.start()
-
-    def stop(self) -> None:
-        """Stop the thread."""
-        self._ending.set()
-        if self._thread.is_alive():
-            self._thread.join()
 
     def look(self) -> None:
         """Update the catalogue after changes in the database, within the time of one update."""
@@ -104,15 +93,6 @@ class WorksheetPublication:
         broken |= dict.fromkeys(self._waiting, WAITING)
         drafts = (state for state in self._states if state.state not in RELEASED)
         return Sheets(sound, broken, {(one.id, one.number): _remedy(one) for one in drafts})
-
-    def _watch(self) -> None:
-        while not self._ending.wait(EVERY):
-            if not (self._is_shared or self._waiting):
-                return
-            try:
-                self.look()
-            except Exception:
-                logger.exception("The worksheets could not be updated")
 
 
 def _remedy(state: repository.State) -> str:

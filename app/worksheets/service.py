@@ -62,8 +62,8 @@ class Worksheets:
         InvalidInputs
             If no worksheet may have it.
         """
-        if (before := self._repeated(once)) is not None:
-            return before
+        if before := once.find_in(self.database):
+            return self.newest(before["id"])
         require_free(body.id, self.catalogues)
         reading = self.calculated(once.client, examined, body.text)
 
@@ -295,13 +295,6 @@ class Worksheets:
         row = self.database.write(unit)
         self.published.look()
         return row
-
-    def _repeated(self, once: Once) -> Row | None:
-        if not once.key:
-            return None
-        with self.database.read() as session:
-            location = once.find(session)
-            return repository.newest(session, location["id"]) if location else None
 
 
 def _discard(session: Session, row: Row) -> None:

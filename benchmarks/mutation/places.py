@@ -111,7 +111,7 @@ def sample(seed: int, count: int) -> list[Mutant]:
 def places(file: str, seed: int) -> list[Place]:
     """Return the places of a file; none in annotations, which tests do not run."""
     source = (ROOT / file).read_text(encoding="utf-8")
-    outside = annotations(source)
+    outside = annotated(source)
     choices: dict[tuple[Span, str], list[tuple[str, int]]] = {}
     for name, number, span in occurrences(source):
         if not any(low <= span[0] and span[1] <= high for low, high in outside):
@@ -131,13 +131,15 @@ def occurrences(source: str) -> Iterator[tuple[str, int, Span]]:
                 numbers[name] += 1
 
 
-def annotations(source: str) -> list[Span]:
+def annotated(source: str) -> list[Span]:
     """Return the spans of all annotations."""
     nodes = [
         getattr(node, at, None) for node in ast.walk(ast.parse(source)) for at in ("annotation", "returns")
     ]
     return [
-        ((n.lineno, n.col_offset), (n.end_lineno, n.end_col_offset)) for n in nodes if isinstance(n, ast.AST)
+        ((n.lineno, n.col_offset), (n.end_lineno or n.lineno, n.end_col_offset or n.col_offset))
+        for n in nodes
+        if isinstance(n, ast.expr)
     ]
 
 

@@ -1,4 +1,4 @@
-"""Finite elements of the reference throw: stiffness at 0.5 %, and the greatest stress with its memory."""
+"""Measure finite elements of the reference throw: stiffness at 0.5 %, greatest stress, and memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ASKED = {"stiffness": AnalysisRequest(tolerance=TOLERANCE), "maximum_stress": An
 
 
 def figures() -> list[Figure]:
-    """Return the cost of both outputs; each in a process of its own that has loaded the libraries before."""
+    """Return the cost of both outputs, each in its own process that has already loaded the libraries."""
     step = alone(throw, times=1)["step"]
     stiffness = alone(analysed, step, "stiffness", times=3)
     stress = alone(analysed, step, "maximum_stress", times=1)
@@ -39,7 +39,7 @@ def figures() -> list[Figure]:
 
 
 def analysed(step: bytes, output: str) -> dict[str, float]:
-    """Return the processor time [s], estimated error and most memory [MB] of one output."""
+    """Return the processor time [s], estimated error and peak memory [MB] of one output."""
     begin = time.process_time()
     answer = analyse(step, SHAFT, ASKED[output], [output], lambda done, what: None).outputs[output]
     spent = time.process_time() - begin

@@ -1,4 +1,4 @@
-"""A measured figure beside its aim, and how processor time is measured."""
+"""A measured figure with its aim, and functions to measure processor time."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ class Figure:
 
 
 def processor_seconds(action: Callable[[], object], repeats: int = 5, warm: int = 1) -> float:
-    """Return the least processor time of this process for an action, children excluded [s].
+    """Return the smallest processor time of this process for an action, without children [s].
 
-    The least of several runs: other work on the machine makes a run longer (caches), never shorter.
+    The smallest of several runs is used, because other work on the machine only makes a run longer.
     """
     times = []
     for turn in range(warm + repeats):
@@ -72,5 +72,5 @@ def median_seconds(actions: list[Callable[[], object]]) -> float:
 
 
 def most_memory(who: int = resource.RUSAGE_SELF) -> float:
-    """Return the most resident memory so far, of this process or of the largest of its children [MB]."""
+    """Return the peak resident memory of this process or of the largest of its children [MB]."""
     return resource.getrusage(who).ru_maxrss * 1024 / 1e6

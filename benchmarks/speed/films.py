@@ -1,8 +1,9 @@
-"""Films: processor time and error of `reynolds`, of `mass_conserving` and of a supplied orbit."""
+"""Measure films: processor time and error of `reynolds`, of `mass_conserving` and of a supplied orbit."""
 
 from __future__ import annotations
 
 from itertools import product
+from statistics import mean
 
 import numpy as np
 
@@ -20,21 +21,21 @@ SEED, ENGINES = 17, 15  # duties of engines have even numbers
 
 
 def figures() -> list[Figure]:
-    """Return all lines about films."""
+    """Return all figures about films."""
     return [*reynolds(), mass_conserving(), supplied()]
 
 
 def reynolds() -> list[Figure]:
-    """Return the mean cost and worst error of the load number, without and with extrapolation."""
+    """Return the mean cost and largest error of the load number, with and without extrapolation."""
     points = list(product(ECCENTRICITIES, WIDTHS))
     truth = np.array([extrapolated_film(eps, ratio, 512, 64)[0].So for eps, ratio in points])
-    rows = []
+    rows: list[Figure] = []
     for n, m in RUNGS:
         So = np.array([static_film(eps, ratio, n, m).So for eps, ratio in points])
-        spent = np.mean([_cost(eps, ratio, n, m, is_extrapolated=False) for eps, ratio in points])
+        spent = mean(_cost(eps, ratio, n, m, is_extrapolated=False) for eps, ratio in points)
         rows += _film(f"one mesh {n} × {m}", spent, So / truth - 1, RUNGS[n, m])
     So = np.array([extrapolated_film(eps, ratio)[0].So for eps, ratio in points])
-    spent = np.mean([_cost(eps, ratio, 0, 0, is_extrapolated=True) for eps, ratio in points])
+    spent = mean(_cost(eps, ratio, 0, 0, is_extrapolated=True) for eps, ratio in points)
     return [*rows, *_film("extrapolated, as level `reynolds`", spent, So / truth - 1, (8.0, 0.004))]
 
 
@@ -62,7 +63,7 @@ def _film(
 
 
 def mass_conserving() -> Figure:
-    """Return one output of the template's example at level `mass_conserving`."""
+    """Return the cost of one output of the template's example at level `mass_conserving`."""
     output = ["minimum_film_thickness"]
     spent = processor_seconds(
         lambda: evaluate(OilFilm, OilFilm.example, level="mass_conserving", outputs=output)
@@ -73,7 +74,7 @@ def mass_conserving() -> Figure:
 
 
 def supplied() -> Figure:
-    """Return supplied orbits of random engines' bearings."""
+    """Return the cost of supplied orbits of random engine bearings."""
     _march(random_duty(SEED, 1))  # compiles
     duties = [random_duty(SEED, 2 * number) for number in range(ENGINES)]
     spent = median_seconds([lambda duty=duty: _march(duty) for duty in duties])  # type: ignore[misc]

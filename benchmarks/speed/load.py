@@ -1,4 +1,4 @@
-"""Load on an HTTP service from a process of its own: one request after another on kept connections.
+"""Load an HTTP service from a separate process: one request after another on persistent connections.
 
 `python -m benchmarks.speed.load URL SECONDS FILE` is that process; it prints how many requests were answered.
 """
@@ -19,7 +19,7 @@ CONNECTIONS = 16
 
 
 def answered(url: str, body: bytes, seconds: float) -> int:
-    """Return how many times a body was posted and answered; raise if an answer is no success."""
+    """Return how many times a body was posted and answered; raise an error if an answer is no success."""
     with tempfile.NamedTemporaryFile() as file:
         file.write(body)
         file.flush()
@@ -28,7 +28,7 @@ def answered(url: str, body: bytes, seconds: float) -> int:
 
 
 class Connection:
-    """One kept connection, with one request on its way."""
+    """One persistent connection with one pending request."""
 
     def __init__(self, host: str, port: int, request: bytes) -> None:
         self.request, self.buffer, self.answered = request, bytearray(), 0
@@ -36,7 +36,7 @@ class Connection:
         self.socket.sendall(request)
 
     def receive(self) -> None:
-        """Take what has come; after a whole answer, ask again."""
+        """Read available data; after a complete answer, send the next request."""
         self.buffer += self.socket.recv(1 << 18)
         end = self.buffer.find(b"\r\n\r\n")
         if end < 0:
@@ -51,7 +51,7 @@ class Connection:
 
 
 def main() -> None:
-    """Send the load."""
+    """Send the requests."""
     url, seconds, body = urlsplit(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3]).read_bytes()
     head = f"POST {url.path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
     request = f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body

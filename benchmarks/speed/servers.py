@@ -1,4 +1,4 @@
-"""Servers to be measured, each in a process of its own on a free port: the service, and bare FastAPI.
+"""Start servers for measurements, each in its own process on a free port: the service, and bare FastAPI.
 
 `python -m benchmarks.speed.servers PORT ANSWERS` is the bare one. It parses, checks and answers, no more:
 `POST /{name}` returns an answer from a JSON file, as a plain endpoint does: a dict that FastAPI renders.
@@ -33,14 +33,14 @@ PATIENCE = 240.0  # for a server to start, also on a busy machine [s]
 
 @dataclass(frozen=True)
 class Server:
-    """Where a server listens, and its process."""
+    """The address of a server, and its process."""
 
     port: int
     pid: int
 
     @property
     def url(self) -> str:
-        """Return the root."""
+        """Return the root address."""
         return f"http://127.0.0.1:{self.port}"
 
     def processor_seconds(self) -> float:
@@ -82,7 +82,7 @@ def _await(port: int, process: subprocess.Popen[bytes]) -> None:
     end = time.monotonic() + PATIENCE
     while not _healthy(port):
         if process.poll() is not None or time.monotonic() > end:
-            raise RuntimeError(f"the server did not start: {process.args}")
+            raise RuntimeError(f"the server did not start: {process.args!r}")
         time.sleep(0.1)
 
 
@@ -98,20 +98,20 @@ def _healthy(port: int) -> bool:
 
 
 def free_port() -> int:
-    """Return a port that nobody uses."""
+    """Return a port that is not in use."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
 def commit() -> str:
-    """Return the commit that is measured, marked if the working tree differs from it."""
+    """Return the measured commit, marked if the working tree differs from it."""
     command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
     return subprocess.run(command, capture_output=True, text=True).stdout.strip()
 
 
 def machine() -> dict[str, Any]:
-    """Return the machine of a measurement, with the versions of the largest packages."""
+    """Return a description of the machine, with the versions of the largest packages."""
     names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
     packages = {name: version(name) for name in ("fastapi", "uvicorn", "cadquery", "numpy")}
     processor = names[0].partition(":")[2].strip() if names else platform.processor()
@@ -124,14 +124,14 @@ def machine() -> dict[str, Any]:
 
 
 class Body(BaseModel):
-    """The body of `evaluate` as one would write it without thinking."""
+    """The body of `evaluate` as a straightforward Pydantic model."""
 
     inputs: dict[str, Any]
     outputs: list[str] | None = None
 
 
 def bare_app(answers: dict[str, Any]) -> FastAPI:
-    """Return the bare application."""
+    """Return the bare FastAPI application."""
     app = FastAPI()
 
     @app.get("/healthz")
@@ -140,7 +140,8 @@ def bare_app(answers: dict[str, Any]) -> FastAPI:
 
     @app.post("/{name}")
     async def answer(name: str, body: Body) -> dict[str, Any]:
-        return answers[name]
+        answered: dict[str, Any] = answers[name]
+        return answered
 
     return app
 

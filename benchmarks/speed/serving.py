@@ -1,4 +1,4 @@
-"""The service over HTTP: evaluations, changes, regenerations, a large array, a page, a report, its start."""
+"""Measure the service over HTTP: evaluations, changes, regenerations, a large array, pages, its start."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ SETTLING = 2.0  # after a change: the service prepares its next job [s]
 
 
 def figures() -> list[Figure]:
-    """Measure all lines of the service, on one server."""
+    """Measure all figures of the service, on one server."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         begin = time.perf_counter()
@@ -65,7 +65,7 @@ def figures() -> list[Figure]:
 
 
 def evaluating(server: Server, folder: Path) -> tuple[list[Figure], float]:
-    """Measure `evaluate` against a bare endpoint with the same body and answer, and that endpoint [s]."""
+    """Measure `evaluate` and a bare endpoint with the same body and answer [s]."""
     with httpx.Client(base_url=server.url, trust_env=False) as http:
         answers = {name: http.post(EVALUATE, json=asked).json() for name, asked in QUESTIONS.items()}
     file, rows, least = folder / "answers.json", [], np.inf
@@ -118,7 +118,7 @@ def changes(server: Server, alone: float) -> list[Figure]:
 
 
 def clients(action: Callable[[str, str, float], list[float]], url: str, name: str) -> list[float]:
-    """Return the delays of several clients, in threads of this process [s]."""
+    """Return the response times of several clients in threads of this process [s]."""
     number = CLIENTS // PROCESSES
     with ThreadPoolExecutor(number) as pool:
         runs = [pool.submit(action, url, f"{name} {n}", SECONDS) for n in range(number)]
@@ -126,7 +126,7 @@ def clients(action: Callable[[str, str, float], list[float]], url: str, name: st
 
 
 def create(url: str, name: str, seconds: float) -> list[float]:
-    """Create designs for some time; return the delay of each [s]."""
+    """Create designs for some time; return the response time of each [s]."""
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
 
         def once(number: int) -> None:
@@ -137,7 +137,7 @@ def create(url: str, name: str, seconds: float) -> list[float]:
 
 
 def change(url: str, name: str, seconds: float) -> list[float]:
-    """Change one design for some time; return the delay of each accepted change [s]."""
+    """Change one design for some time; return the response time of each accepted change [s]."""
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
         design = http.post(DESIGNS, json={"name": name, "parameters": {"a": "0"}}).raise_for_status().json()
 
@@ -150,7 +150,7 @@ def change(url: str, name: str, seconds: float) -> list[float]:
 
 
 def delays(action: Callable[[int], None], seconds: float) -> list[float]:
-    """Do something again and again; return how long each time took [s]."""
+    """Repeat an action for some time; return the time of each repetition [s]."""
     taken = []
     end = time.monotonic() + seconds
     for number in count(1):
@@ -163,7 +163,7 @@ def delays(action: Callable[[int], None], seconds: float) -> list[float]:
 
 
 def regenerations(server: Server, folder: Path) -> list[Figure]:
-    """Measure PATCH → new STEP against the model's own build and export: processor time of all processes."""
+    """Measure PATCH → new STEP relative to the model's build and export, in processor time."""
     ratios, ours, alone = [], [], []
     with httpx.Client(
         base_url=server.url, trust_env=False, timeout=90, headers={"Prefer": "wait=60"}
@@ -191,7 +191,7 @@ def regenerations(server: Server, folder: Path) -> list[Figure]:
 
 
 def build(inner_diameter: float, file: Path) -> None:
-    """Build the same ball bearing [mm] by the model's own `build()`, and export it by CadQuery."""
+    """Build the same ball bearing [mm] by the model's `build()`, and export it by CadQuery."""
     model = models().get("ball_bearing", 1).from_quantities({"inner_diameter": f"{inner_diameter!r} mm"})
     assembly = cq.Assembly(name="ball_bearing")
     for part in model.build():
@@ -206,7 +206,7 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
     result.inputs.clear()  # the echo is what was sent
-    forms = {
+    forms: dict[str, tuple[Callable[[], bytes], float | None]] = {
         "JSON": (lambda: to_json(json_values.evaluation(result)), None),
         NPY: (lambda: npy(result), 10.0),
     }
@@ -223,9 +223,9 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
 
 
 def pages(server: Server, folder: Path) -> list[Figure]:
-    """Return the page of a design of 60 steps, again and after a change, and its report.
+    """Return the cost of the page of a design with 60 steps, repeated and after a change, and of its report.
 
-    Time of all processes.
+    The cost is the processor time of all processes.
     """
     step = {"template": "oil_film", "version": 1}
     steps = {

@@ -1,4 +1,4 @@
-"""Commands of the shell: processor time and memory of `crankwright --version` and `crankwright evaluate`."""
+"""Measure commands: processor time and memory of `crankwright --version` and `crankwright evaluate`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COMMANDS = {
 
 
 def figures() -> list[Figure]:
-    """Return both commands, each in new processes; the least of several."""
+    """Return the cost of both commands, each in new processes; the smallest of several runs."""
     rows = []
     for name, arguments in COMMANDS.items():
         runs = [measured([sys.executable, "-m", "app", *arguments]) for _ in range(REPEATS + 1)][1:]
@@ -40,7 +40,7 @@ print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e6, status)
 
 
 def measured(command: list[str]) -> tuple[float, float]:
-    """Return the processor time [s] and most memory [MB] of a process with its children."""
+    """Return the processor time [s] and peak memory [MB] of a process with its children."""
     small = [sys.executable, "-S", "-c", _SMALL, *command]
     folder = Path(__file__).parents[2]
     answer = subprocess.run(small, capture_output=True, text=True, check=True, cwd=folder, env=environment())

@@ -1,8 +1,8 @@
 """Finite-element analysis of a solid: stiffness, first torsional frequency and stress of a shaft.
 
 Designs and the REST interface call `cad.analysis.analyse`. The mesh is generated from the bytes of the served
-STEP file. The analysis assumes linear elasticity, small displacements and one isotropic material. It is valid
-for one solid that is held by the face at one of its ends and loaded at the other.
+STEP file. The analyses assume linear elasticity, small displacements and one isotropic material. They are
+valid for one solid that is held at the face of one end and loaded at the other end.
 
 References
 ----------

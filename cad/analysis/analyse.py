@@ -1,4 +1,4 @@
-"""Compute the requested outputs of an analysis of a STEP file, each with its error; a pure function."""
+"""Compute the requested outputs of an analysis of a STEP file, each with its error, as a pure function."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WORST = 0.25
 
 @dataclass(frozen=True)
 class AnalysisRequest:
-    """What an analysis computes, and how; a tolerance (relative) chooses the level, else it is named."""
+    """A requested analysis: its outputs, and a level or a relative tolerance that determines the level."""
 
     load: Kind = "torsion"
     boundary: Boundary = "free_end"
@@ -39,7 +39,7 @@ class AnalysisRequest:
 
 @dataclass(frozen=True)
 class AnalysisResult:
-    """Outputs by name: value in the unit of `KINDS`, or the surface, with its error and its mesh."""
+    """The results of an analysis by output: value in the unit of `KINDS`, or surface, with error and mesh."""
 
     outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
@@ -69,7 +69,10 @@ def analyse(
 def _elastic_results(
     solid: Solid, shaft: Shaft, request: AnalysisRequest, outputs: Collection[str], report: Report
 ) -> dict[str, dict[str, Any]]:
-    """Level after level until every output meets the tolerance; of a surface, its stiffness."""
+    """Refine level by level until every output meets the tolerance.
+
+    For a surface, until its stiffness does.
+    """
     results: dict[str, dict[str, Any]] = {}
     measured = [name for name in outputs if name in _ELASTIC]
     if not measured and request.tolerance is not None:
@@ -131,7 +134,7 @@ def _at_level(
 def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
     """Return the value of the higher order with its error.
 
-    None where orders differ as if elements are folded.
+    None if the orders differ so much that elements must be folded.
     """
     low, high = values
     if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
@@ -187,7 +190,7 @@ def _per_newton_metre(stress: float) -> float:
 
 
 def _stiffness(response: Response) -> float:
-    """Return the torque or moment for a rotation [N·m/rad]."""
+    """Return the torque or moment per rotation [N·m/rad]."""
     return 1e-3 / response.compliance
 
 

@@ -1,17 +1,19 @@
 """Compliance of a split bore under the pressure of an oil film, as a matrix between pressure modes.
 
 A mode is a distribution of pressure, or of radial displacement, over the whole bore: 1, cos nθ or sin nθ up
-to n = 9, uniform along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square
-of 1. A unit pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's
-pressure on it over the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
+to n = 9, each uniform along the bore or multiplied by the second Legendre polynomial of z. Each mode is
+scaled to a mean square of 1. C_ij is the displacement in mode i under a unit pressure of mode j, that is, the
+work of the pressure of mode i on this displacement over the area of the bore. So C is symmetric (Betti), and
+positive definite because every pressure does positive work.
 
 θ is measured from +y, the block of a housing or the shank of a rod, towards -x.
 
-The halves of the solid are joined, because bolts keep the joint closed. Rows c1 and s1 hold the motion of the
-whole bore with its support; an oil film sees it as eccentricity. A pressure in c1 or s1 still bends the bore,
-by the other rows.
+The two parts of the solid are joined, because bolts keep the joint closed. Rows c1 and s1 are the
+displacement of the whole bore, which an oil film sees as eccentricity. A pressure in mode c1 or s1 also
+deforms the bore, which the other rows describe.
 
-The solid must be symmetric about z = 0; one half is meshed. Lengths in mm, forces in N, stresses in MPa.
+The solid must be symmetric about z = 0; only one half is meshed. Lengths are in mm, forces in N, stresses in
+MPa.
 
 References
 ----------
@@ -53,7 +55,7 @@ _SAMPLES = 5  # of an edge
 
 @dataclass(frozen=True)
 class BoreFineness:
-    """Sizes of elements, in radii of the bore."""
+    """Sizes of elements relative to the bore radius."""
 
     bore: float  # at the bore
     body: float  # elsewhere
@@ -61,7 +63,7 @@ class BoreFineness:
 
 @dataclass(frozen=True)
 class BoredSolid:
-    """Half of a solid, at z > 0, its faces named."""
+    """The half of a solid at z > 0, with named faces."""
 
     shape: Any
     place: BorePlace
@@ -96,7 +98,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
 def _upper_half(joined: list[Any]) -> Any:
     """Return the part of a solid at z > 0.
 
-    None if there are several, or if volume, centre or inertia differ.
+    None if there are several, or if the halves differ in volume, centre or inertia.
     """
     if len(joined) != 1:
         return None
@@ -110,14 +112,14 @@ def _upper_half(joined: list[Any]) -> Any:
 
 
 def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
-    """Return the volume, centre and moments of a solid, or of its image in z = 0."""
+    """Return the volume, centre and moments of a solid, or of its mirror image in z = 0."""
     signs = np.array([1.0, 1.0, flip])
     moments = np.array([[half.inertia[i, j] for j in range(3)] for i in range(3)])
     return np.array([half.mass]), signs * np.array([*half.center]), moments * np.outer(signs, signs)
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return the name of a face (mirror, bore, held or free) from the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free), recognised by the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR
@@ -136,7 +138,7 @@ def _points(edge: Any) -> Iterator[tuple[float, float, float]]:
 
 
 def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
-    """Return the tetrahedra with straight edges.
+    """Return a mesh of tetrahedra with straight edges.
 
     Raises
     ------
@@ -178,10 +180,11 @@ def compliance_on(
     report: Callable[[float], None] = lambda done: None,
     functions: Sequence[Any] = (),
 ) -> tuple[Array, int]:
-    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and the number of unknowns.
+    """Return the matrix C [mm/MPa] of a half solid with elements of an order, and the number of unknowns.
 
-    A solid without supports rests on a soft spring [N/mm⁴] at each of its points, which carries the load like
-    the inertia of a free body. Other spatial functions than the modes may be given, with the same scaling.
+    A solid without supports rests on a soft spring [N/mm⁴] at each of its points, which balances the load as
+    the inertia of a free body does. Spatial functions other than the modes may be given, with the same
+    scaling.
     """
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")
@@ -207,7 +210,7 @@ def compliance_on(
 
 
 def _solved(form: Any, inverse: Any, force: Any) -> Any:
-    """Return the displacement under a force; the unknowns inside elements are eliminated."""
+    """Return the displacement under a force; unknowns inside elements are condensed."""
     outer, u = force.CreateVector(), force.CreateVector()
     outer.data = force + form.harmonic_extension_trans * force
     u.data = inverse * outer

@@ -1,4 +1,4 @@
-"""The compliance of a split bore as the outputs of an analysis: relations pass them to `elastic_film` 1."""
+"""Compute the compliance of a split bore as outputs, which relations pass to `elastic_film` 1."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def bore_tables(
 ) -> dict[str, dict[str, Any]]:
     """Return all outputs of the kind `bore_compliance`.
 
-    The error is the change from elements of one order less.
+    The error is the change from elements of the next lower order.
     """
     started = time.perf_counter()
     report(0.0, "reading and meshing the solid")
@@ -83,6 +83,6 @@ def bore_tables(
 
 
 def difference(low: Array, high: Array) -> float:
-    """Return the relative difference of two matrices where they bend the bore, in the spectral norm."""
+    """Return the relative difference of two matrices in the spectral norm, without rigid motion."""
     kept = np.ix_(~RIGID, ~RIGID)
     return float(np.linalg.norm(low[kept] - high[kept], 2) / np.linalg.norm(high[kept], 2))

@@ -1,8 +1,8 @@
 """A crankshaft as a chain of throws: matrices of single throws, rotated by their pin angles and assembled.
 
-The first end is held. In a guided chain each main stays on the axis, as in a bearing, but may rotate;
-otherwise nothing else is held. A series of separately computed throw stiffnesses neglects the bearings
-between them.
+The first end is held. In a guided chain each main journal stays on the axis, as in a bearing, but may rotate;
+in a free chain nothing else is held. Separately computed throw stiffnesses in series would neglect the
+bearings between the throws.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from templates.core.arrays import Array
 
 @dataclass(frozen=True)
 class Chain:
-    """Throws one after the other, from the held end on; angles of their pins [rad]."""
+    """Throws in order, starting at the held end, with the angles of their pins [rad]."""
 
     throws: Sequence[ThrowMatrix]
     angles: Sequence[float]
 
     @property
     def size(self) -> int:
-        """Return the freedoms: six of each main, then two of each pin."""
+        """Return the number of degrees of freedom: six for each main journal, then two for each pin."""
         return END * (len(self.throws) + 1) + PIN * len(self.throws)
 
     def assembled(self, name: str) -> Array:
-        """Return the `stiffness` or the `mass` of the chain in the axes of the first section."""
+        """Return the `stiffness` or the `mass` matrix of the chain in the axes of the first section."""
         whole = np.zeros((self.size, self.size))
         pins = END * (len(self.throws) + 1)
         for k, (throw, angle) in enumerate(zip(self.throws, self.angles, strict=True)):
@@ -54,14 +54,14 @@ class Chain:
     def throw_stiffnesses(self, *, guided: bool) -> Array:
         """Return the stiffness of each throw in the chain [N m/rad]: torque per rotation between its mains.
 
-        In series they give the stiffness of the chain. With guided mains they include the effect of the
-        guides and the neighbours on a throw.
+        In series these stiffnesses give the stiffness of the chain. With guided mains they include the effect
+        of the guides and of the neighbouring throws.
         """
         between: Array = np.diff(self._rotations(guided=guided), prepend=0.0)
         return 1e-3 / between
 
     def _rotations(self, *, guided: bool) -> Array:
-        """Return the rotations of the mains behind each throw [rad] under a torque of 1 N mm at the end."""
+        """Return the rotations of the mains after each throw [rad] under a torque of 1 N mm at the end."""
         free = self.free_to_move(guided=guided)
         torque = np.zeros(self.size)
         mains = END * np.arange(1, len(self.throws) + 1) + 5
@@ -94,7 +94,7 @@ class Chain:
 
 
 def turned(angle: float) -> Array:
-    """Return the freedoms of a throw from those in axes that do not turn with its pin, (14, 14)."""
+    """Return the transformation of a throw's degrees of freedom from fixed axes to its own axes (14, 14)."""
     plane = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
     space = block_diag(plane, np.eye(1))
     return np.asarray(block_diag(space, space, space, space, plane))

@@ -1,9 +1,9 @@
-"""A shaft as a chain of its throws, as the outputs of an analysis: each with its error.
+"""Compute the outputs of the analysis `chain`, each with its error, from the chain of a shaft's throws.
 
-Each solid is meshed once and solved in elements of two orders. The error of an output has two parts: the mesh
-error, from the two orders as for every other analysis (`cad.analysis.levels`), and the difference between the
-chain and finite elements of the whole shaft. The second part is `OF_THE_CHAIN`, which exceeds the largest
-differences found for three shafts, free and guided (`python -m benchmarks.crank_chain`).
+Each solid is meshed once and solved with elements of two orders. The error of an output has two parts: the
+mesh error, from the two orders as for every other analysis (`cad.analysis.levels`), and the difference
+between the chain and finite elements of the whole shaft. The second part is `OF_THE_CHAIN`, which exceeds the
+largest differences found for three shafts, free and guided (`python -m benchmarks.crank_chain`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ WORST = 0.25
 
 @dataclass(frozen=True)
 class SolvedThrows:
-    """The solids of throws in elements of two orders, the lower one first."""
+    """The solutions of throws with elements of two orders, the lower order first."""
 
     low: Sequence[ThrowMatrix]
     high: Sequence[ThrowMatrix]
@@ -46,9 +46,9 @@ class SolvedThrows:
 def chain_answers(
     apart: ThrowsApart, boundary: Boundary, level: str | None, tolerance: float | None, report: Report
 ) -> dict[str, dict[str, Any]]:
-    """Return all outputs of the kind `chain`, which cost the same together.
+    """Return all outputs of the kind `chain`, which one calculation gives together.
 
-    Level after level to a tolerance.
+    With a tolerance, refine level by level.
     """
     answers: dict[str, dict[str, Any]] = {}
     rungs = ladder(level, tolerance)
@@ -67,7 +67,7 @@ def chain_answers(
 
 
 def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
-    """Return the matrices of each solid on its mesh of a level."""
+    """Return the matrices of each solid, on its mesh of one level."""
     orders = (level.order - 1, level.order)
     matrices: tuple[list[ThrowMatrix], list[ThrowMatrix]] = ([], [])
     elements, freedoms, is_sharp = 0, 0, False
@@ -88,7 +88,7 @@ def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
 def judged(
     solved: SolvedThrows, places: Sequence[PlacedThrow], boundary: Boundary, level: Level, seconds: float
 ) -> dict[str, dict[str, Any]]:
-    """Return the outputs of the higher order with their errors; no value where orders differ too much."""
+    """Return the outputs of the higher order with their errors; no value if the orders differ too much."""
     guided = boundary == "guided_end"
     low, high = (values_of(chain_of(each, places), guided=guided) for each in (solved.low, solved.high))
     common = {
@@ -117,12 +117,12 @@ def judged(
 
 
 def chain_of(matrices: Sequence[ThrowMatrix], places: Sequence[PlacedThrow]) -> Chain:
-    """Return the throws of a shaft in their places."""
+    """Return the throws of a shaft at their positions."""
     return Chain([matrices[place.solid] for place in places], [place.angle for place in places])
 
 
 def values_of(chain: Chain, *, guided: bool) -> dict[str, float | list[float]]:
-    """Return the outputs of a chain in their units."""
+    """Return the outputs of a chain in their declared units."""
     return {
         "stiffness": chain.stiffness(guided=guided),
         "throw_stiffnesses": chain.throw_stiffnesses(guided=guided).tolist(),

@@ -1,8 +1,8 @@
-"""Sharp inner edges of a solid, where stress is unbounded and elements must be small.
+"""Find sharp inner edges of a solid, where stress is unbounded and elements must be small.
 
-For `cad.analysis.mesh`. The surface is divided into triangles so small that the normals of neighbours differ
-by less than `SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger,
-outward-opening angle.
+`cad.analysis.mesh` uses this module. The surface is divided into triangles so small that the normals of
+neighbours differ by less than `SHARP` at the start of a fillet. At a sharp inner edge, triangles of two faces
+meet at a larger angle that opens outwards.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _SIZE, _CURVATURE, _GRADING = 1.0, 1.0, 0.7  # of triangles: in radii; by radius
 
 @dataclass(frozen=True)
 class Edges:
-    """Straight pieces of edges."""
+    """Straight segments of edges."""
 
     ends: Array  # (n, 2, 3) [mm]
     radius: Array  # (n,) [mm], of the edge there; of a straight one the scale of the solid
 
 
 def sharp_inner_edges(shape: Any, scale: float) -> Edges:
-    """Return all sharp inner edges of a shape, seen on triangles of this scale [mm]."""
+    """Return all sharp inner edges of a shape, found on triangles of this size [mm]."""
     parameters = MeshingParameters(
         maxh=_SIZE * scale,
         curvaturesafety=_CURVATURE,
@@ -57,7 +57,7 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
 
 
 def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:
-    """Yield points along edges, spaced [mm] by a share of the radius of the edge."""
+    """Yield points along edges; their spacing [mm] is a share of the radius of the edge."""
     for (start, end), radius in zip(edges.ends, edges.radius, strict=True):
         step = share * float(radius)
         count = ceil(float(np.linalg.norm(end - start)) / step)
@@ -67,7 +67,7 @@ def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, floa
 
 
 def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
-    """Return the radius [mm] of the edge at each piece, from lengths and the angles between neighbours."""
+    """Return the radius [mm] of the edge at each segment, from lengths and angles between neighbours."""
     met = defaultdict(list)
     for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
         for side in (0, 1):
@@ -84,7 +84,7 @@ def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
 
 
 def _neighbours(corners: Integers) -> tuple[Integers, Integers]:
-    """Return, for each side that two triangles share, both triangles with the index of their side."""
+    """Return, for each side shared by two triangles, both triangles with the index of that side."""
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     order = np.lexsort(sides.T)
     twice = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))

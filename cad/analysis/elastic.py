@@ -1,20 +1,20 @@
 """Linear elasticity of a shaft that is held at one end and loaded at the other.
 
-Lengths are in mm, forces in N, stresses in MPa, masses in t, so that the equations need no conversion
+Lengths are in mm, forces in N, stresses in MPa and masses in t, so that the equations need no conversion
 factors.
 
-The rotation is the one that conserves energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded
-end turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite-element
-space is a subspace of all displacements, so θ is too small and K too large; K decreases towards the true
-value with refinement.
+The rotation is defined by energy: under the traction t = (-y, x, 0)/J, which has the torque 1, the loaded end
+turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite-element space
+is a subspace of all displacements, so θ is too small and K too large; K decreases towards the true value with
+refinement.
 
 Symmetry. Torsion of a solid that is symmetric about y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
 and u_z, the same u_y. On the plane the tangential displacements are zero and the normal one is free; half the
 solid carries half the torque. Bending in the plane y = 0 is symmetric: there u_y is zero.
 
-Boundaries. `free_end`: nothing but the load acts at the loaded end. `guided_end`: its mean displacement
-across z is zero, as in a bearing at its middle; the forces of that bearing follow from the compliances
-between them and the load, so no other system is solved.
+Boundaries. `free_end`: only the load acts at the loaded end. `guided_end`: the mean displacement of that end
+across z is zero, as at the middle of a bearing; the bearing forces are calculated from the compliances of the
+unit forces and the load, without a further system of equations.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ _MOST_STEPS = 1000
 
 
 def stress(u: Any, material: Material) -> Any:
-    """Hooke's law: the stress [MPa] of a displacement [mm]."""
+    """Return the stress [MPa] of a displacement [mm] by Hooke's law."""
     E, nu = material.young * 1e-6, material.poisson
     strain = ng.Sym(ng.Grad(u))
     return E / (1 + nu) * (strain + nu / (1 - 2 * nu) * ng.Trace(strain) * ng.Id(3))
 
 
 class System:
-    """Stiffness of a held solid in elements of one order, prepared for solving; for one kind of load.
+    """Stiffness of a held solid with elements of one order, prepared to be solved for one kind of load.
 
-    Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
-    It is factorised, or solved for each force by itself where there are few and the order is above 2: by
-    conjugate gradients, whose preconditioner solves in second order and adds what the other unknowns of each
-    edge and face alone answer (`_by_order`).
+    The curvature of the elements has the order of the displacements, and the mesh keeps it until the next
+    system is built on it. The matrix is factorised. If there are few forces and the order is above 2, each is
+    solved by conjugate gradients instead; the preconditioner solves the second order exactly and the other
+    unknowns of each edge and face separately (`_by_order`).
     """
 
     def __init__(
@@ -70,14 +70,14 @@ class System:
         self.inverse = self._inverse_of_form(few_forces)
 
     def _inverse_of_form(self, few_forces: bool) -> Any:
-        """Return the solver of the assembled form for a force, on its unknowns outside elements."""
+        """Return the solver of the assembled form for a force, on the unknowns outside elements."""
         if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
             return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
         return self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
 
     def solve(self, force: Any) -> Any:
-        """Return the displacement under a force, both as vectors; the dofs inside elements are eliminated.
+        """Return the displacement under a force, both as vectors; unknowns inside elements are condensed.
 
         Raises
         ------
@@ -105,7 +105,7 @@ class System:
         return force.vec
 
     def loads(self) -> tuple[Any, list[Any]]:
-        """Return the unit load, and the unit forces of a guide that the symmetry does not already balance."""
+        """Return the unit load, and the unit forces of a guide that symmetry does not already balance."""
         mesh, parts = self.grid.mesh, self.grid.solid.parts
         shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, -ng.x))
         unit = shape / (parts * ng.Integrate(shape * shape * ng.ds(LOADED), mesh))
@@ -141,13 +141,13 @@ def _by_order(form: Any, space: Any) -> Any:
 
 
 def _of_components(numbers: Integers, count: int) -> Integers:
-    """Return the unknowns (n, 3 k) of three components, from those (n, k) of one."""
+    """Return the numbers of the unknowns of three components (n, 3 k) from those of one (n, k)."""
     return np.concatenate([numbers + component * count for component in range(3)], axis=1)
 
 
 @dataclass(frozen=True)
 class Response:
-    """What a unit load does: its own work, and the displacement."""
+    """Response to a unit load: the displacement, and the work of the load on it."""
 
     system: System
     compliance: float  # [rad/(N·mm)]
@@ -182,6 +182,6 @@ def is_antisymmetric(mirror: str, load: Kind) -> bool:
 
 
 def _locked(mirror: str, load: Kind) -> str:
-    """Return the directions in which nothing moves on a mirror plane of this normal."""
+    """Return the directions without displacement on a mirror plane with this normal."""
     tangential = "".join(axis for axis in "xyz" if axis != mirror)
     return (tangential if is_antisymmetric(mirror, load) else mirror) if mirror else ""

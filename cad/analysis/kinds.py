@@ -1,6 +1,6 @@
 """The kinds of finite-element analyses: their outputs, boundaries and levels.
 
-This module alone defines them. It does not import NGSolve, so the server and the relations of designs can use
+Only this module defines them. It does not import NGSolve, so the server and the relations of designs can use
 it.
 """
 
@@ -31,9 +31,10 @@ HARMONICS = 9
 
 
 def mode_names() -> tuple[str, ...]:
-    """Return the modes: harmonics even along the bore, then times the second polynomial of Legendre along it.
+    """Return the names of the modes: harmonics uniform along the bore, then times Legendre's polynomial.
 
-    `m` is the mean, `c2` and `s2` are cos and sin of twice the angle from +y towards -x; `z` is Legendre's.
+    `m` is the mean, `c2` and `s2` are the cosine and sine of twice the angle from +y towards -x; `z` marks
+    the second Legendre polynomial along the bore.
     """
     around = ("m", *(f"{part}{n}" for n in range(1, HARMONICS + 1) for part in "cs"))
     return (*around, *(f"{name}z" for name in around))

@@ -1,15 +1,17 @@
-"""Levels of fidelity: the mesh and the order for a required accuracy, from a table beside this file.
+"""Levels of fidelity: mesh size and order for a required accuracy, from a table in the same folder.
 
-The error of an answer is estimated on its own mesh, from the same answer at the next lower order. The change
-times a factor covers what a higher order would correct; a floor covers what only a finer mesh would correct.
-A coarse mesh about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of
-random shafts in benchmarks/results/torsion_levels.json (`python -m benchmarks.torsion_levels`).
+The error of a result is estimated on its own mesh, from the result at the next lower order. The change times
+a factor covers the error that a higher order would remove; a constant covers the error that only a finer mesh
+would remove: a coarse mesh around a drilling was 1.4 % too stiff at any order. Factor and constant were
+compared with the true errors of random shafts in benchmarks/results/torsion_levels.json (`python -m
+benchmarks.torsion_levels`).
 
-Solids with sharp inner edges have factors of their own. Where displacements grow as r^λ from an edge,
-energies of order p err by c p^(-4 λ) (Babuška and Suri 1987), so the error is 1/((p/(p - 1))^(4 λ) - 1) of
-the change. λ is 0.5445 at an inner edge of 90° and 0.5 at a crack, the worst: there the error is 0.8 of the
-change in third order and 1.29 in fourth. With sharp edges two orders may agree by chance, as on crankshafts
-with a slender end, so the floor for sharp edges is higher (tests/cad/analysis/test_torsion_levels.py).
+Solids with sharp inner edges have separate factors. If displacements grow as r^λ from an edge, the energy at
+order p has the error c p^(-4 λ) (Babuška and Suri 1987), so the error is 1/((p/(p - 1))^(4 λ) - 1) of the
+change. λ is 0.5445 at an inner edge of 90° and 0.5 at a crack, the worst case, for which the error is 0.8 of
+the change at third order and 1.29 at fourth. With sharp edges two orders may agree by chance, as for
+crankshafts with a slender end, so the constant for sharp edges is larger
+(tests/cad/analysis/test_torsion_levels.py).
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from cad.analysis.mesh import Fineness
 
 @dataclass(frozen=True)
 class Level:
-    """A rung of the ladder."""
+    """One level of fidelity: mesh size, order, and constants of the error estimate."""
 
     name: str
     fineness: Fineness
@@ -61,7 +63,7 @@ NAMES = tuple(level.name for level in LEVELS)
 
 
 def ladder(level: str | None, tolerance: float | None) -> tuple[Level, ...]:
-    """Return the levels to try in turn: the one named, or those from the cheapest that is likely to do."""
+    """Return the levels to try: the named one, or all from the cheapest that is likely to suffice."""
     if tolerance is None:
         return tuple(rung for rung in LEVELS if rung.name == (level or DEFAULT_LEVEL))
     return tuple(rung for rung in LEVELS if rung.typical <= tolerance) or LEVELS[-1:]

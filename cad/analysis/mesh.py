@@ -1,13 +1,13 @@
-"""Curved tetrahedra in a solid: coarse where it is plain, and never coarser than its curved edges allow.
+"""Mesh a solid with curved tetrahedra: coarse where the shape is simple, finer at its curved edges.
 
-Elements are isoparametric. With a lower order of curvature, a cylinder is 0.2 % too stiff; with a higher
-order, the elements cannot represent a rotation. So a mesh can be much coarser than a mesh for display. Three
-measures make that safe. Each curved edge has a minimum number of segments; otherwise one chord through the
-middle could span a bore's rim. Along sharp inner edges, where stress is unbounded and a higher order gains
-little, elements are small (`cad.analysis.corners`). Harmonic functions extend the curvature of the surface
-into the interior: Netgen curves only surface elements, which folds thin elements under a fillet (46 of 2 000
-elements in a throw; 6 with this measure). The remaining folded elements only add stiffness, which the
-estimated error includes.
+Elements are isoparametric: with a lower order of curvature, a cylinder is 0.2 % too stiff; with a higher
+order, the elements cannot represent a rotation. Because elements are curved, a mesh can be much coarser than
+one for display. Three measures make that safe. Each curved edge has a minimum number of segments; otherwise
+one chord could span the rim of a bore through its middle. Along sharp inner edges, where stress is unbounded
+and a higher order gains little, elements are small (`cad.analysis.corners`). Harmonic functions extend the
+curvature of the surface into the interior: Netgen curves only surface elements, which folds thin elements
+under a fillet (46 of 2 000 elements in a throw; 6 with this measure). The remaining folded elements only add
+stiffness, which the estimated error includes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _SAMPLES = 16  # of an edge, to see how far it turns
 
 @dataclass(frozen=True)
 class Fineness:
-    """Fineness of a mesh."""
+    """Parameters of the element sizes of a mesh."""
 
     size: float  # of the largest elements, in the solid's scale
     curvature: float  # elements for each radius of curvature
@@ -48,7 +48,7 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Near:
-    """Elements of at most this size [mm] within a distance [mm] of a point [mm]."""
+    """A limit on the element size [mm] within a distance [mm] of a point [mm]."""
 
     point: tuple[float, float, float]
     reach: float
@@ -57,7 +57,7 @@ class Near:
 
 @dataclass(frozen=True)
 class Grid:
-    """A mesh of a solid, its elements still straight."""
+    """A mesh of a solid with straight elements."""
 
     mesh: Any
     solid: Solid
@@ -67,7 +67,7 @@ class Grid:
 def make_grid(
     solid: Solid, fineness: Fineness, near: Iterable[Near] = (), edges: Edges | None = None
 ) -> Grid:
-    """Mesh a solid; for several meshes of one fineness, `edges` are its `sharp_edges`.
+    """Mesh a solid; if several meshes have the same fineness, pass its `sharp_edges` as `edges`.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def make_grid(
 
 
 def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
-    """Return the sharp inner edges of a solid, in pieces as its elements of a fineness divide them.
+    """Return the sharp inner edges of a solid, divided as the elements of a fineness divide them.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
 
 @contextmanager
 def _meshing() -> Iterator[None]:
-    """Refuse a solid at which Netgen fails."""
+    """Convert a failure of Netgen into an analysis error of the solid."""
     try:
         yield
     except Exception as error:  # Netgen has one kind of exception
@@ -117,7 +117,7 @@ def _meshing() -> Iterator[None]:
 
 
 def curve(mesh: Any, order: int) -> Any:
-    """Curve a mesh as its geometry is, smoothly into the inside; returns the deformation that does it."""
+    """Curve a mesh to fit its geometry, smoothly into the interior; return the deformation that does it."""
     mesh.UnsetDeformation()
     curved = _coordinates(mesh, order)
     mesh.Curve(1)
@@ -139,7 +139,7 @@ def curve(mesh: Any, order: int) -> Any:
 
 
 def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
-    """Return the coordinates of the points of straight elements, interpolated from their corners."""
+    """Return the coordinates in straight elements, interpolated from their corners."""
     corners = np.array([vertex.point for vertex in mesh.vertices])
     vectors = []
     for values in corners.T:
@@ -151,7 +151,7 @@ def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
 
 
 def _coordinates(mesh: Any, order: int) -> list[Any]:
-    """Return the coordinates of the points of curved elements as functions on them."""
+    """Return the coordinates in curved elements as finite-element functions."""
     mesh.Curve(order)
     together = ng.GridFunction(ng.H1(mesh, order=order, dim=3))
     together.Set(ng.CF((ng.x, ng.y, ng.z)))  # at once: a quarter of the time
@@ -165,7 +165,7 @@ def _coordinates(mesh: Any, order: int) -> list[Any]:
 
 
 def bound_sizes(solid: Solid, fineness: Fineness) -> None:
-    """Limit the size of elements along curved edges, and on the curved faces that full turns bound."""
+    """Limit the size of elements along curved edges, and on curved faces bounded by full circles."""
     limits: dict[Any, tuple[float, float]] = {}  # of edges: how far they turn, and their longest segment
     for face in solid.shape.faces:
         rims = []
@@ -181,14 +181,14 @@ def bound_sizes(solid: Solid, fineness: Fineness) -> None:
 
 
 def _limits(edge: Any, most: float) -> tuple[float, float]:
-    """Return the angle [rad] by which an edge turns, and the longest segment [mm] that may span it."""
+    """Return the total turning angle [rad] of an edge, and the longest segment [mm] that may span it."""
     length = edge.mass
     turn = _turning(edge) if length > 0 else 0.0
     return turn, length / ceil(turn / most - 1e-6) if turn > most else length
 
 
 def _turning(edge: Any) -> float:
-    """Return the angle [rad] by which an edge turns from its start to its end."""
+    """Return the angle [rad] by which the direction of an edge turns from start to end."""
     start, end = edge.parameter_interval
     points = np.array([[*edge.Value(t)] for t in np.linspace(start, end, _SAMPLES + 1)])
     steps = np.diff(points, axis=0)
@@ -198,7 +198,7 @@ def _turning(edge: Any) -> float:
 
 
 def _ball(near: Near) -> Iterable[tuple[float, float, float]]:
-    """Yield points that fill a ball so densely that the size applies between them."""
+    """Yield points that fill a ball so densely that the size limit applies between them."""
     count = max(1, ceil(near.reach / near.size))
     line = np.linspace(-near.reach, near.reach, 2 * count + 1)
     grid = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

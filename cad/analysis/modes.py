@@ -1,8 +1,8 @@
 """The first torsional natural frequency of a held shaft.
 
-The number of a mode does not say whether it is torsional: a throw bends first. A mode φ of unit mass has the
-effective inertia (rᵀ M φ)², where r is the rigid rotation about z; over all modes they add up to the inertia
-of the solid.
+The number of a mode does not show whether the mode is torsional: the first mode of a throw is bending. A mode
+φ of unit mass has the effective inertia (rᵀ M φ)², where r is the rigid rotation about z; the effective
+inertias of all modes add up to the inertia of the solid.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _MOST_MODES = 48
 
 @dataclass(frozen=True)
 class Mode:
-    """A natural mode."""
+    """A natural mode with its frequency and effective inertia."""
 
     frequency: float  # [Hz]
     share: float  # its effective inertia about z, as a share of the solid's
@@ -34,12 +34,12 @@ class Mode:
 def torsional_mode(response: Response) -> Mode:
     """Return the mode with the largest effective inertia about z.
 
-    Modes are computed until this is certain.
+    Further modes are computed until the result is certain.
 
     Raises
     ------
     AnalysisError
-        `not_converged` if none of the first 48 modes stands out.
+        `not_converged` if none of the first 48 modes clearly has the largest one.
     """
     count = _MODES
     while count <= _MOST_MODES:
@@ -54,7 +54,7 @@ def torsional_mode(response: Response) -> Mode:
 
 
 def natural_modes(response: Response, count: int) -> list[Mode]:
-    """Return the lowest modes, by Lanczos' method on the inverse that the static response has left."""
+    """Return the lowest modes by Lanczos' method, with the factorised matrix of the static response."""
     system = response.system
     mass = _mass(response)
     free = np.flatnonzero(np.array(list(system.space.FreeDofs())))
@@ -103,7 +103,7 @@ def _mass(response: Response) -> Any:
 
 
 def _guided(response: Response, u: Any) -> Any:
-    """Return a displacement with added forces of the guide that keep the end in its place."""
+    """Return a displacement with added forces of the guide that keep the end on the axis."""
     if response.guides:
         off = np.array([ng.InnerProduct(guide, u) for guide in response.guides])
         for reaction, w in zip(np.linalg.solve(response.gram, off), response.guided, strict=True):

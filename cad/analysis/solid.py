@@ -1,7 +1,7 @@
 """Prepare the solid of a STEP file for analysis: name its end faces, and halve it if it is symmetric.
 
 Faces are recognised by geometry, never by number. A mirror plane is used only if both halves are proven to be
-images of each other: equal volume, centre, inertia, and one face for each face.
+mirror images: their volume, centre and inertia agree, and each face has a counterpart.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _FLAT = 1e-5  # of a moment of area; the kernel's own are good to 1e-6
 
 @dataclass(frozen=True)
 class Solid:
-    """A shape with named faces; half of the solid if `mirror` names the normal of a plane of symmetry."""
+    """A shape with named faces; half of the solid if `mirror` names the normal of a symmetry plane."""
 
     shape: Any
     mirror: str  # "x", "y" or ""
@@ -40,13 +40,13 @@ class Solid:
 
     @cached_property
     def scale(self) -> float:
-        """Return the length that sizes elements [mm]: the radius of the loaded end, unless it is small."""
+        """Return the length for element sizes [mm]: the radius of the loaded end, unless that is small."""
         low, high = self.shape.bounding_box
         return max(self.radius, 0.5 * sqrt(self.shape.mass * self.parts / pi / (high[2] - low[2])))
 
     @property
     def parts(self) -> int:
-        """Return the number of such parts in the whole solid."""
+        """Return the number of such halves in the whole solid, 1 or 2."""
         return 2 if self.mirror else 1
 
 
@@ -70,7 +70,7 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
 
 
 def planar(face: Any) -> bool:
-    """True if a face is flat: of its principal moments of area the largest is the sum of the others."""
+    """Return whether a face is flat: its largest principal moment of area is then the sum of the others."""
     low, middle, high = np.linalg.eigvalsh(_inertia(face))
     return bool(abs(high - low - middle) < _FLAT * high)
 
@@ -98,12 +98,12 @@ def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
 
 
 def _middle(shape: Any) -> NDArray[np.float64]:
-    """Return the middle of the box around a shape [mm]."""
+    """Return the middle of the bounding box of a shape [mm]."""
     return np.asarray(sum(np.array([*corner]) for corner in shape.bounding_box) / 2)
 
 
 def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
-    """Return whether two halves are each other's mirror images, and together the whole."""
+    """Return whether two halves are mirror images and together make up the whole."""
     inside = _look([one, other])
     if abs(inside[:, 0].sum() - volume) > _ALIKE * volume:
         return False
@@ -119,7 +119,7 @@ def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
 
 
 def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
-    """Return the shapes as rows of area or volume, centre and moments."""
+    """Return, for each shape, a row of area or volume, centre and moments."""
     rows = []
     for shape in shapes:
         size, centre = shape.Properties()
@@ -128,7 +128,7 @@ def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
 
 
 def _mirrored(axis: str) -> NDArray[np.float64]:
-    """Return the factors of the columns of a look if it is seen in a mirror across an axis."""
+    """Return the factors that mirror the columns of `_look` across an axis."""
     flip = np.array([-1.0 if other == axis else 1.0 for other in _AXES])
     return np.concatenate([[1.0], flip, np.outer(flip, flip)[np.triu_indices(3)]])
 

@@ -1,12 +1,11 @@
-"""The greatest stress of a loaded shaft and its convergence; without convergence there is no answer.
+"""The greatest stress of a loaded shaft and its convergence; without convergence there is no result.
 
 The mesh is refined where the stress is high until three successive meshes agree: a small change and then a
 smaller one, since a single small change may be chance. The compared stress is recovered: polynomials of
 neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
-stress is unbounded, each refinement raises it by a quarter, and nothing converges: the answer is a refusal
-with that reason. The search leaves out the regions near the ends, where an idealised clamp or load disturbs
-the field (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins
-there.
+stress is unbounded and each refinement raises it by a quarter, so the analysis gives no value, with that
+reason. The search omits the regions near the ends, where the idealised clamp or load disturbs the field (de
+Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins there.
 """
 
 from __future__ import annotations
@@ -54,30 +53,30 @@ class Peak:
 
 @dataclass(frozen=True)
 class Peaks:
-    """The greatest stress from mesh to mesh."""
+    """The greatest stress on each mesh."""
 
     steps: tuple[Peak, ...]
 
     @property
     def error(self) -> float:
-        """Return the estimated relative error of the last value: the last change and `FLOOR`."""
+        """Return the estimated relative error of the last value: the last change plus `FLOOR`."""
         return self.changes[-1] + FLOOR
 
     @property
     def changes(self) -> list[float]:
-        """Return by how much each step changed the value, relative."""
+        """Return the relative change of the value at each step."""
         values = [peak.value for peak in self.steps]
         return [abs(new - old) / new for old, new in pairwise(values)]
 
     @property
     def converged(self) -> bool:
-        """Return whether the last step but one changed little, and the last one less."""
+        """Return whether the last change but one is small, and the last change smaller."""
         *_, before, last = (1.0, 1.0, *self.changes)
         return before <= SMALL and last <= CONVERGED
 
 
 def von_mises(components: Components) -> Any:
-    """Return the equivalent stress of von Mises (1913)."""
+    """Return the equivalent stress by von Mises (1913)."""
     xx, yy, zz, xy, yz, xz = components
     apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
@@ -91,13 +90,13 @@ def greatest_stress(
     report: Callable[[int], None],
     measure: Measure = von_mises,
 ) -> Peaks:
-    """Refine where the stress is high until its greatest value settles, in at most five steps."""
+    """Refine the mesh where the stress is high until its greatest value converges, in at most five steps."""
     peaks: list[Peak] = []
     near: tuple[Near, ...] = ()
     edges = sharp_edges(solid, START)
 
     def places_on_mesh() -> Places:
-        """Return the places on the next mesh, which is released on return, so that only one is in memory."""
+        """Return the places on the next mesh; it is released on return, so that only one is in memory."""
         grid = make_grid(solid, START, near, edges)
         system = System(grid, ORDER, material, load, few_forces=True)
         return _places_on(respond(system, boundary), measure)
@@ -114,24 +113,24 @@ def greatest_stress(
 
 @dataclass(frozen=True)
 class Places:
-    """The greatest stress on a mesh, and those elements of the surface where it is nearly so."""
+    """The greatest stress on a mesh, and the surface elements with nearly as much stress."""
 
     peak: Peak
     corners: Array  # (elements, 3, 3) [mm]
     values: Array  # (elements,) the greatest stress in each [MPa] under 1 N·mm
 
     def high(self, share: float) -> tuple[Near, ...]:
-        """Return the elements to be halved: those with more than a share of the greatest stress."""
+        """Return the elements to refine: those with more than a share of the greatest stress."""
         return tuple(_halved(one) for one in self.corners[self.values > share * self.peak.value])
 
 
 def _places_on(response: Response, measure: Measure) -> Places:
-    """Return the recovered stress away from the ends.
+    """Return the greatest recovered stress away from the ends, with its places.
 
     Raises
     ------
     AnalysisError
-        `no_free_length` if all of the solid is close to its ends.
+        `no_free_length` if the whole solid is close to its ends.
     """
     system = response.system
     mesh, solid = system.grid.mesh, system.grid.solid
@@ -149,7 +148,7 @@ def _places_on(response: Response, measure: Measure) -> Places:
 
 
 def searched(solid: Solid) -> tuple[float, float]:
-    """Between which levels of z [mm] the greatest stress is looked for."""
+    """Return the levels of z [mm] between which the greatest stress is searched."""
     ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
     low, high = min(ends), max(ends)
     extents = [_extent(face) for face in solid.shape.faces if face.name == FREE]
@@ -163,7 +162,7 @@ def searched(solid: Solid) -> tuple[float, float]:
 
 
 def _extent(face: Any) -> tuple[float, float]:
-    """Return the range of z [mm] of a face's edges; the kernel's boxes of curved faces are larger."""
+    """Return the range of z [mm] of a face from its edges; the kernel's boxes of curved faces are larger."""
     levels = []
     for edge in face.edges:
         if edge.mass > 0:
@@ -173,7 +172,7 @@ def _extent(face: Any) -> tuple[float, float]:
 
 
 def _on_surface(system: System, field: Any) -> tuple[Array, Array]:
-    """Return the points (elements, places, 3) [mm] on the free surface, and a field there."""
+    """Return points (elements, places, 3) [mm] on the free surface, and the values of a field there."""
     mesh = system.grid.mesh
     where = mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2 * system.order), mesh.Boundaries(FREE))
     count = len(_corners(mesh))
@@ -182,7 +181,7 @@ def _on_surface(system: System, field: Any) -> tuple[Array, Array]:
 
 
 def _corners(mesh: Any) -> Array:
-    """Return the corners (elements, 3, 3) [mm] of the free surface's elements."""
+    """Return the corners (elements, 3, 3) [mm] of the elements on the free surface."""
     elements = mesh.Boundaries(FREE).Elements()
     return np.array([[mesh[v].point for v in element.vertices] for element in elements])
 
@@ -194,7 +193,7 @@ def _halved(corners: Array) -> Near:
 
 
 def recover(response: Response) -> Components:
-    """Return the six components xx, yy, zz, xy, yz, xz of the stress [MPa], continuous across elements."""
+    """Return the stress components xx, yy, zz, xy, yz, xz [MPa], continuous across elements."""
     system = response.system
     raw = stress(response.displacement, system.material)
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))

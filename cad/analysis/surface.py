@@ -1,4 +1,4 @@
-"""The surface of an analysed solid as data for a picture: points, displacements, stresses.
+"""Compute the surface of an analysed solid as data for a picture: points, displacements, stresses.
 
 The data come from the response of one mesh, of one order, to a load of 1 N·m. Every curved surface element is
 divided into plane triangles, so that a shaft looks round; triangles share their points, so the surface is
@@ -37,7 +37,10 @@ _NOISE = 1e-9  # of the largest value: what is smaller is nothing
 
 @dataclass(frozen=True)
 class Surface:
-    """Triangles, counterclockwise as seen from outside, between points; a field has a value at each."""
+    """Triangles between points, counterclockwise as seen from outside.
+
+    Each field has a value at each point.
+    """
 
     points: Array  # (n, 3) [mm]
     triangles: Integers  # (m, 3)
@@ -47,7 +50,7 @@ class Surface:
     load: str
 
     def as_json(self) -> dict[str, Any]:
-        """Return the field for JSON: six significant digits, with a unit beside every field."""
+        """Return the surface for JSON with six significant digits and a unit for every field."""
         fields = {"points": (self.points, "mm"), "displacement": (self.displacement, "mm")}
         if self.twist is not None:
             fields["twist"] = (self.twist, "deg")
@@ -80,7 +83,7 @@ def surface(response: Response) -> Surface:
 
 
 def _fields(response: Response, where: Any) -> dict[str, Array]:
-    """Return everything at mapped points (n), under 1 N·m."""
+    """Return all fields at mapped points (n) under 1 N·m."""
     u = response.displacement
     gradient = ng.Grad(u)
     turned = ng.GridFunction(ng.H1(response.system.grid.mesh, order=response.system.order - 1))
@@ -99,12 +102,12 @@ def _at(where: Any, *functions: Any) -> Array:
 
 
 def _division(elements: int) -> int:
-    """Return the into how many parts the side of an element is divided."""
+    """Return the number of parts into which the side of an element is divided."""
     return max(n for n in range(1, _FINEST + 1) if n == 1 or elements * n**2 <= MOST_TRIANGLES)
 
 
 def _lattice(division: int) -> Integers:
-    """Return the points of a divided triangle, as integer weights of its three corners."""
+    """Return the points of a divided triangle as integer weights of its three corners."""
     steps = range(division + 1)
     return np.array([(i, j, division - i - j) for i, j in product(steps, steps) if i + j <= division])
 
@@ -116,7 +119,7 @@ def _rule(lattice: Integers, division: int) -> Any:
 
 
 def _pieces(lattice: Integers) -> Integers:
-    """Return the triangles (m, 3) between the points of a lattice, turned as the element is, outward."""
+    """Return the triangles (m, 3) between the points of a lattice, oriented outwards like the element."""
     place = {(i, j): n for n, (i, j, _) in enumerate(lattice.tolist())}
     up = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place]
     down = [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in place]
@@ -124,7 +127,7 @@ def _pieces(lattice: Integers) -> Integers:
 
 
 def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
-    """Return the number of each element's points among the distinct ones, and each number's first index."""
+    """Return the numbers of each element's points among the distinct points, and the first index of each."""
     numbers: dict[tuple[tuple[int, int], ...], int] = {}
     number: list[int] = []
     first: list[int] = []
@@ -140,7 +143,7 @@ def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
 
 
 def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
-    """Return both halves: one is the image of the other, and they share the points of the mirror plane."""
+    """Return both halves, of which one is the mirror image; they share the points of the mirror plane."""
     image = np.where(np.arange(3) == normal, -1.0, 1.0)
     moved = -image if antisymmetric else image
     apart = np.abs(half.points[:, normal]) > _NEAR

@@ -1,17 +1,17 @@
-"""Stiffness and mass of one crank throw as a member of a chain, by finite elements.
+"""Compute the stiffness and mass matrices of one crank throw in a chain by finite elements.
 
 The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0) and z = `middle`, which is 0
 except for split pins, where the pin is the front one. Its degrees of freedom are the mean displacement [mm]
 and rotation [rad] of each end section, six each, and the two displacements of the pin across the shaft. Each
-mean is conjugate to a load: displacements to an evenly distributed force, rotations to a linearly distributed
-moment.
+mean is conjugate to a load: a displacement to a uniform traction, a rotation to a linear traction.
 
-One end is held and eight unit loads act, six on the other end and two on the pin. Their displacements are the
-flexibility F [8, 8]. T [8, 14] maps the degrees of freedom to displacements relative to the rigid motion of
-the first end. The stiffness is K = Tᵀ F⁻¹ T, so it resists no rigid motion. The mass matrix uses the same
-fields (rigid motions and responses to loads), so its rigid part is the mass and inertia of the solid.
+One end is held; there are eight unit loads, six on the other end and two on the pin. Their displacements are
+the flexibility F [8, 8]. T [8, 14] maps the degrees of freedom to displacements relative to the rigid motion
+of the first end. The stiffness is K = Tᵀ F⁻¹ T, so a rigid motion causes no force. The mass matrix uses the
+same fields (rigid motions and responses to loads), so for rigid motions it gives the mass and inertia of the
+solid.
 
-Lengths in mm, forces in N, masses in t.
+Lengths are in mm, forces in N, masses in t.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _INSIDE = 1e-4  # of a radius, by which a point may lie beyond the pin's surface
 
 @dataclass(frozen=True)
 class ThrowMatrix:
-    """Stiffness and mass [14, 14] of a throw; freedoms of the end at -half, of that at +half, of the pin."""
+    """Stiffness and mass [14, 14] of a throw; its degrees of freedom are those of both ends and the pin."""
 
     stiffness: Array
     mass: Array
@@ -47,7 +47,7 @@ class ThrowMatrix:
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:
-    """Return the stiffness and mass of a throw on its mesh, in elements of an order."""
+    """Return the stiffness and mass of a throw on its mesh, with elements of an order."""
     system = System(grid, order, shaft.material, "torsion")
     pitch = shaft.loaded - shaft.held
     loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]
@@ -66,7 +66,7 @@ def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatri
 
 
 def section_loads(system: System, name: str) -> list[Any]:
-    """Return tractions of unit forces and moments on a flat section across z, whose centre is on the axis."""
+    """Return tractions of unit forces and moments on a flat section across z with its centre on the axis."""
     mesh = system.grid.mesh
     area, about_x, about_y = (
         ng.Integrate(weight * ng.ds(name), mesh) for weight in (ng.CF(1), ng.y * ng.y, ng.x * ng.x)
@@ -92,7 +92,7 @@ def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
 
 
 def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
-    """Return the vectors of unit forces along x and y, spread evenly over the pin's surface."""
+    """Return the vectors of unit forces along x and y, spread uniformly over the surface of the pin."""
     off = (ng.x - pin.throw) ** 2 + ng.y**2
     on_it = ng.IfPos((1 + _INSIDE) ** 2 * pin.radius**2 - off, 1.0, 0.0)
     outside = ng.IfPos(off - (1 - _INSIDE) ** 2 * pin.radius**2, 1.0, 0.0)

@@ -32,7 +32,7 @@ def unit_load_tables(
 ) -> dict[str, dict[str, Any]]:
     """Return all outputs of the kind `unit_loads`, which one set of solutions gives together.
 
-    Where the throw has no fillet, or no plain cylinder on its pin, their value is None with the reason.
+    If the throw has no fillets, or its pin no plain cylinder, the values are None with the reason.
     """
     started = time.perf_counter()
     report(0.0, "reading and meshing the solid")

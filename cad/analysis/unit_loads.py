@@ -1,6 +1,7 @@
-"""Stress tensors at points of a throw under unit loads, to be superposed for any load history.
+"""Compute stress tensors at points of a throw under unit loads, which can be superposed for any load history.
 
-Five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. It is held at one end face.
+There are five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. The throw is held at one end
+face.
 
 `force_1`, `force_2` on the pin, along the throw (x) and across it (y), with the throw on its two mains as on
     supports: the loaded end carries its share by the lever rule, so only the torque of force 2 reaches the
@@ -50,7 +51,7 @@ class UnitStresses:
 
 
 class LoadedThrow:
-    """A throw on one mesh, prepared for any of the loads."""
+    """A throw with its mesh, prepared for any of the loads."""
 
     def __init__(
         self, step: bytes, shaft: Shaft, crank: Crank, fineness: Fineness = FINENESS, order: int = ORDER
@@ -61,11 +62,11 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """Return the share of a force at mid-pin that the support of the loaded end carries."""
+        """Return the share of a force at mid-pin that the support at the loaded end carries."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:
-        """Return the distribution of a force on the pin: over its plain cylinder, most at its middle."""
+        """Return the distribution of a force over the plain cylinder of the pin, largest in the middle."""
         crank = self.crank
         away = (ng.x - crank.throw) ** 2 + ng.y**2
         low, high = ((crank.pin_radius * (1 + side * _ON_PIN)) ** 2 for side in (-1, 1))
@@ -74,7 +75,7 @@ class LoadedThrow:
         return beside * along
 
     def _pin_force(self, direction: int) -> Any:
-        """Return the force vector of 1 N on the pin in x (0) or y (1).
+        """Return the force vector of 1 N on the pin along x (0) or y (1).
 
         Raises
         ------
@@ -117,7 +118,7 @@ class LoadedThrow:
         return Response(self.system, 0.0, displacement, (), (), np.zeros((0, 0)))
 
     def on_surface(self, response: Response) -> tuple[Array, Array]:
-        """Points [n, 3] [mm] of the free surface and the recovered stress tensors [n, 6] [MPa] there."""
+        """Return points [n, 3] [mm] of the free surface, and recovered stress tensors [n, 6] [MPa] there."""
         mesh = self.system.grid.mesh
         where = mesh.MapToAllElements(
             ng.IntegrationRule(ng.TRIG, 2 * self.system.order), mesh.Boundaries(FREE)
@@ -127,10 +128,10 @@ class LoadedThrow:
 
 
 def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
-    """Return tensors of all unit loads at the most stressed point of each sector of the fillets.
+    """Return the tensors of all unit loads at the point of highest stress in each sector of the fillets.
 
-    The measure is the largest von Mises stress under any of the loads, each relative to its own maximum.
-    `before` is called with the name of each load before it is solved.
+    The point of highest stress is that with the largest von Mises stress under any load, relative to the
+    maximum of that load. `before` is called with the name of each load before it is solved.
 
     Raises
     ------

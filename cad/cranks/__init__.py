@@ -1,1 +1,1 @@
-"""Parts that the crank models share: parameters, rules, the solid, its volume, and its readback."""
+"""Code that the crank models share: parameters, rules, the solid, its volume, and its readback."""

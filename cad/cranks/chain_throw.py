@@ -1,4 +1,4 @@
-"""Single throws of a shaft as STEP files, from mid-main to mid-main, for finite elements.
+"""Build single throws of a shaft as STEP files, from mid-main to mid-main, for finite elements.
 
 They have no oil drilling: the section at mid-main would cut the mouth of the previous throw's drilling.
 """
@@ -21,7 +21,7 @@ from cad.step import write_step
 
 
 def has_throws(cls: type[CadModel]) -> bool:
-    """Return whether a model is a shaft of throws: its `drawn` answers a `WholeShaft`."""
+    """Return whether a model is a shaft of throws, that is, whether its `drawn` returns a `WholeShaft`."""
     declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
     return declared.get("return") in (WholeShaft, WholeShaft.__name__)
 
@@ -35,7 +35,7 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
 
 
 def sizes_of_throw(whole: WholeShaft) -> Crank | None:
-    """Return the plain sizes of a shaft's throws, which differ only in their counterweights.
+    """Return the sizes of a shaft's throws, which are equal except for the counterweights.
 
     The result is None for split pins.
     """
@@ -46,12 +46,12 @@ def sizes_of_throw(whole: WholeShaft) -> Crank | None:
 
 
 def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
-    """Return only the first throw of a shaft."""
+    """Return the first throw of a shaft as a separate solid."""
     return throws_apart(replace(whole, throws=whole.throws[:1]))
 
 
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
-    """Return all throws of a shaft; equal throws are drawn once.
+    """Return all throws of a shaft as separate solids; equal throws are built once.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def throws_apart(whole: WholeShaft) -> ThrowsApart:
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
     """Return one throw of a shaft, numbered from 0: its STEP file, its ends, and its pin position.
 
-    z = 0 is half way between the mains; x points to the pin, with split pins to the front one.
+    z = 0 is half way between the mains; x points to the pin, or to the front pin if the pins are split.
     """
     throw = whole.throws[number]
     half = whole.like.journal_length / 2
@@ -106,12 +106,12 @@ def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
 
 
 def _standing(part: Shape, half: Half) -> Shape:
-    """Return a part at the position of its half of the throw."""
+    """Return a part moved to the position of its half of the throw."""
     return part if half == Half(0.0, 0.0) else placed(part, half)
 
 
 def _halves_about_the_middle(whole: WholeShaft) -> tuple[Half, Half]:
-    """Return the halves of a throw whose front pin points to x, with z = 0 midway between mains."""
+    """Return the halves of a throw with its front pin on x and z = 0 midway between the mains."""
     front, rear = whole.halves(0)
     middle = whole.pitch / 2
     return Half(0.0, front.middle - middle), Half(rear.angle - front.angle, rear.middle - middle)

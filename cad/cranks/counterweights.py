@@ -1,4 +1,4 @@
-"""Counterweight radii of the webs, one number or one for each web, and the rules of shafts about them."""
+"""Counterweight radii of the webs (one number, or one for each web) and the rules for them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from templates.core.language.template import Array, Truth, units
 
 @units("rad", returns="1")
 def count(angles: Array) -> Array:
-    """Return the number of them."""
+    """Return the number of counterweight radii."""
     return np.asarray(float(np.shape(angles)[-1]))
 
 
 @units("m", "1", returns="1")
 def webs_of(radii: Array, throws: Array) -> Array:
-    """Return the number of webs with radii: all, if there is one number."""
+    """Return the number of webs with given radii: all webs, if there is one number."""
     return 2 * throws if np.ndim(radii) == 0 else np.asarray(float(np.shape(radii)[-1]))
 
 
@@ -27,7 +27,7 @@ def there_is_none(radii: Array) -> Truth:
 
 @units("m", "m", returns="1")
 def stand_out(radii: Array, least: Array) -> Truth:
-    """Return whether each counterweight reaches at least this far."""
+    """Return whether each counterweight has at least this radius."""
     if np.ndim(radii) == 0:
         return (radii <= 0) | (radii >= least)
     return np.asarray(np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1), dtype=bool)
@@ -35,6 +35,6 @@ def stand_out(radii: Array, least: Array) -> Truth:
 
 @units("m", "rad", "1", returns="m**2", latex=r"R_w^2\,\varphi_w / 2")
 def sectors(radii: Array, angle: Array, throws: Array) -> Array:
-    """Return the area of the sector of each web's counterweight, from the journal's axis on [m²]."""
+    """Return the area of each web's counterweight sector, measured from the journal axis [m²]."""
     each = np.atleast_1d(radii) ** 2 * np.expand_dims(angle, -1) / 2
     return np.broadcast_to(each, (*each.shape[:-1], round(float(2 * throws))))

@@ -1,7 +1,7 @@
 """Read the parameters of a shaft of many throws back from the surfaces of the finished solid.
 
 Each feature is recognised by its position, never by its expected size: the planes across the shaft are, in
-order, the faces of the ends and of the webs. Where all throws share a dimension, each throw must have it.
+order, the faces of the ends and of the webs. If a dimension is common to all throws, each throw must have it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ANGLE = 1e-8  # [rad]
 
 @dataclass(frozen=True)
 class ThrowReadback:
-    """A throw: its pins, and where the faces of its webs lie [mm], from front to rear.
+    """A throw: its pins, and the positions of its web faces [mm], from front to rear.
 
     An undivided pin counts once; split pins count as two, with a middle web between them.
     """
@@ -32,45 +32,48 @@ class ThrowReadback:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Return the angles of the pins next to its front and its rear web, from x towards y [rad]."""
+        """Return the angles of the pins next to the front and the rear web, from x towards y [rad]."""
         first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
         return first, last
 
     @property
     def pin_spans(self) -> list[tuple[float, float]]:
-        """Return the start and end of its pins, with their fillets."""
+        """Return the start and end of the pins, including their fillets."""
         return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
 
     @property
     def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the start and end of its webs, without the middle one."""
+        """Return the start and end of the webs, without the middle web."""
         return self.faces[:2], self.faces[-2:]
 
 
 @dataclass(frozen=True)
 class ShaftReadback:
-    """The features of a shaft of many throws, as read from its surfaces; `split` if its pins are."""
+    """The features of a shaft of many throws, read from its surfaces.
+
+    `split` tells whether its pins are split.
+    """
 
     seen: PartSurfaces
     split: bool = False
 
     @cached_property
     def beside(self) -> list[Surface]:
-        """Return the cylinders parallel to the shaft but not about its axis."""
+        """Return the cylinders that are parallel to the shaft but not coaxial with it."""
         return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
 
     @cached_property
     def throws(self) -> list[ThrowReadback]:
         """Return the throws, from front to rear.
 
-        Each has four planes across the shaft, six with split pins. In front of them are the end of the nose
-        and its shoulder, if any; behind them at most three planes: the shoulder of the flange, the bottom of
-        its holes, and its end.
+        Each throw has four planes across the shaft, or six with split pins. In front of the throws are the
+        end of the nose and its shoulder, if any; behind them are at most three planes: the shoulder of the
+        flange, the bottoms of its holes, and its end.
 
         Raises
         ------
         LookupError
-            If there is no throw, or a throw without a pin.
+            If there is no throw, or if a throw has no pin.
         """
         levels = self.seen.levels(Z)
         first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
@@ -91,12 +94,12 @@ class ShaftReadback:
         return max(pins, key=lambda c: c.diameter)
 
     def _beside_within(self, low: float, high: float) -> list[Surface]:
-        """Return the cylinders along the shaft, not about it, within a stretch of it."""
+        """Return the cylinders parallel to the shaft but not coaxial with it, within a range of z."""
         return [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
     @property
     def ends(self) -> tuple[list[Surface], list[Surface]]:
-        """Return the cylinders about the shaft before the first web and behind the last, from the web on."""
+        """Return the coaxial cylinders before the first web and after the last, starting at the web."""
         first, last = self.throws[0].faces, self.throws[-1].faces
         return stubs(self.seen, Webs((first[0], first[1], last[-2], last[-1])))
 
@@ -139,7 +142,7 @@ class ShaftReadback:
         return [front, *inner, rear]
 
     def _gaps(self) -> list[tuple[float, float]]:
-        """Return the start and end of the main journals between two throws, with their fillets."""
+        """Return the start and end of the main journals between two throws, including their fillets."""
         pairs = zip(self.throws[:-1], self.throws[1:], strict=True)
         return [(before.faces[-1], behind.faces[0]) for before, behind in pairs]
 
@@ -154,12 +157,12 @@ class ShaftReadback:
         }
 
     def _about(self, low: float, high: float) -> list[Surface]:
-        """Return the cylinders about the shaft within a stretch of it."""
+        """Return the coaxial cylinders within a range of z."""
         cylinders = self.seen.about(Z)
         return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
     def _diameter(self, bores: Callable[[ThrowReadback], list[list[Surface]]], what: str) -> float:
-        """Return the diameter of the bores of all throws; 0 if no throw has any.
+        """Return the common diameter of the bores of all throws; 0 if no throw has a bore.
 
         Raises
         ------
@@ -181,7 +184,7 @@ class ShaftReadback:
         return [[c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]]
 
     def _journal_bores(self, throw: ThrowReadback) -> list[list[Surface]]:
-        """Return the cylinders about the shaft that pass through each outer face of a throw."""
+        """Return the coaxial cylinders that pass through each outer face of a throw."""
         about = self.seen.about(Z)
         return [
             [c for c in about if c.reach[0] < face - _CLEAR < face + _CLEAR < c.reach[1]]
@@ -190,7 +193,7 @@ class ShaftReadback:
 
     @property
     def web_width(self) -> float:
-        """Return twice the distance of the sides of webs from the axis, the nearest planes along it."""
+        """Return the web width: twice the distance of the web sides, the nearest planes along the axis."""
         along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
@@ -206,7 +209,7 @@ class ShaftReadback:
         return _across(2 * nearest, sides)
 
     def _sides_of_middle_webs(self) -> Iterator[tuple[Vector, float]]:
-        """Yield the normal of each side of each middle web, and its distance from the axis along it."""
+        """Yield the normal of each side of each middle web, and its distance from the axis."""
         half = self.middle_web()["middle_web_width"] / 2
         for throw in self.throws:
             first, last = (Vector(pin.point.x, pin.point.y, 0) for pin in throw.pins)
@@ -215,7 +218,7 @@ class ShaftReadback:
                 yield normal, first.dot(normal) + side
 
     def middle_web(self) -> dict[str, float]:
-        """Return the thickness of the middle webs, and their width, which equals that of their round ends."""
+        """Return the thickness of the middle webs, and their width (the diameter of their round ends)."""
         spans = [throw.faces[2:4] for throw in self.throws]
         ends = [c for low, high in spans for c in self._beside_within(low, high)]
         thick = (self._apart(*span) for span in spans)
@@ -243,7 +246,7 @@ class ShaftReadback:
         return Size.diameter(askew) if askew else 0.0
 
     def _inclination(self) -> float:
-        """Return the angle [deg] of the planes that are inclined to the shaft."""
+        """Return the angle [deg] of the planes that are oblique to the shaft."""
         leaning = [p for p in self.seen.planes if _leans(p.direction)]
         if not leaning:
             return 0.0
@@ -252,7 +255,7 @@ class ShaftReadback:
         return Size(angle, "angle", Place(faces_of(leaning)))
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
-        """Return the pin angles [deg], in the turn that is nearest to the requested angles [deg]."""
+        """Return the pin angles [deg], in the turn nearest to the requested angles [deg]."""
         seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
             raise LookupError(f"there must be {len(near)} throws; there are {len(seen)}")
@@ -275,15 +278,16 @@ class ShaftReadback:
         return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]
 
     def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
-        """Return the angle of all counterweights [deg]; flanks of several throws may lie on one plane.
+        """Return the common angle of the counterweights [deg]; flanks of several throws may lie on one plane.
 
-        A flank is a plane through the axis. The half angle is one at which each throw with a counterweight
-        has both flanks; of several such angles, which is rare, the one nearest to the expected angle [deg].
+        A flank is a plane through the axis. At the half angle each throw with a counterweight has both
+        flanks. In the rare case of several such angles, the result is the one nearest to the expected angle
+        [deg].
 
         Raises
         ------
         LookupError
-            If there is none.
+            If there is no such angle.
         """
         flanks = [p for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
         lines = [_line(plane) for plane in flanks]
@@ -305,11 +309,11 @@ class ShaftReadback:
 
     @staticmethod
     def _fold(angle: float) -> float:
-        """Return the angle between two lines, at most a right one [rad]."""
+        """Return the angle between two lines, at most a right angle [rad]."""
         return abs(remainder(angle, pi))
 
     def bolts(self) -> dict[str, float]:
-        """Return the holes in the flange: number, diameter, circle and depth; none if there are none."""
+        """Return number, diameter, pitch circle and depth of the flange holes; None if there are no holes."""
         end = self.seen.levels(Z)[-1]
         behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
@@ -332,12 +336,12 @@ class ShaftReadback:
 
 
 def _leans(normal: Vector) -> bool:
-    """Return whether a normal is neither along the shaft nor across it."""
+    """Return whether a normal is oblique: neither parallel nor perpendicular to the shaft."""
     return min(hypot(normal.x, normal.y), abs(normal.z)) > _CLEAR
 
 
 def _across(width: float, sides: Sequence[Surface]) -> Size:
-    """Return a width between planes on both sides of the axis."""
+    """Return the width between planes on both sides of the axis."""
     normal = sides[0].direction
     ahead = [p for p in sides if p.along(normal) and p.point.dot(normal) > 0]
     behind = [p for p in sides if p.along(normal) and p.point.dot(normal) < 0]
@@ -345,7 +349,7 @@ def _across(width: float, sides: Sequence[Surface]) -> Size:
 
 
 def _spans(cylinder: Surface, low: float, high: float) -> bool:
-    """Return whether a cylinder reaches from one plane to another."""
+    """Return whether a cylinder extends from one plane to another."""
     return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
 
 
@@ -355,10 +359,10 @@ def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
 
 
 def _line(flank: Surface) -> float:
-    """Return the angle of the line in which a plane through the axis cuts a plane across it [rad]."""
+    """Return the angle of the line in which a plane through the axis meets a plane across it [rad]."""
     return atan2(flank.direction.y, flank.direction.x) + pi / 2
 
 
 def _shown(line: float, lines: Iterable[float]) -> bool:
-    """Return whether a line through the axis is among others."""
+    """Return whether a line through the axis is one of the given lines."""
     return any(abs(remainder(line - other, pi)) < 100 * _ANGLE for other in lines)

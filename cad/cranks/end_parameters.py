@@ -12,68 +12,68 @@ from templates.core.language.template import Array, Truth, derived, formula, giv
 
 
 class EndParameters(CrankRules):
-    """What lies beyond the first and the last main journal."""
+    """Parameters of the ends of the shaft beyond the first and the last main journal."""
 
     @derived("mm", "nose length", symbol="L_n", ge=0.05, le=5000)
     def L_n(self) -> Array:
-        """0.8 of the journal's diameter."""
+        """Return the default: 0.8 of the journal diameter."""
         return 0.8 * self.D_j
 
     @derived("mm", "nose diameter", symbol="D_n", ge=0.1, le=5000)
     def D_n(self) -> Array:
-        """0.8 of the journal's."""
+        """Return the default: 0.8 of the journal diameter."""
         return 0.8 * self.D_j
 
     @derived("mm", "flange thickness", symbol="t_f", ge=0.05, le=5000)
     def t_f(self) -> Array:
-        """0.3 of the journal's diameter."""
+        """Return the default: 0.3 of the journal diameter."""
         return 0.3 * self.D_j
 
     @derived("mm", "flange diameter", symbol="D_f", ge=0.1, le=5000)
     def D_f(self) -> Array:
-        """1.6 times the journal's."""
+        """Return the default: 1.6 times the journal diameter."""
         return 1.6 * self.D_j
 
     n_b: Array = given("1", "bolt holes", symbol="n_b", default="6", integer=True, ge=1, le=64)
 
     @derived("mm", "bolt hole diameter", symbol="d_b", ge=0, le=1000)
     def d_b(self) -> Array:
-        """None."""
+        """Return the default: no bolt holes."""
         return 0 * self.D_j
 
     @derived("mm", "bolt circle diameter", symbol="D_b", ge=0.05, le=5000)
     def D_b(self) -> Array:
-        """Three quarters of the flange's diameter."""
+        """Return the default: three quarters of the flange diameter."""
         return 0.75 * self.D_f
 
     @derived("mm", "bolt hole depth", symbol="l_b", ge=0.01, le=5000)
     def l_b(self) -> Array:
-        """0.8 of the flange's thickness."""
+        """Return the default: 0.8 of the flange thickness."""
         return 0.8 * self.t_f
 
     @formula("mm", "wall at the nose", name="nose_wall", symbol="w_n")
     def w_n(self) -> Array:
-        """Between the journals' bore and its surface."""
+        """Thickness between the bore of the journals and the surface of the nose."""
         return (self.D_n - self.d_j) / 2
 
     @formula("mm", "wall at the flange", name="flange_wall", symbol="w_f")
     def w_f(self) -> Array:
-        """Between the journals' bore and its rim."""
+        """Thickness between the bore of the journals and the rim of the flange."""
         return (self.D_f - self.d_j) / 2
 
     @formula("mm", "rim outside the bolt holes", name="bolt_rim", symbol="w_b")
     def w_b(self) -> Array:
-        """Between holes and rim."""
+        """Thickness between the bolt holes and the rim of the flange."""
         return (self.D_f - self.D_b - self.d_b) / 2
 
     @formula("mm", "width between bolt holes", name="bolt_gap", symbol="g_b")
     def g_b(self) -> Array:
-        """Along their circle."""
+        """Gap between neighbouring bolt holes along their circle."""
         return self.D_b * np.sin(np.pi / self.n_b) - self.d_b
 
     @formula("mm", "floor below the bolt holes", name="bolt_floor", symbol="f_b")
     def f_b(self) -> Array:
-        """Between the holes' bottoms and the last web."""
+        """Thickness between the bottoms of the bolt holes and the last web."""
         return self.t_f - self.l_b
 
     @require("nose_diameter", "journal_bore", remedy="make the nose thicker or the bore smaller")
@@ -116,16 +116,16 @@ class EndParameters(CrankRules):
 
     @require("bolt_hole_depth", "flange_thickness", remedy="make the holes less deep or the flange thicker")
     def bolts_are_blind(self) -> Truth:
-        """Bolt holes take 1 to 95 % of the flange's thickness."""
+        """The depth of the bolt holes is 1 to 95 % of the flange's thickness."""
         return (self.d_b <= 0) | ((self.l_b <= 0.95 * self.t_f) & (self.l_b >= 0.01 * self.t_f))
 
     @require("bolt_hole_diameter", "journal_diameter", remedy="use 0 for none")
     def bolts_are_drawable(self) -> Truth:
-        """Bolt holes measure 0, or at least 0.2 % of the journal's diameter."""
+        """The diameter of the bolt holes is 0, or at least 0.2 % of the journal's diameter."""
         return (self.d_b <= 0) | (self.d_b >= 0.002 * self.D_j)
 
     def ends_drawn(self) -> tuple[End, End, Bolts | None]:
-        """Return the nose, flange and bolt holes as radii and lengths of the drawn shape."""
+        """Return the nose, flange and bolt holes as radii and lengths of the shape."""
         holes = Bolts(round(float(self.n_b)), mm(self.d_b) / 2, mm(self.D_b) / 2, mm(self.l_b))
         return (
             End(mm(self.D_n) / 2, mm(self.L_n)),

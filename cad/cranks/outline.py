@@ -22,7 +22,7 @@ _NOTHING = 1e-9  # [mm]: the length of a line that is none, as where a flank mee
 
 @dataclass(frozen=True)
 class Outline:
-    """The outline of a web [mm]; a counterweight of no radius is none."""
+    """The outline of a web [mm]; a counterweight radius of 0 stands for no counterweight."""
 
     throw: float
     half_width: float
@@ -32,7 +32,7 @@ class Outline:
 
     @property
     def tip(self) -> float:
-        """Return the position of the web's end beyond the pin."""
+        """Return the position of the end of the web beyond the pin."""
         return self.throw + self.half_width
 
     @property
@@ -43,9 +43,9 @@ class Outline:
         return body + self._sector
 
     def moment_beyond(self, start: float) -> float:
-        """Return the first moment, about x = start, of the area beyond it [mm³].
+        """Return the first moment, about x = start, of the area beyond x = start [mm³].
 
-        Starts above the journal's axis.
+        The start must be above the journal axis.
         """
         h, R = self.half_width, self.throw
         if self.rectangular:
@@ -56,13 +56,13 @@ class Outline:
         return h * straight**2 + 2 / 3 * chord**3 + (R - start) * cap
 
     def wire(self, z: float) -> Wire:
-        """Return the outline at a height."""
+        """Return the outline as a wire at a level of z."""
         return wire(*(edge(run, z) for run in self.runs()))
 
     def runs(self) -> list[Run]:
-        """Return the lines and arcs, counter-clockwise from the end beyond the pin.
+        """Return the lines and arcs, counter-clockwise, starting at the end beyond the pin.
 
-        The lower side mirrors the upper.
+        The lower side is the mirror image of the upper side.
         """
         first, upper, last = self._square() if self.rectangular else self._round()
         if self.counterweight > 0:
@@ -73,7 +73,7 @@ class Outline:
         return [first, *upper, last, *lower]
 
     def _round(self) -> tuple[Run, list[Run], Run]:
-        """Return a round web: the end beyond the pin, the side up to the flank, and any other end."""
+        """Return the upper side of a round web: the end beyond the pin, the side, and any other end."""
         h, R = self.half_width, self.throw
         first, last = ((R, -h), (self.tip, 0.0), (R, h)), ((0.0, h), (-h, 0.0), (0.0, -h))
         side: Run = ((R, h), (0.0, h))
@@ -85,7 +85,7 @@ class Outline:
         return first, [side, arc], last
 
     def _square(self) -> tuple[Run, list[Run], Run]:
-        """Return a rectangular web in the same way."""
+        """Return the upper side of a rectangular web, in the order of `_round`."""
         h, a = self.half_width, self.half_angle
         first, last = ((self.tip, -h), (self.tip, h)), ((-h, h), (-h, -h))
         if self.counterweight > 0 and a > pi / 4:
@@ -94,7 +94,7 @@ class Outline:
         return first, [side, ((-h, h), (-h, h * tan(a)))] if self.counterweight > 0 else [side], last
 
     def _flank(self, foot: Point) -> tuple[Run, Run]:
-        """Return the flank of the counterweight at +y, from its foot outwards, and the rim between flanks."""
+        """Return the flank of the counterweight at +y, from its foot outwards, and the rim."""
         rim = tuple(
             _on_circle(self.counterweight, angle) for angle in (self.half_angle, 0.0, -self.half_angle)
         )
@@ -113,12 +113,12 @@ class Outline:
 
 
 def edge(run: Run, z: float) -> Edge:
-    """Return a line or an arc at a height."""
+    """Return the edge of a line or an arc at a level of z."""
     return draw(run, lambda x, y: Vector(x, y, z))
 
 
 def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
-    """Return a line or an arc; `place` maps its points to space."""
+    """Return the edge of a line or an arc; `place` maps its points to space."""
     points = [place(*point) for point in run]
     return segment(*points) if len(points) == 2 else Edge.makeThreePointArc(*points)
 
@@ -129,7 +129,7 @@ def _on_circle(radius: float, angle: float) -> Point:
 
 
 def reach(outline: Outline, direction: float) -> float:
-    """Return the farthest extent of a web in a direction [rad] from x, measured from the journal's axis."""
+    """Return the largest extent of a web in a direction [rad] from x, measured from the journal axis."""
     across = abs(sin(direction)) * outline.half_width
     along = cos(direction)
     if outline.rectangular:
@@ -140,6 +140,6 @@ def reach(outline: Outline, direction: float) -> float:
 
 
 def _sector(outline: Outline, direction: float) -> float:
-    """Return the reach of the counterweight, a sector about -x: of its rim, or of the rim's nearest end."""
+    """Return the extent of the counterweight sector about -x: at its rim or the nearest end of the rim."""
     off = abs(remainder(direction - pi, 2 * pi)) - outline.half_angle
     return outline.counterweight * (cos(off) if off > 0 else 1.0)

@@ -1,7 +1,8 @@
 """Rules that refuse a crank; each names the parameters and a remedy.
 
-The rules are a little stricter than geometry requires (by some per cent), so that edges keep clear of each
-other. The kernel can draw every crank that they accept, and the closed form of the volume covers it.
+The rules are some per cent stricter than geometry requires, so that edges do not come too close to each
+other. The kernel can build every crank that the rules accept, and the closed form of the volume is valid for
+it.
 """
 
 from __future__ import annotations
@@ -16,20 +17,20 @@ from templates.core.language.template import Array, Truth, require, units
 
 @units(None, "m", returns="m")
 def corner(shape: str, width: Array) -> Array:
-    """Return the reach [m] of a web of a width [m] from the journal's axis, on the counterweight's side."""
+    """Return the distance [m] of a web corner from the journal axis, on the side of the counterweight."""
     return {"obround": 0.5, "rectangular": 0.5 * 2**0.5}[shape] * width
 
 
 @units(None, "rad", returns="1")
 def clear_of_corners(shape: str, angle: Array) -> Truth:
-    """Return whether the flanks of a counterweight [rad] clear the corners of the web."""
+    """Return whether the flanks of a counterweight [rad] are clear of the corners of the web."""
     meeting = {"obround": pi, "rectangular": pi / 2}[shape]
     apart: Array = np.abs(angle - meeting)
     return (apart < 1e-9) | (apart >= radians(0.099))
 
 
 class CrankRules(CrankParameters):
-    """Parameters that make a crank."""
+    """Rules for the parameters of a crank."""
 
     @require("web_width", "journal_diameter", "fillet", remedy="make the web wider or the fillet smaller")
     def web_holds_journal(self) -> Truth:
@@ -43,22 +44,22 @@ class CrankRules(CrankParameters):
 
     @require("fillet", "pin_length", remedy="make the fillet smaller or the pin longer")
     def fillets_fit_on_pin(self) -> Truth:
-        """The two fillets take at most 90 % of the pin's length."""
+        """The two fillets occupy at most 90 % of the pin's length."""
         return 2 * self.r_f <= 0.9 * self.L_c
 
     @require("fillet", "journal_length", remedy="make the fillet smaller or the journal longer")
     def fillet_fits_on_journal(self) -> Truth:
-        """A fillet takes at most 90 % of the journal that is drawn beside a web."""
+        """A fillet occupies at most 90 % of the length of journal drawn next to a web."""
         return self.r_f <= 0.9 * self.L_s
 
     @require("journal_bore", "journal_diameter", remedy="make the bore smaller, or 0 for none")
     def journal_has_wall(self) -> Truth:
-        """The bore takes at most 98 % of the journal's diameter."""
+        """The bore diameter is at most 98 % of the journal's diameter."""
         return self.d_j <= 0.98 * self.D_j
 
     @require("pin_bore", "pin_diameter", remedy="make the bore smaller, or 0 for none")
     def pin_has_wall(self) -> Truth:
-        """The bore takes at most 98 % of the pin's diameter."""
+        """The bore diameter is at most 98 % of the pin's diameter."""
         return self.d_c <= 0.98 * self.D_c
 
     @require(
@@ -96,7 +97,7 @@ class CrankRules(CrankParameters):
         remedy="make the oil drilling smaller or the pin longer",
     )
     def drilling_opens_in_pin(self) -> Truth:
-        """The mouth of the oil drilling takes at most 90 % of the pin between its fillets."""
+        """The mouth of the oil drilling occupies at most 90 % of the pin between its fillets."""
         return (self.d_o <= 0) | (self.m_c <= 0.9 * (self.L_c / 2 - self.r_f))
 
     @require(
@@ -150,7 +151,7 @@ class CrankRules(CrankParameters):
 
     @require("counterweight_angle", "web_shape", remedy="meet the corner exactly, or keep off it by 0.1°")
     def flanks_clear_corners(self) -> Truth:
-        """The counterweight's flanks meet corners (obround 180°, rectangular 90°) or miss by 0.1°."""
+        """The counterweight's flanks meet corners (obround 180°, rectangular 90°) or miss them by 0.1°."""
         return (self.R_w <= 0) | clear_of_corners(self.web_shape, self.phi_w)
 
     @require("face_inclination", "web_thickness", remedy="make the inclination smaller or the web thicker")
@@ -177,7 +178,7 @@ class CrankRules(CrankParameters):
         remedy="use 0 for none",
     )
     def features_are_drawable(self) -> Truth:
-        """Bores, fillet and oil drilling measure 0, or at least 0.2 % of the journal's diameter."""
+        """Bores, fillet and oil drilling are 0, or at least 0.2 % of the journal's diameter."""
         least = 0.002 * self.D_j
         bores = ((self.d_j <= 0) | (self.d_j >= least)) & ((self.d_c <= 0) | (self.d_c >= least))
         return bores & ((self.r_f <= 0) | (self.r_f >= least)) & ((self.d_o <= 0) | (self.d_o >= least))

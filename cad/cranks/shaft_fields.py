@@ -1,7 +1,7 @@
-"""Fields on a crankshaft's surface: a value round its fillets, and the angle of a torsional mode along it.
+"""Fields on the surface of a crankshaft: values round its fillets, and the angle of a torsional mode.
 
-A fillet is a separate face. A face counts as a fillet if all its corners lie in one ring, so the plain
-cylinders between two fillets stay unpainted.
+A fillet is a separate face. A face counts as a fillet if all its vertices lie in one fillet region, so the
+plain cylinders between two fillets have no value.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ def at_fillets(
     points: Array,
     values: Array,
 ) -> Array:
-    """Return the values at the corners [n, 3] of a shaft, from those at points of one throw's fillets.
+    """Return values at the vertices [n, 3] of a shaft, from values at points of one throw's fillets.
 
-    NaN elsewhere.
+    Values elsewhere are NaN.
 
     Points [p, 3] are in the axes of the throw: z = 0 is mid-pin, x points to the pin. `places` are the angle
-    of the pin [rad] and the z of mid-pin [mm] of each throw; every throw gets the same. Round a fillet a
-    value is linear in the angle between the points.
+    of the pin [rad] and the z of mid-pin [mm] of each throw; every throw gets the same values. Round a
+    fillet, values are interpolated linearly in the angle between the points.
     """
     painted = np.full(len(corners), np.nan)
     for angle, middle in places:
@@ -51,14 +51,14 @@ def places_of(whole: WholeShaft) -> list[tuple[float, float]]:
 
 
 def in_throw(corners: Array, angle: float, middle: float) -> Array:
-    """Return corners in the axes of a throw whose pin is at an angle [rad] and whose middle is at z [mm]."""
+    """Return vertices in the axes of a throw whose pin is at an angle [rad] and whose middle is at z [mm]."""
     x, y, z = corners.T
     along, across = x * cos(angle) + y * sin(angle), y * cos(angle) - x * sin(angle)
     return np.column_stack([along, across, z - middle])
 
 
 def _round(ring: Ring, corners: Array, points: Array, values: Array) -> Array:
-    """Return values at corners by their angle round the axis of a ring, linear between the points on it."""
+    """Return values at vertices by their angle round the axis of a ring, interpolated between its points."""
     angle, known = (np.arctan2(at[:, 1], at[:, 0] - ring.axis) for at in (corners, points))
     return np.asarray(np.interp(angle, known, values, period=2 * pi))
 
@@ -66,9 +66,9 @@ def _round(ring: Ring, corners: Array, points: Array, values: Array) -> Array:
 def along_shaft(
     whole: WholeShaft, corners: Array, angles: Sequence[float], ends: tuple[float, float]
 ) -> Array:
-    """Return angles of a mode at the corners: of each throw's pin, of the nose's end and the flange's end.
+    """Return the mode angle at the vertices, from its values at each pin, the nose end and the flange end.
 
-    Linear in z between them.
+    Between these the angle is interpolated linearly in z.
     """
     pins = [middle for _, middle in places_of(whole)]
     places = [whole.low, *pins, whole.high]

@@ -1,4 +1,4 @@
-"""Parameters and rules of split pins: an angle between the two pins of a throw, and the middle web."""
+"""Parameters and rules of split pins: the angle between the two pins of a throw, and the middle web."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _ROUNDING = 1e-9  # [rad]
 
 @units("rad", returns="rad", latex=r"{0} \bmod 2\pi")
 def shortest(angle: Array) -> Array:
-    """Return the same angle [rad] in the turn from -180° to 180°."""
+    """Return the equivalent angle [rad] between -180° and 180°."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 @units("rad", returns="1")
 def are_split(split: Array) -> Truth:
-    """Return whether pins are split by an angle [rad]; what a sine's rounding leaves is none."""
+    """Return whether pins are split by an angle [rad]; the rounding error of a sine does not count."""
     return np.asarray(np.abs(shortest(split)) > _ROUNDING, dtype=bool)
 
 
@@ -33,20 +33,21 @@ def undivided(split: Array) -> Truth:
 
 @units("rad", "m", returns="m", latex=r"{1}\ \text{{if split}}")
 def where_split(split: Array, length: Array) -> Array:
-    """Return a length [m] where pins are split; 0 where they are not."""
+    """Return a length [m] if pins are split, else 0."""
     return np.where(are_split(split), length, 0 * length)[()]
 
 
 @units("rad", "rad", "m", "m", "m", returns="m")
 def least_gap(pins: Array, split: Array, far: Array, journal: Array, rise: Array) -> Array:
-    """Return the least distance [m] between the axes of the two drillings that end in one journal.
+    """Return the smallest distance [m] between the axes of the two drillings that end in one journal.
 
-    Inf if none do.
+    The result is infinite if none do.
 
-    One comes from the rear pin before it, one from the front pin behind it. Both run from `far` across to
-    the journal's other side, `rise` along the shaft, to the same section. They are mirror images, so they are
-    nearest at equal places: 2 s r h / sqrt(s² X² + h²), s the sine of half the angle between them, r the
-    radius of the journal, h the rise, X the way across.
+    One comes from the rear pin in front of the journal, the other from the front pin behind it. Both run from
+    `far` across to the other side of the journal, `rise` along the shaft, to the same section. They are
+    mirror images, so they are closest at corresponding points: the distance is 2 s r h / sqrt(s² X² + h²),
+    where s is the sine of half the angle between them, r the radius of the journal, h the rise, and X the
+    distance across.
     """
     if np.ndim(pins) == 0 or np.shape(pins)[-1] < 2:
         return np.asarray(np.inf)
@@ -58,7 +59,7 @@ def least_gap(pins: Array, split: Array, far: Array, journal: Array, rise: Array
 
 
 class SplitParameters(CrankRules):
-    """Angles of the pins, and how they are split."""
+    """Parameters of the pin angles and of split pins."""
 
     psi: Array = curve(
         "deg", "pin angles", along="throws", symbol=r"\psi", ge=-720, le=720, also=("crankpin angles",)
@@ -69,12 +70,12 @@ class SplitParameters(CrankRules):
 
     @derived("mm", "middle web thickness", symbol="L_m", ge=0.025, le=5000)
     def L_m(self) -> Array:
-        """Half of a web's."""
+        """Return the default: half the thickness of a web."""
         return 0.5 * self.L_w
 
     @derived("mm", "middle web width", symbol="W_m", ge=0.1, le=10000)
     def W_m(self) -> Array:
-        """A little wider than a pin with its fillets."""
+        """Return the default: slightly wider than a pin with its fillets."""
         return 1.1 * (self.D_c + 2 * self.r_f)
 
     @require("pin_split", remedy="use 0 for pins that are not split")

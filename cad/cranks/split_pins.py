@@ -13,10 +13,9 @@ from cad.cranks.outline import Run, edge
 
 @dataclass(frozen=True)
 class SplitPins:
-    """The rear pin stands at an angle from the front one [rad]; the middle web joins them.
+    """Two split pins: the rear pin is at an angle [rad] from the front pin, and the middle web joins them.
 
-    The middle web is what a round end sweeps on its way from one pin to the other: two half circles about
-    the pins, joined by two lines.
+    The outline of the middle web is two half circles about the pins, joined by two lines.
     """
 
     angle: float

@@ -1,9 +1,9 @@
-"""Draw the solid of a crank throw, in millimetres.
+"""Build the solid of a crank throw, in millimetres.
 
 z is the axis of the main journals, x points from it to the crankpin, z = 0 is the middle of the pin. Each web
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
 
-Journals and pins are turned from one outline with their fillets, and the webs are plates. So the parts meet
+Journals and pins are revolved from one outline with their fillets, and the webs are plates. So the parts meet
 only at flat faces, and the kernel can fuse them reliably. Only bores, drilling and inclined faces are cut.
 """
 
@@ -32,7 +32,7 @@ class End:
 
 @dataclass(frozen=True)
 class Throw:
-    """A throw with its journals [mm]; what has no radius is not there."""
+    """A throw with its journals [mm]; a radius of 0 omits the feature."""
 
     outline: Outline  # of the webs
     web_thickness: float
@@ -54,7 +54,7 @@ class Throw:
 
     @property
     def outer(self) -> float:
-        """Return the z of its outer face."""
+        """Return the z of the outer face of the web on +z."""
         return self.inner + self.web_thickness
 
     @property
@@ -64,7 +64,7 @@ class Throw:
 
     @property
     def drilled(self) -> tuple[Vector, Vector]:
-        """Return points where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
+        """Return the points where the axis of the drilling leaves the pin and the journal on +z."""
         top = Vector(self.outline.throw + self.pin, 0, 0)
         return top, Vector(-self.journal, 0, self.outer + self.journal_length / 2)
 
@@ -95,9 +95,9 @@ class Throw:
             yield self.drill()
 
     def _wedge(self) -> Solid:
-        """Return the wedge that the inclination removes from the web on +z.
+        """Return the wedge that the inclined face removes from the web on +z.
 
-        Elsewhere it extends beyond the web.
+        On its other sides it extends beyond the web.
         """
         room, slope, start = self.outline.half_width / 4, tan(self.inclination), self.incline_start
         left, right = start - room, self.outline.tip + room
@@ -151,13 +151,16 @@ class Throw:
 
 
 def fillet_run(radius: float, size: float, z: float, up: int) -> Run:
-    """Return the fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
+    """Return the fillet between a face at z and a cylinder above (1) or below (-1) it.
+
+    A point if there is none.
+    """
     middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
     return (radius + size, z), middle, (radius, z + up * size)
 
 
 def bore(radius: float, reach: float, x: float) -> Solid:
-    """Return a cylinder along z through x, as far up as down."""
+    """Return a cylinder along z at x, extending equally far up and down."""
     return Solid.makeCylinder(radius, 2 * reach, Vector(x, 0, -reach), Vector(0, 0, 1))
 
 

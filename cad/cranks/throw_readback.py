@@ -1,7 +1,8 @@
 """Read the parameters of a crank back from the surfaces of the finished solid.
 
 Each feature is recognised by its position, not by its expected size: planes across the shaft are the faces of
-webs, cylinders about the shaft beyond the webs are journals and ends, another cylinder along it is the pin.
+webs, coaxial cylinders beyond the webs are journals and ends, and another cylinder parallel to the shaft is
+the pin.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ _CLEAR = 1e-6  # [mm], and as the sine of an angle
 
 @dataclass(frozen=True)
 class Webs:
-    """Where the faces of both webs lie along the shaft [mm], from front to rear."""
+    """Positions of the faces of both webs along the shaft [mm], from front to rear."""
 
     faces: tuple[float, float, float, float]
 
@@ -37,12 +38,12 @@ class Webs:
         return Size.repeated(webs, "webs")
 
     def apart(self, seen: PartSurfaces) -> float:
-        """Return the distance between the webs [mm]."""
+        """Return the distance between the two webs [mm]."""
         return seen.apart(Z, self.faces[1], self.faces[2])
 
 
 def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return the pin diameter, bore and throw; the pin is between the webs."""
+    """Return the pin diameter, the pin bore and the throw, from the cylinders between the webs."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
     within = [c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR]
@@ -58,16 +59,16 @@ def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
 
 
 def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]:
-    """Return the cylinders about the shaft on the webs at the front and at the rear, from the web on."""
+    """Return the coaxial cylinders at the front and at the rear, starting at the web."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
     return sorted(before, key=_start), sorted(behind, key=_start)
 
 
 def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
-    """Return the diameter of the cylinder about the shaft that continues through the web.
+    """Return the diameter of the coaxial cylinder that continues through the web.
 
-    Return 0 if there is none.
+    The result is 0 if there is none.
     """
     low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
     through = [c for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1]]

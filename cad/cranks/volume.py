@@ -1,9 +1,10 @@
 """Volume of a crank throw [mm³] from its dimensions alone: an independent check of the kernel.
 
-The parts touch only at faces, so their volumes add. The rules of the models ensure that each cut lies inside
-one part or crosses it completely. Fillets follow Pappus's theorem. The drilling is integrated over its
-chords: at a distance y from the plane of the crank all have the same length, because both of its mouths lie
-in cylinders along z. The bores that it crosses shorten the chords in the same way.
+The parts touch only at faces, so their volumes add up. The rules of the models ensure that each cut lies
+inside one part or crosses it completely. Fillets are calculated by Pappus's theorem. The drilling is
+integrated over its chords: at a distance y from the plane of the crank all chords have the same length,
+because both mouths lie in cylinders along z. The bores that the drilling crosses shorten the chords in the
+same way.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from cad.cranks.throw import End, Throw
 
 
 def volume(throw: Throw) -> float:
-    """Return the webs, pin and journals, less bores and drilling."""
+    """Return the volume of webs, pin and journals minus bores and drilling."""
     return 2 * web(throw) + pin(throw) + 2 * journal(throw) - drilling(throw)
 
 
 def web(t: Throw) -> float:
-    """Return a plate with two holes, minus the volume that its inclined face removes."""
+    """Return the volume of a plate with two holes, minus what its inclined face removes."""
     slope = tan(t.inclination)
     at_pin = t.web_thickness - slope * max(t.outline.throw - t.incline_start, 0.0)
     bores = pi * (t.journal_bore**2 * t.web_thickness + t.pin_bore**2 * at_pin)
@@ -29,22 +30,22 @@ def web(t: Throw) -> float:
 
 
 def pin(t: Throw) -> float:
-    """Return a pin with a fillet at either end."""
+    """Return the volume of a pin with a fillet at either end."""
     return pi * (t.pin**2 - t.pin_bore**2) * t.pin_length + 2 * fillet(t.pin, t.fillet)
 
 
 def journal(t: Throw) -> float:
-    """Return a journal with a fillet at one end."""
+    """Return the volume of a journal with a fillet at one end."""
     return pi * (t.journal**2 - t.journal_bore**2) * t.journal_length + fillet(t.journal, t.fillet)
 
 
 def end_volume(end: End, bore: float) -> float:
-    """Return a plain cylinder with a bore."""
+    """Return the volume of a plain cylinder with a bore."""
     return pi * (end.radius**2 - bore**2) * end.length
 
 
 def fillet(radius: float, size: float) -> float:
-    """Return a fillet around a cylinder: the square of its size less a quarter circle, turned (Pappus)."""
+    """Return the volume of a fillet around a cylinder: a square minus a quarter circle, revolved (Pappus)."""
     return 2 * pi * ((1 - pi / 4) * size**2 * radius + (5 / 6 - pi / 4) * size**3)
 
 
@@ -58,7 +59,7 @@ def drilling(t: Throw) -> float:
 
 
 def _slice(angle: float, t: Throw) -> float:
-    """Return both sides' section of the drilling at y = a sin(angle), along x, times dy/d(angle) [mm³].
+    """Return the section of the drilling at y = a sin(angle) along x, times dy/d(angle) [mm³].
 
     The sine removes the singularity of the square root from the integrand.
     """

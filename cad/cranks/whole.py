@@ -1,16 +1,17 @@
-"""Draw a crankshaft of any number of throws, in millimetres, and compute its volume in closed form.
+"""Build a crankshaft of any number of throws, in millimetres, and compute its volume in closed form.
 
-z runs along the shaft; z = 0 is the middle of the first main journal, and the middle of each following one is
-one pitch further. x is the reference line from which the pin angles are measured, towards y. The nose is at
--z, the flange at +z.
+z runs along the shaft; z = 0 is the middle of the first main journal, and each following journal is one pitch
+further. x is the reference line from which the pin angles are measured, towards y. The nose is at -z, the
+flange at +z.
 
-Each throw is drawn as `crank_throw` is, then turned and shifted. Journals and pins are turned from one
-outline, and the parts meet only in flat faces, so their volumes add. Bores, drillings and bolt holes are cut
-from the whole shaft. They do not intersect each other, except for a drilling and the bores of its own throw;
-the rules of the model ensure that.
+Each throw is built like `crank_throw`, then rotated and shifted. Journals and pins are revolved from one
+outline, and the parts meet only in flat faces, so their volumes add up. Bores, drillings and bolt holes are
+cut from the whole shaft. They do not intersect each other, except for a drilling and the bores of its own
+throw; the rules of the model ensure that.
 
-Where pins are split, a throw is two halves, each turned with its own pin, and a middle web between them. Pin
-bores then end at the middle web, and each pin has its drilling: the front one from the main before it.
+If the pins are split, a throw consists of two halves, each rotated with its own pin, and a middle web between
+them. Pin bores then end at the middle web, and each pin has its own drilling; that of the front pin comes
+from the main journal in front of it.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _AXIS = constant(lambda: (Vector(0, 0, 0), Vector(0, 0, 1)))
 
 @dataclass(frozen=True)
 class Bolts:
-    """Blind holes with flat bottoms in the flange, evenly on a circle, the first on the line of reference."""
+    """Blind holes with flat bottoms in the flange, evenly spaced on a circle; the first is on the line x."""
 
     count: int
     radius: float  # of a hole
@@ -45,7 +46,7 @@ class Bolts:
 
 @dataclass(frozen=True)
 class Throws:
-    """One throw of the shaft: the same twice, but for the counterweights of its front and its rear web."""
+    """One throw of the shaft: with the counterweight of its front web, and with that of its rear web."""
 
     front: Throw
     rear: Throw
@@ -54,7 +55,7 @@ class Throws:
 
 @dataclass(frozen=True)
 class Half:
-    """Where one half of a throw stands: the angle of its pin [rad], and the z of the middle of its pin."""
+    """Position of one half of a throw: the angle of its pin [rad], and the z of mid-pin [mm]."""
 
     angle: float
     middle: float
@@ -72,7 +73,7 @@ class WholeShaft:
 
     @property
     def like(self) -> Throw:
-        """Return a throw; throws differ only in their counterweights."""
+        """Return the first throw, to which all throws are equal except for their counterweights."""
         return self.throws[0].front
 
     @property
@@ -84,9 +85,9 @@ class WholeShaft:
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Return angle and position of a throw's front and rear half; throws are numbered from 0.
+        """Return angle and position of the front and rear half of each throw; throws are numbered from 0.
 
-        Both halves are equal with an undivided pin.
+        Both are equal for an undivided pin.
         """
         angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
         if self.split is None:
@@ -101,16 +102,16 @@ class WholeShaft:
 
     @property
     def low(self) -> float:
-        """Return the z of the nose's end."""
+        """Return the z of the end of the nose."""
         return -self.like.journal_length / 2 - self.nose.length
 
     @property
     def high(self) -> float:
-        """Return the z of the flange's end."""
+        """Return the z of the end of the flange."""
         return self.mains[-1] + self.like.journal_length / 2 + self.flange.length
 
     def solid(self) -> Shape:
-        """Return all parts joined, then bored and drilled at once."""
+        """Return all parts fused, then bored and drilled at once."""
         whole = fuse(*self._parts(), glue="partial")
         tools = [*self._tools()]
         return whole.cut(*tools) if tools else whole
@@ -130,7 +131,7 @@ class WholeShaft:
         return webs + pins * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes + middle
 
     def box(self) -> Box:
-        """Return the webs, counterweights, nose and flange together."""
+        """Return the bounding box of webs, counterweights, nose and flange."""
         ends = max(self.nose.radius, self.flange.radius)
         webs = [
             (one.outline, half.angle)
@@ -149,7 +150,7 @@ class WholeShaft:
         return Box(low, (far(0.0), far(pi / 2), self.high))
 
     def _parts(self) -> Iterator[Shape]:
-        """Yield the nose with the first journal; throw after throw, each with the journal behind it."""
+        """Yield the nose with the first journal, then each throw with the journal behind it."""
         first = self.throws[0].front
         nose = first.journal_solid(self.nose).mirror("XY")
         front, _ = self.halves(0)
@@ -172,7 +173,10 @@ class WholeShaft:
         return Half(rear.angle + remainder(front.angle - rear.angle, 2 * pi) / 2, rear.middle)
 
     def _tools(self) -> Iterator[Shape]:
-        """Yield the solids that bores, drillings and bolt holes take away; all but the last end in air."""
+        """Yield the solids that bores, drillings and bolt holes remove.
+
+        All except the last extend beyond the part.
+        """
         t = self.like
         if t.journal_bore > 0:
             middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
@@ -201,12 +205,12 @@ class WholeShaft:
 
 
 def placed(part: Shape, half: Half) -> Shape:
-    """Return a part of a throw, drawn about the middle of its pin, at the position of its half."""
+    """Return a part of a throw, built about mid-pin, moved to the position of its half."""
     return part.rotate(*_AXIS, degrees(half.angle)).translate(Vector(0, 0, half.middle))
 
 
 def _tools_of_half(t: Throw) -> Iterator[Shape]:
-    """Yield the cuts of the rear half of a throw with split pins: the bore ends at the middle web."""
+    """Yield the cuts of the rear half of a throw with split pins, whose bore ends at the middle web."""
     if t.pin_bore > 0:
         yield t.blind_bore()
     if t.drilling > 0:

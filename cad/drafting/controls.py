@@ -92,7 +92,7 @@ class Controls:
         start = (left if target[0] < left + width / 2 else left + width), low + height / 2
         self.page.symbol(arrow(target, start))
         frame.draw(self.page, left, low)
-        self.room.add_line([target, start])
+        self.room.add_line([target, start], is_drawn=True)
 
     def _texture(self, placed: PlacedDimension, text: str) -> None:
         reach = width_of(text, 2.5)
@@ -100,7 +100,7 @@ class Controls:
         x, y = self._place(target, lambda x, y: (x - 3.5, y - 0.5, x + 6.5 + reach, y + 10.5), reach)
         self.page.symbol(texture(TEXT, reach).moved(x, y).joined(arrow(target, (x, y))))
         self.page.write(text, x + 5.5, y + 6.0, 2.5)
-        self.room.add_line([target, (x, y)])
+        self.room.add_line([target, (x, y)], is_drawn=True)
 
     def _target(self, placed: PlacedDimension) -> Point:
         """Return a point of a face that carries a dimension, on the paper; within an edge, off its corner."""
@@ -116,9 +116,9 @@ class Controls:
             for turn in range(0, 360, 10)
         )
         free = [place for place in tries if self.room.is_free(box_at(*place))]
-        if not free and not self.is_last:
+        clear = [p for p in free if self.room.passes([target, p]) and self.room.is_apart([target, p])]
+        if not clear and not self.is_last:
             raise NoRoom
-        clear = [place for place in free if self.room.passes([target, place])]
         short = (place for place in clear if self.room.length_in_views(target, place) <= _ACROSS)
         place = next(short, (clear or free or [_beside(target, 8, 0.0, width)])[0])
         self.room.add(box_at(*place))

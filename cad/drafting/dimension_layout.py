@@ -80,7 +80,7 @@ class DimensionLayout:
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
             self._take_lines(one)
-        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form != "angle")
+        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form == "angle")
         return placed + [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
@@ -167,7 +167,7 @@ class DimensionLayout:
     def _take_lines(self, placed: PlacedDimension) -> None:
         """Dimension line and extension lines, which no later words cross."""
         assert placed.ends is not None
-        self.room.add_line(placed.ends)
+        self.room.add_line(placed.ends, is_drawn=True)
         points = sorted(self._on_paper(placed.dimension, placed.right))
         for end in placed.ends:
             along = 1 if placed.ends[0][0] == placed.ends[1][0] else 0
@@ -184,16 +184,28 @@ class DimensionLayout:
                 tries = self._across_angle(one, label, right)
             case _:
                 tries = self._around(one, label, right)
-        every = list(tries)
-        free = [one for one in every if self.room.is_free(one[0])]
-        clear = (one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0])))
-        if not free and not self.is_last:
+        about = self._on_paper(one, right)[0]
+        is_arc = one.measure.form == "angle"  # a dimension line, no leader: others may cross it
+        chosen, every = None, []
+        for each in tries:
+            every.append(each)
+            is_apart = self.room.is_at_home if is_arc else self.room.is_apart
+            if self._is_clear(each, is_arc=is_arc) and all(is_apart(line, about) for line in each[2]):
+                chosen = each
+                break
+        if chosen is None and not self.is_last:
             raise NoRoom
-        box, placed, lines = next(clear, (free or every)[0])
+        box, placed, lines = chosen or next((each for each in every if self.room.is_free(each[0])), every[0])
         self.room.add(box)
         for line in lines:
-            self.room.add_line(line)
+            self.room.add_line(line, is_drawn=True)
         return placed
+
+    def _is_clear(self, each: Try, *, is_arc: bool) -> bool:
+        """Return whether the words have room, for an angle also within its view; no line crosses others."""
+        box, _, lines = each
+        has_room = self.room.is_free(box) or (is_arc and self.room.is_free_within(box))
+        return has_room and all(self.room.passes(piece) for piece in pairwise(lines[0]))
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Yield the words at the end of a leader along a radius, of any arc that shows the parameter."""
@@ -263,7 +275,9 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
     """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
-        return (low + high) / 2
+        middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
+        beside = [middle, *(middle + share * spare for share in (0.5, -0.5, 1.0, -1.0))]
+        return next((at for at in beside if not any(at - half < end < at + half for end in others)), middle)
     tail = 1.5
     tries = [high + tail + half, low - tail - half]
     return min(tries, key=lambda at: sum(at - half < end < at + half for end in others))

@@ -48,8 +48,8 @@ def label_of(dimension: Dimension) -> Label:
     sign = "Ø" if measure.sort == "diameter" and not is_round else ""
     own = {"circle": "Ø", "arc": "R"}.get(measure.form, "")
     number = own + number_of(measure.value, 2 if measure.sort == "angle" else 3)
-    text = f"{several}{sign}<>"
-    if dimension.name is None:
+    text = f"{several}{sign}<>{'×45°' if measure.sort == 'chamfer' else ''}"
+    if dimension.is_reference:
         return Label(f"({text})", number)
     if measure.sort == "angle":
         number += "°"

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
-from cadquery import Vector
-
 from cad.drafting.curves import Point
 from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.letter_width import width_of
@@ -74,14 +72,13 @@ def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
     for body in bodies:
         seen = look_at([body])[body.name]
         for place in body.places:
-            turn, shift = rigid(place)
-            for cylinder in seen.cylinders:
-                point = Vector(*(turn @ cylinder.point.toTuple() + shift))
-                direction = Vector(*(turn @ cylinder.direction.toTuple()))
+            moved = rigid(place)
+            for cylinder in (one.moved(*moved) for one in seen.cylinders):
+                point, direction = cylinder.point, cylinder.direction
                 is_within = abs(point.dot(normal)) < _CLEAR and abs(direction.dot(normal)) < _CLEAR
-                if not is_within or (direction.cross(Z).Length < _CLEAR and point.cross(Z).Length < _CLEAR):
+                if not is_within or cylinder.about(Z):
                     continue
-                start = cylinder.point.dot(cylinder.direction)
+                start = point.dot(direction)
                 low, high = (reach - start for reach in cylinder.reach)
                 ends = (point + direction * (low - over), point + direction * (high + over))
                 yield view.frame.flat(ends[0]), view.frame.flat(ends[1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from math import atan2, degrees, hypot, isclose
 from typing import Literal
@@ -17,7 +17,7 @@ from cad.drafting.views import View
 from cad.step import Body, rigid
 from cad.surfaces import Face, PartSurfaces, Size, Surface, X, Y, Z
 
-Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle"]
+Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle", "chamfer", "edge"]
 Form = Literal["across", "up", "aligned", "circle", "arc", "angle"]
 Place = Literal["section", "end"]
 
@@ -79,17 +79,8 @@ def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Itera
     """Yield every surface at the positions of its part."""
     for body in bodies:
         for place in body.places:
-            if place.wrapped.IsIdentity():
-                yield from seen[body.name].surfaces
-                continue
-            turn, shift = rigid(place)
-            for one in seen[body.name].surfaces:
-                point = Vector(*(turn @ one.point.toTuple() + shift))
-                direction = Vector(*(turn @ one.direction.toTuple()))
-                along = point.dot(direction) - one.point.dot(one.direction)
-                low, high = one.reach
-                reach = (low + along, high + along) if one.reach != (0.0, 0.0) else one.reach
-                yield replace(one, point=point, direction=direction, reach=reach)
+            moved = rigid(place)
+            yield from (one.moved(*moved) for one in seen[body.name].surfaces)
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
@@ -193,7 +184,7 @@ def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
 
 def length_between(seen: PartSurfaces, low: float, high: float, section: View) -> Measure:
     """Return the length between two planes across the shaft."""
-    points = (low, _foot(section, low)), (high, _foot(section, high))
+    points = (low, foot(section, low)), (high, foot(section, high))
     sides = (on(*seen.planes_at(Z, level)) for level in (low, high))
     return Measure("length", high - low, "section", "across", points, seen.count, *sides)
 
@@ -231,7 +222,7 @@ def _pairs(levels: Sequence[float]) -> Iterator[tuple[tuple[int, int], tuple[flo
     return zip(combinations(range(len(levels)), 2), combinations(levels, 2), strict=True)
 
 
-def _foot(section: View, z: float) -> float:
+def foot(section: View, z: float) -> float:
     """Return the lowest point of the section at that place along the shaft."""
     ends = [p[1] for edge in section.edges for p in edge if abs(p[0] - z) < 1e-4]
     return min(ends, default=section.box[0][1])
@@ -258,7 +249,11 @@ def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, in
         count = max((counts[part] for part, _ in faces), default=1)
         if arc.whole or count > 1:
             yield Measure("diameter", 2 * arc.radius, "section", "circle", points, count, faces)
-        yield Measure("radius", arc.radius, "section", "arc", points, 1, faces)
+        tubes = {one.face for one in standing if one.form == "torus" and one.face in faces}
+        alike = [
+            o for o in standing if tubes and o.form == "torus" and abs(o.diameter / 2 - arc.radius) < _CLEAR
+        ]
+        yield Measure("radius", arc.radius, "section", "arc", points, max(len(alike), 1), faces)
 
 
 def _is_cut_in(surface: Surface, arc: Arc, frame: Frame) -> bool:

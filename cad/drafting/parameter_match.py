@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from math import dist, isclose
 
 from cad.drafting.curves import Point
@@ -20,8 +19,9 @@ _SORTS: dict[Kind, tuple[Sort, ...]] = {
     "radius": ("radius",),
     "circle": ("diameter",),
     "distance": ("length", "width", "gap", "offset"),
-    "chamfer": ("length",),
+    "chamfer": ("chamfer",),
     "angle": ("angle",),
+    "edge": ("edge",),
 }
 _AMOUNT = re.compile(
     r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}| [-+±].*)?"
@@ -32,12 +32,16 @@ _PRECISION = 1e-6  # relative and in mm
 
 @dataclass(frozen=True)
 class Dimension:
-    """A size to be drawn; `name` is the parameter that it is, None for one that is given for reference."""
+    """A size to be drawn; `name` is the parameter that it is, None for one that is no parameter.
+
+    One that other dimensions give already is for reference, and stands in brackets.
+    """
 
     measure: Measure
     name: str | None
     limits: Limits | None = None
     alike: tuple[Measure, ...] = ()  # others that show the same parameter in the same way
+    is_reference: bool = False
 
 
 def matched(
@@ -68,12 +72,18 @@ def matched(
         if fitting := _fitting(sizes[name], measures) if name in sizes else []:
             measure = _clearest(fitting, matches)
             alike = tuple(m for m in fitting if _kind(m) == _kind(measure) and m is not measure)
-            if (several := len(sizes[name].places)) > 1:
+            if (several := _repeats(sizes[name])) > 1:
                 measure = replace(measure, count=measure.count * several)
             matches.append(Dimension(measure, name, limits.get(name), alike))
         else:
             unseen.append(name)
     return matches, unseen
+
+
+def _repeats(size: Size) -> int:
+    """Return how often a size occurs: at each of its places, or across each of several equal slots."""
+    first, second = size.places[0].first, size.places[0].second
+    return len(first) // 2 if first == second else len(size.places)
 
 
 def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
@@ -151,50 +161,3 @@ def size_of(text: str) -> tuple[float, bool] | None:
     if scale.base == unit("rad").base:
         return float(unit("deg").from_si(scale.to_si(value))), True
     return None
-
-
-def references(
-    taken: Sequence[Dimension], measures: Sequence[Measure], elsewhere: Sequence[Point] = ()
-) -> Iterator[Dimension]:
-    """Yield reference lengths: between planes that no dimension locates, and overall lengths.
-
-    Dimensions locate the planes that they connect, including those `elsewhere`, given by their two ends along
-    the shaft; a dimension between two mirrored planes also connects them with the origin.
-    """
-    lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
-    places = sorted({round(point[0], 6) for m in lengths for point in m.points})
-    dimensioned = [
-        _span(d.measure) for d in taken if (d.measure.form, d.measure.place) == ("across", "section")
-    ]
-    groups = _Groups()
-    for low, high in [*dimensioned, *elsewhere]:
-        groups.join(low, high)
-        if abs(low + high) < _PRECISION:
-            groups.join(low, 0.0)
-    spans = [*pairwise(places), *([(places[0], places[-1])] if len(places) > 2 else [])]
-    for low, high in spans:
-        is_whole = (low, high) == (places[0], places[-1])
-        fits = (m for m in lengths if _span(m) == (low, high))
-        if (low, high) in dimensioned or (groups.joins(low, high) and not is_whole):
-            continue
-        if measure := next(fits, None):
-            groups.join(low, high)
-            yield Dimension(measure, None)
-
-
-class _Groups:
-    """Places that dimensions join."""
-
-    def __init__(self) -> None:
-        self._of: dict[float, set[float]] = {}
-
-    def join(self, one: float, other: float) -> None:
-        both = self._of.get(one, {one}) | self._of.get(other, {other})
-        self._of.update(dict.fromkeys(both, both))
-
-    def joins(self, one: float, other: float) -> bool:
-        return other in self._of.get(one, {one})
-
-
-def _span(measure: Measure) -> tuple[float, float]:
-    return round(measure.points[0][0], 6), round(measure.points[-1][0], 6)

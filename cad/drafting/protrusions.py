@@ -9,6 +9,7 @@ from math import acos, degrees, hypot, isclose
 from cadquery import Vector
 
 from cad.drafting.measures import Form, Measure, Sort, alike, on
+from cad.drafting.parts_features import relief_height
 from cad.drafting.views import View
 from cad.surfaces import PartSurfaces, Surface, X, Y, Z
 
@@ -18,7 +19,7 @@ _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
     """Return all such sizes that the views show."""
-    kinds = (of_circles, of_levels, of_arms, of_uprights)
+    kinds = (of_circles, of_levels, of_arms, of_uprights, of_slots)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
@@ -30,6 +31,18 @@ def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
             right, up = end.frame.flat(cylinder.point)
             points = ((0.0, 0.0), (right, up))
             yield Measure("diameter", 2 * hypot(right, up), "end", "circle", points, 1, on(cylinder))
+
+
+def of_slots(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the widths of slots and bars along the shaft that stand askew in the end view."""
+    sides = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and p.middle is not None]
+    askew = [p for p in sides if not (p.along(X) or p.along(Y))]
+    for one, other in combinations(askew, 2):
+        if one.along(other.direction) and one.middle and other.middle:
+            way = one.direction * (other.middle - one.middle).dot(one.direction)
+            if _CLEAR < way.Length and (other.middle - one.middle - way).Length < way.Length:
+                points = end.frame.flat(one.middle), end.frame.flat(one.middle + way)
+                yield Measure("width", way.Length, "end", "aligned", points, 1, on(one), on(other))
 
 
 def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
@@ -48,6 +61,10 @@ def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
             if abs(circle.point.dot(Y)) < _CLEAR < reach - low:
                 points = ((low, 0.0), (reach, 0.0))
                 yield Measure("gap", reach - low, "end", "across", points, 1, on(*bore), on(circle))
+                edge = relief_height(abs(circle.point.dot(X)), circle.diameter / 2, low)
+                side = (low**2 - edge**2) ** 0.5
+                ends = ((side, 0.0), (side, edge))
+                yield Measure("edge", edge, "end", "up", ends, 1, on(*bore), on(circle))
 
 
 def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
@@ -109,10 +126,17 @@ def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]
     for (x, y), (z, v) in section.edges:
         if abs(z - x) > _CLEAR and isclose(abs(z - x), abs(v - y), rel_tol=1e-6):
             low, high = sorted(((x, y), (z, v)))
-            faces = on(*(c for c in cones if _is_cut_at(c, (x + z) / 2, abs(y + v))))
-            yield Measure("length", abs(z - x), "section", "across", (low, high), 1, faces)
+            cut = [c for c in cones if _is_cut_at(c, (x + z) / 2, abs(y + v))]
+            faces = on(*(c for c in cones if any(_are_alike(c, one) for one in cut)))
+            yield Measure("chamfer", abs(z - x), "section", "across", (low, high), max(len(faces), 1), faces)
 
 
 def _is_cut_at(cone: Surface, middle: float, diameter: float) -> bool:
     """Return whether an edge of the section with that middle and mean diameter is on a cone."""
     return abs(sum(cone.reach) / 2 - middle) < _ARC and abs(cone.diameter - diameter) < _ARC
+
+
+def _are_alike(one: Surface, other: Surface) -> bool:
+    """Return whether two cones are the same chamfer at two ends of a part."""
+    sizes = (one.diameter - other.diameter, one.reach[1] - one.reach[0] - other.reach[1] + other.reach[0])
+    return one.face[0] == other.face[0] and all(abs(size) < _ARC for size in sizes)

@@ -18,6 +18,7 @@ from cadquery import Location, Vector
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import DrawingDeclaration
+from cad.drafting.definition import Definition
 from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
@@ -53,13 +54,16 @@ class RemovedSection:
         """Return the parameters that it shows."""
         return {one.name for one in self.dimensions}
 
-    @property
-    def along(self) -> list[Point]:
-        """Return the positions along the shaft of the vertical dimensions' ends."""
+    def define(self, definition: Definition) -> None:
+        """Add its dimensions: level ones are across the shaft, upright ones along it."""
         sign = self.view.frame.up.dot(Z)
-        upright = [d.measure.points for d in self.dimensions if d.measure.form == "up"]
-        ends = (sorted(round(y * sign, 6) for _, y in points) for points in upright)
-        return [(low, high) for low, high in ends]
+        for measure in (one.measure for one in self.dimensions):
+            points = measure.points
+            if measure.form == "up":
+                points = tuple((y * sign, 0.0) for _, y in points)
+                definition.add(replace(measure, form="across", points=points))
+            else:
+                definition.add(replace(measure, place="end"))
 
 
 def removed_sections(

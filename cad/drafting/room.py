@@ -26,15 +26,34 @@ class Room:
         self.views: list[Rectangle] = []
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
+        self._drawn: list[tuple[float, float, float, float]] = []  # of dimensions, leaders and frames
+        self._meeting = np.zeros((0, 4))
+        self._outlines: list[tuple[float, float, float, float]] = []
+        self._edges = np.zeros((0, 4))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
         """Occupy a rectangle; lines to a part's faces cross only that of a view."""
         self.boxes.append(box)
         (self.views if is_view else self.words).append(box)
 
-    def add_line(self, points: Sequence[Point]) -> None:
-        """Occupy a line through points."""
+    def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
+        """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""
         self._lines += [(*a, *b) for a, b in pairwise(points)]
+        if is_drawn:
+            self._drawn += [(*a, *b) for a, b in pairwise(points)]
+
+    def add_outline(self, points: Sequence[Point]) -> None:
+        """Keep a line of a view, which words within that view avoid."""
+        self._outlines += [(*a, *b) for a, b in pairwise(points)]
+
+    def is_free_within(self, box: Rectangle) -> bool:
+        """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
+        if not self.holds(box) or any(overlap(box, other, _APART) for other in self.words):
+            return False
+        if len(self._edges) != len(self._outlines):
+            self._edges = np.array(self._outlines)
+        is_blank = not len(self._edges) or not crossed(self._edges, box, _APART).any()
+        return is_blank and not self._is_crossed(box)
 
     def holds(self, box: Rectangle) -> bool:
         """Return whether a rectangle is on the sheet's area."""
@@ -54,6 +73,21 @@ class Room:
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
+    def is_apart(self, line: Sequence[Point], about: Point | None = None) -> bool:
+        """Return whether a line meets no dimension, and no view but that of what it is about, its start."""
+        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
+        if len(self._drawn) != len(self._meeting):
+            self._meeting = np.array(self._drawn)
+        if len(self._meeting) and any(_meet(piece, self._meeting).any() for piece in pieces):
+            return False
+        return self.is_at_home(line, about or line[0])
+
+    def is_at_home(self, line: Sequence[Point], about: Point) -> bool:
+        """Return whether a line crosses no view but that of the point that it is about."""
+        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
+        foreign = [box for box in self.views if not _is_in(about, box)]
+        return not any(crossed(pieces, box).any() for box in foreign)
+
     def length_in_views(self, one: Point, other: Point) -> float:
         """Return the length of a straight line within the boxes of views [mm on paper]."""
         return sum(_length_within(one, other, box) for box in self.views)
@@ -70,6 +104,23 @@ class Room:
         if len(self._array) != len(self._lines):
             self._array = np.array(self._lines)
         return bool(len(self._array) and crossed(self._array, box, _APART).any())
+
+
+def _is_in(point: Point, box: Rectangle) -> bool:
+    """Return whether a point is in a rectangle or on its border."""
+    return box[0] - _APART <= point[0] <= box[2] + _APART and box[1] - _APART <= point[1] <= box[3] + _APART
+
+
+def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    """Return which straight pieces (n, 4) a straight piece crosses, not at its own ends."""
+    (x, y), away = piece[:2], piece[2:] - piece[:2]
+    starts, ways = lines[:, :2] - (x, y), lines[:, 2:] - lines[:, :2]
+    across = away[0] * ways[:, 1] - away[1] * ways[:, 0]
+    across = np.where(np.abs(across) < 1e-12, 1e-12, across)
+    own = (starts[:, 0] * ways[:, 1] - starts[:, 1] * ways[:, 0]) / across
+    other = (starts[:, 0] * away[1] - starts[:, 1] * away[0]) / across
+    result: np.ndarray = (own > 0.01) & (own < 0.99) & (other > 0.0) & (other < 1.0)
+    return result
 
 
 def _length_within(one: Point, other: Point, box: Rectangle) -> float:

@@ -10,33 +10,29 @@ import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import islice
 
 from ezdxf._options import options
 from ezdxf.document import Drawing
 
+from cad.drafting.content import Content, contents
 from cad.drafting.controls import Controls
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
-from cad.drafting.measures import lengths, measures
 from cad.drafting.page import Page, document_of
-from cad.drafting.parameter_match import Dimension, matched, references, spans_of
-from cad.drafting.plan import Plan, plans
-from cad.drafting.protrusions import standing
-from cad.drafting.removed_section import RemovedSection, mark, place, removed_sections
+from cad.drafting.plan import Plan
+from cad.drafting.removed_section import mark, place
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.sheet_border import General, frame, notes, table, title_block
 from cad.drafting.title import general_profile
-from cad.drafting.views import View, is_assembly, views
+from cad.drafting.views import View, is_assembly
 from cad.header import Header
 from cad.inspect import bounding_box, look_at
 from cad.step import Body
 from cad.surfaces import PartSurfaces
 
-_MOST_LEVELS, _MOST_REPEATED = 14, 100
-"""Planes along the shaft between which lengths are given; and if those are counted that repeat."""
 _MOST_PLANS = 8  # sheets and scales that are tried
 
 
@@ -68,22 +64,6 @@ def _no_times() -> Iterator[None]:
         yield
     finally:
         options.write_fixed_meta_data_for_testing = kept
-
-
-@dataclass(frozen=True)
-class _Content:
-    """What a drawing shows: views, removed sections, dimensions; and the parameters that none shows."""
-
-    section: View
-    end: View
-    removed: Sequence[RemovedSection]
-    dimensions: Sequence[Dimension]
-    unseen: Sequence[str]
-
-    def plans(self) -> list[Plan]:
-        """Return the sheets and scales that are tried."""
-        elsewhere = sum(len(one.dimensions) for one in self.removed)
-        return list(islice(plans(self.section, self.end, self.dimensions, elsewhere), _MOST_PLANS))
 
 
 @dataclass(frozen=True)
@@ -120,27 +100,12 @@ def _laid_out(
     seen: Mapping[str, PartSurfaces],
     header: Header | None,
     declared: DrawingDeclaration,
-) -> tuple[_Content, _Laid]:
+) -> tuple[Content, _Laid]:
     """Return the first sheet on which everything has room; if there is none, one without removed sections."""
-    section, end = views(bodies, is_shaft=declared.is_shaft)
-    parameters = header.parameters if header else {}
-    repeated = {name: spans for name, size in declared.sizes.items() if (spans := spans_of(size, seen))}
-    most = _MOST_REPEATED if repeated else _MOST_LEVELS
-    shown = [
-        *lengths(declared.sizes.values(), seen, section),
-        *measures(bodies, seen, section, end, most),
-        *standing([*seen.values()], section, end),
-    ]
-    removed = removed_sections(declared, parameters, bodies, seen, end)
-    for some in ([removed] if removed else []) + [[]]:
-        names = {name for one in some for name in one.names}
-        rest = {name: text for name, text in parameters.items() if name not in names}
-        matches, unseen = matched(rest, declared.sizes, shown, declared.limits)
-        along = [ends for one in some for ends in one.along] + list(chain.from_iterable(repeated.values()))
-        content = _Content(section, end, some, [*matches, *references(matches, shown, along)], unseen)
-        tried = content.plans()
+    for content in contents(bodies, seen, header, declared):
+        tried = [*islice(content.plans(), _MOST_PLANS)]
         for plan in tried:
-            is_last = plan is tried[-1] and not some
+            is_last = plan is tried[-1] and not content.removed
             try:
                 return content, _laid(content, bodies, declared, plan, is_last=is_last)
             except NoRoom:
@@ -149,7 +114,7 @@ def _laid_out(
 
 
 def _laid(
-    content: _Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
+    content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
 ) -> _Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
@@ -192,6 +157,8 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
         room.add(_on_paper(view, plan, away), is_view=True)
+        for curve in (*view.visible, *view.hidden, *view.smooth):
+            room.add_outline([plan.paper(point, away) for point in curve.points])
     for line in centres.lines:
         room.add_line([plan.paper(point) for point in line])
     return room

@@ -1,1 +1,1 @@
-"""FreeCAD as a drawing program: the process in which it opens one file, and the files that it may open."""
+"""FreeCAD as an external CAD program: the process in which it opens one file, and the check of that file."""

@@ -1,9 +1,9 @@
-"""Admit FreeCAD files: packages of limited size, with features that run no Python.
+"""Check FreeCAD files: accept only packages of limited size with features that run no Python.
 
-A `.FCStd` is a ZIP of `Document.xml` and the shapes that it names. A Python feature is an object whose type
-ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file is refused, as is
-one that reads other files. An accepted file is packed again with only the parts that the document names. So
-macros are dropped, and FreeCAD reads only packages that this program wrote.
+A `.FCStd` file is a ZIP archive of `Document.xml` and the shapes to which it refers. A Python feature is an
+object whose type ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file
+is refused, as is one that reads other files. An accepted file is packed again with only the parts that the
+document names. So macros are dropped, and FreeCAD reads only packages that this program wrote.
 
 This check runs in a separate process with limited memory and time.
 """
@@ -52,12 +52,12 @@ _DIRECTORY, _LARGE_DIRECTORY = (
 
 
 def admitted(content: bytes) -> bytes:
-    """Return the file as FreeCAD shall open it.
+    """Return the file in the form in which FreeCAD may open it.
 
     Raises
     ------
     UnreadableModel
-        If it is no file of FreeCAD, is too large, or runs Python or reads other files.
+        If the file is not from FreeCAD, is too large, runs Python, or reads other files.
     """
     parts = dict(_unpacked(content))
     if DOCUMENT not in parts:
@@ -97,7 +97,7 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
 
 
 def _check_directory(content: bytes) -> None:
-    """Refuse a crowded directory before `zipfile` makes an object of every entry."""
+    """Refuse a directory with too many entries before `zipfile` creates an object for each."""
     place = content.rfind(_DIRECTORY, max(0, len(content) - 2**16 - 22))
     if place < 0 or len(content) < place + 22:
         raise UnreadableModel(
@@ -111,9 +111,9 @@ def _check_directory(content: bytes) -> None:
 
 
 class _Document:
-    """Reads a document element by element: judges each, and notes which parts of the package it names.
+    """Reads a document element by element: checks each, and records the parts of the package that it names.
 
-    No entity is ever expanded: a document that declares any is refused.
+    Entities are never expanded: a document that declares any is refused.
     """
 
     def __init__(self) -> None:
@@ -126,7 +126,7 @@ class _Document:
         Raises
         ------
         UnreadableModel
-            If it is damaged, or an element of it is refused.
+            If the document is damaged, or one of its elements is refused.
         """
         if len(text) > LONGEST_DOCUMENT:
             what = f"its {DOCUMENT} has more than {LONGEST_DOCUMENT // 2**20} MiB"
@@ -145,7 +145,10 @@ class _Document:
         return self.named
 
     def _check_encoding(self, version: str, encoding: str | None, standalone: int) -> None:
-        """Refuse what FreeCAD might read as other elements than these: it writes UTF-8."""
+        """Refuse encodings in which FreeCAD might read other elements than this check.
+
+        FreeCAD writes UTF-8.
+        """
         if encoding is not None and encoding.lower() != "utf-8":
             raise self._of_another_encoding()
 

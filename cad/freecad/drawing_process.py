@@ -1,11 +1,11 @@
 """The process in which FreeCAD opens one file, run by the Python for which FreeCAD is installed.
 
 This module imports nothing of Crankwright, because that Python is a different one. The arguments are the
-descriptor of a lifeline, the folder that the process may write to, the folders of FreeCAD's modules, and its
-memory [MiB].
+descriptor of a lifeline, the folder to which the process may write, the folders of FreeCAD's modules, and the
+memory limit [MiB].
 
-It takes requests from its standard input and answers on its standard output; each message is its length
-followed by a JSON object, and an answer is followed by the shapes whose sizes it lists.
+It reads requests from its standard input and answers on its standard output. Each message is a length
+followed by a JSON object; an answer is followed by the shapes whose sizes it lists.
 
     {"do": "describe"}                    every parameter of the file, its ends and its solids
     {"do": "draw", "set": [...]}          the solids for some values, if the ends are those `at_import`
@@ -74,7 +74,7 @@ CLONE3, CLONE_THREAD = 435, 0x10000
 
 
 def hang_on(reader: int) -> None:
-    """Let the kernel kill this process once the server's end of a pipe closes."""
+    """Ask the kernel to kill this process when the server's end of a pipe closes."""
     own = os.open(f"/proc/self/fd/{reader}", os.O_RDONLY | os.O_NONBLOCK)
     fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid())
     fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
@@ -86,7 +86,7 @@ def hang_on(reader: int) -> None:
 
 
 class Filter(ctypes.Structure):
-    """A statement of the kernel's packet filter, by which it judges calls."""
+    """One instruction of the Linux kernel's packet filter, which filters system calls."""
 
     _fields_ = [
         ("code", ctypes.c_uint16),
@@ -97,15 +97,15 @@ class Filter(ctypes.Structure):
 
 
 class Filters(ctypes.Structure):
-    """A program of such statements."""
+    """A program of such instructions."""
 
     _fields_ = [("length", ctypes.c_uint16), ("filters", ctypes.POINTER(Filter))]
 
 
 def deny_calls(libc: ctypes.CDLL) -> None:
-    """Have the kernel refuse the calls of `DENIED` in all threads, for ever.
+    """Have the Linux kernel refuse the calls in `DENIED`, in all threads and permanently.
 
-    Raises OSError where it cannot: then nothing is opened.
+    Raises OSError if the kernel cannot do this; in that case nothing is opened.
     """
     audited, seccomp, denied = DENIED[platform.machine()]
     signal_one, limit_one, clone = OWN[platform.machine()]
@@ -128,13 +128,13 @@ def deny_calls(libc: ctypes.CDLL) -> None:
 
 
 class FileAccess(ctypes.Structure):
-    """The kinds of access to files that are ruled."""
+    """The kinds of file access that the rules control."""
 
     _fields_ = [("access", ctypes.c_uint64)]
 
 
 class Beneath(ctypes.Structure):
-    """A rule: what is allowed beneath a folder."""
+    """A rule: the access allowed beneath a folder."""
 
     _pack_ = 1
     _fields_ = [("access", ctypes.c_uint64), ("folder", ctypes.c_int32)]
@@ -148,9 +148,9 @@ READABLE = (
 
 
 def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
-    """Let this process read the system's files and write to one folder, where the kernel can rule it.
+    """Let this process only read the system's files and write to one folder, if the kernel supports it.
 
-    Raises OSError if the kernel has the means and refuses.
+    Raises OSError if the kernel supports it but refuses.
     """
     create, add, restrict, reading, of_a_file = 444, 445, 446, 0b1101, 0b101
     rules = libc.syscall(create, None, 0, 1)
@@ -178,21 +178,24 @@ def mapped() -> int:
 
 
 def limit(kind: int, value: int) -> None:
-    """Set a soft and hard limit."""
+    """Set the soft and the hard limit of a resource."""
     hard = resource.getrlimit(kind)[1]
     value = value if hard == resource.RLIM_INFINITY else min(value, hard)
     resource.setrlimit(kind, (value, value))
 
 
 def limit_time(seconds: float) -> None:
-    """Let the kernel end this process after so much more processor time [s], in all threads together."""
+    """Have the kernel end this process after this additional processor time [s], over all threads."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     soft = math.ceil(used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (soft, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
 class Refused(Exception):
-    """A file or values that are not drawn; `code` and the names of parameters' sources say more."""
+    """A file or values that cannot be drawn.
+
+    `code` and the names of the parameters' sources give the reason.
+    """
 
     def __init__(self, code: str, detail: str, names: Iterable[str] = ()) -> None:
         super().__init__(detail)
@@ -200,7 +203,7 @@ class Refused(Exception):
 
 
 def quantity_of(app: Any, text: str) -> Any:
-    """Return a cell's content as a constant, or None if it is a formula or words."""
+    """Return the content of a cell as a constant; None if it is a formula or text."""
     try:
         return app.Units.Quantity(text.lstrip("=").strip()) if text.strip("= ") else None
     except Exception:
@@ -208,14 +211,14 @@ def quantity_of(app: Any, text: str) -> Any:
 
 
 def unit_of(quantity: Any) -> str | None:
-    """Return the unit in which a quantity is offered, or None for kinds that are not."""
+    """Return the unit for a quantity; None for kinds that are not supported."""
     if not any(quantity.Unit.Signature):
         return "1"
     return UNITS.get(quantity.Unit.Type)
 
 
 def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:
-    """Yield every alias of a spreadsheet whose cell holds a constant."""
+    """Yield every alias of a spreadsheet whose cell contains a constant."""
     for cell in sheet.PropertiesList:
         alias = sheet.getAlias(cell) if CELL.fullmatch(cell) else None
         if not alias:
@@ -252,10 +255,10 @@ def parameters(app: Any, document: Any) -> list[list[Any]]:
 
 
 def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
-    """Set parameters: [object, kind, key, value, unit] each.
+    """Set parameters, each as [object, kind, key, value, unit].
 
-    Constraints of a sketch are set one by one, and some orders have no solution in between. Those that fail
-    are tried again once the others are set.
+    Constraints of a sketch are set one by one, and in some orders an intermediate state has no solution.
+    Constraints that fail are set again after the others.
     """
     waiting, failed = list(given), ""
     while waiting:
@@ -283,7 +286,7 @@ def give_one(app: Any, document: Any, name: str, kind: str, key: str, value: flo
 
 
 def recompute(document: Any) -> None:
-    """Draw everything again; what cannot be drawn is an error."""
+    """Recompute the whole document; raise an error for objects that fail."""
     document.recompute(None, True, True)
     faulty = [thing for thing in document.Objects if "Invalid" in thing.State or not thing.isValid()]
     if faulty:
@@ -500,7 +503,7 @@ _saved: dict[str, dict[str, Any]] = {}
 
 
 def refusal(error: BaseException) -> dict[str, Any]:
-    """Return an error as an answer."""
+    """Return an error as an answer to the request."""
     if isinstance(error, Refused):
         return {"refused": error.code, "detail": str(error), "names": error.names}
     if isinstance(error, MemoryError) or "bad_alloc" in repr(error):

@@ -1,11 +1,11 @@
 """Single-row deep groove ball bearing: two rings and their balls, with standard boundary dimensions.
 
-For main and big-end bearings of small engines, and as the placeholder of a bought part in an assembly. At a
-standard bore the outer diameter and the width are those of dimension series 02 of ISO 15 (50 mm: 6210, 90 ×
-20). Between standard bores they are interpolated; beyond the table they keep the proportions of its ends. The
-standard leaves the internal geometry to the maker: balls, grooves and chamfers are drawn in proportions
-common among makers, suitable for appearance, mass and clearances, not for a life calculation. There is no
-cage.
+Use it for main and big-end bearings of small engines, and as a placeholder for a bought part in an assembly.
+At a standard bore the default outer diameter and width are those of dimension series 02 of ISO 15 (50 mm:
+6210, 90 × 20). Between standard bores they are interpolated; beyond the table they keep the proportions of
+its ends. The standard leaves the internal geometry to the maker: balls, grooves and chamfers have proportions
+that are common among makers, suitable for appearance, mass and clearances, but not for a life calculation.
+There is no cage.
 
 References
 ----------
@@ -47,14 +47,14 @@ def standard_width(bore: Array) -> Array:
 
 
 def _standard(column: str, bore: Array) -> Array:
-    """From the table, straight between its rows, and in proportion to the bore beyond its ends."""
+    """Return a dimension interpolated between the rows of the table, and proportional to the bore beyond."""
     bores = SERIES_02["inner_diameter"] / 1e3
     nearest = np.clip(bore, bores[0], bores[-1])
     return np.interp(nearest, bores, SERIES_02[column] / 1e3) * (bore / nearest)
 
 
 class BallBearing(BallRow):
-    """Deep groove ball bearing, of standard outside dimensions at a standard bore, and of any other size."""
+    """Deep groove ball bearing with standard outer dimensions at a standard bore, or of any other size."""
 
     example = {"inner_diameter": "50 mm"}
     toleranced = {

@@ -21,29 +21,29 @@ LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 
 @units("m", returns="1")
 def is_a_gap(length: Array) -> Truth:
-    """Return whether a length [m] is one that the kernel can tell from none: 0.1 µm."""
+    """Return whether a length [m] is a gap that the kernel can distinguish from none: at least 0.1 µm."""
     return length >= 1e-7
 
 
 class BearingAssembly(CadModel):
-    """Journal, half shells and housing, mated: clearance and crush height are measured on the solids.
+    """Main bearing assembly: journal, half shells and housing, with clearance and crush height measured.
 
     z is along the shaft, y = 0 the joint of the block; the cap is at -y. The journal is at the middle of the
-    upper shell. The shells' bore is the journal's diameter and the clearance: take the diametral clearance of
-    a film's template by a relation, and it is measured between bore and journal of the file.
+    upper shell. The bore of the shells is the journal diameter plus the clearance. Set the clearance by a
+    relation to the diametral clearance of a film template; the service then measures it between bore and
+    journal of the file.
 
-    Block and cap hold the shells without play unless the housing bore is given larger. The crush height is
-    that of each end of a shell: before the bolts are tightened the shells touch each other and the cap stands
-    off the block by twice as much, which is how it is drawn and measured.
+    Block and cap hold the shells without play unless you give a larger housing bore. The crush height is that
+    of each end of a shell: before the bolts are tightened, the shells touch each other and the gap between
+    cap and block is twice the crush height. The model shows and measures this state.
 
-    No two parts may overlap: a housing smaller than the shells is refused by name, and the file's solids are
-    intersected pair by pair. An interference names both parts and the volume that they share.
+    No two parts may overlap. A rule refuses a housing smaller than the shells, and the solids in the file are
+    intersected pair by pair; the message about an interference names both parts and the volume that they
+    share.
 
-    Limits
-    ------
-    Shells without groove, tang or relief (`plain_bearing` has them), a housing of two boxes without bolts
-    (`bearing_housing` has them). Nothing is deformed: neither the tightened shell nor the pressure of its
-    seat is calculated.
+    Limits ------ The shells have no groove, tang or relief (`plain_bearing` has them), and the housing is two
+    boxes without bolts (`bearing_housing` has them). The parts are not deformed: the tightened shell and its
+    contact pressure are not calculated.
 
     References
     ----------
@@ -88,7 +88,7 @@ class BearingAssembly(CadModel):
 
     @derived("mm", "width", symbol="B", ge=0.5, le=2000, also=("bearing width",))
     def B(self) -> Array:
-        """Of shells and housing."""
+        """Return the default width of shells and housing."""
         return 0.5 * self.d
 
     @derived("mm", "lining thickness", symbol="t_l", ge=0.02, le=50)
@@ -97,7 +97,7 @@ class BearingAssembly(CadModel):
 
     @derived("mm", "crush height", symbol="a", ge=0, le=50)
     def a(self) -> Array:
-        """None: the cap lies on the block."""
+        """Return the default: no crush height, so the cap touches the block."""
         return 0 * self.d
 
     @formula("mm", "outside of the shells", name="shell_diameter", symbol="D")
@@ -140,7 +140,10 @@ class BearingAssembly(CadModel):
     @require("housing_bore", "journal_diameter", "diametral_clearance", "wall",
              remedy="make the housing bore larger or the wall thinner")  # fmt: skip
     def shells_fit_the_housing(self) -> Truth:
-        """The shells' outside is not larger than the housing bore: else shells and housing interfere."""
+        """The outer diameter of the shells is at most the housing bore.
+
+        Otherwise shells and housing interfere.
+        """
         return self.D_h >= self.D * (1 - SAME)
 
     @require("housing_bore", "wall", remedy="make the housing bore smaller")
@@ -151,7 +154,7 @@ class BearingAssembly(CadModel):
 
     @require("lining_thickness", "wall", remedy="make the lining thinner or the wall thicker")
     def back_is_steel(self) -> Truth:
-        """The lining takes at most 60 % of the wall."""
+        """The lining is at most 60 % of the wall."""
         return self.t_l <= 0.6 * self.t
 
     @require("wall", "journal_diameter", remedy="make the wall thinner")
@@ -166,7 +169,7 @@ class BearingAssembly(CadModel):
 
     @require("crush_height", "diametral_clearance", remedy="leave play for the journal, or draw no crush")
     def journal_stands_free(self) -> Truth:
-        """Where there is a crush height, there is a clearance."""
+        """With a crush height there is also a clearance."""
         return (self.a <= 0) | (self.C > 0)
 
     @require("housing_breadth", "housing_bore", remedy="make the housing broader")
@@ -228,12 +231,15 @@ class BearingAssembly(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the housing, and the journal where it is longer."""
+        """Return the box of the housing, or of the journal where it is longer."""
         a, b = mm(self.A) / 2, max(mm(self.B), mm(self.L_j)) / 2
         return Box((-a, -mm(self.H_c) - 2 * mm(self.a), -b), (a, mm(self.H_b), b))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every parameter; clearance between bore and journal, crush height between block and cap."""
+        """Return every parameter.
+
+        The clearance is read between bore and journal, the crush height at the joint.
+        """
         journal, lining, back = seen["journal"], seen["upper_lining"], seen["upper_back"]
         block, cap = seen["block"], seen["cap"]
         bore, outside = lining.rings(Z), back.rings(Z)[-1]

@@ -18,17 +18,15 @@ IRON_DENSITY = 7200.0  # kg/m³, grey cast iron (EN 1561: 7.10 to 7.30 g/cm³)
 class BearingHousing(CadModel):
     """Housing of a main bearing: block, cap, bore, bolt holes and the drilling that feeds the oil.
 
-    z is along the shaft, the joint in the plane y = 0. The block is the half at +y, the cap that at -y; each
-    is a box. Two bolt holes run through the cap and end blind, with flat bottoms, in the block. The oil
-    drilling comes from the top of the block to the bore. Block and cap are of grey cast iron.
+    z is along the shaft, and the joint is in the plane y = 0. The block is the half at +y, the cap the half
+    at -y; each is a box. Two bolt holes pass through the cap and end blind, with flat bottoms, in the block.
+    The oil drilling runs from the top of the block to the bore. Block and cap are made of grey cast iron.
 
-    A bolt hole or drilling of no diameter is none.
+    A diameter of 0 omits the bolt holes or the drilling.
 
-    Limits
-    ------
-    A part to mate shells with, not a casting: no ribs, fillets, dowels, threads or tang notches are drawn.
-    Sizes by default are typical of engines and no standard's. The bore has its nominal size; its tolerance is
-    given with the parameter.
+    Limits ------ The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels,
+    threads or tang notches. Default sizes are typical of engines and do not come from a standard. The bore
+    has its nominal size; give its tolerance with the parameter.
 
     References
     ----------
@@ -62,12 +60,12 @@ class BearingHousing(CadModel):
 
     @derived("mm", "housing width", symbol="B_h", ge=0.2, le=2000)
     def B(self) -> Array:
-        """Along the shaft."""
+        """Return the default length along the shaft."""
         return 0.45 * self.D
 
     @derived("mm", "housing breadth", symbol="A_h", ge=2, le=5000)
     def A(self) -> Array:
-        """Across the shaft."""
+        """Return the default breadth across the shaft."""
         return 2 * self.D
 
     @derived("mm", "block height", symbol="H_b", ge=1, le=5000)
@@ -111,24 +109,24 @@ class BearingHousing(CadModel):
     @require("bolt_spacing", "bolt_hole_diameter", "housing_bore",
              remedy="move the bolts outwards or make their holes smaller, or 0 for none")  # fmt: skip
     def bolts_clear_bore(self) -> Truth:
-        """Bolt holes keep off the bore by 1 % of it."""
+        """The bolt holes are clear of the bore by at least 1 % of its diameter."""
         return (self.d_b <= 0) | (self.a_b - self.d_b >= 1.01 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "housing_breadth",
              remedy="move the bolts inwards or make their holes smaller, or 0 for none")  # fmt: skip
     def bolts_keep_within(self) -> Truth:
-        """Bolt holes keep within 98 % of the housing's breadth."""
+        """The bolt holes lie within 98 % of the housing's breadth."""
         return (self.d_b <= 0) | (self.a_b + self.d_b <= 0.98 * self.A)
 
     @require("bolt_hole_diameter", "oil_drilling_diameter", "housing_width",
              remedy="make the holes smaller or the housing wider")  # fmt: skip
     def holes_keep_within_width(self) -> Truth:
-        """Holes take at most 90 % of the housing's width."""
+        """The holes are at most 90 % as wide as the housing."""
         return np.maximum(self.d_b, self.d_o) <= 0.9 * self.B
 
     @require("bolt_hole_depth", "block_height", remedy="make the holes less deep, or the block higher")
     def bolts_are_blind(self) -> Truth:
-        """Bolt holes take at most 95 % of the block's height."""
+        """The depth of the bolt holes is at most 95 % of the block's height."""
         return (self.d_b <= 0) | (self.l_b <= 0.95 * self.H_b)
 
     @require("oil_drilling_diameter", "housing_bore", remedy="make the drilling smaller")
@@ -138,7 +136,7 @@ class BearingHousing(CadModel):
 
     @require("bolt_hole_diameter", "oil_drilling_diameter", remedy="use 0 for none")
     def holes_are_drawable(self) -> Truth:
-        """Holes measure 0, or at least 0.1 % of the bore."""
+        """The diameters of the holes are 0, or at least 0.1 % of the bore."""
         least = 1e-3 * self.D
         return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.d_o <= 0) | (self.d_o >= least))
 

@@ -16,18 +16,16 @@ from templates.core.language.template import Array, Truth, derived, formula, giv
 class ConnectingRod(CadModel):
     """Connecting rod: split big end with its cap and bolt holes, I-shaped shank, small end.
 
-    z is along the crankpin, the axis of the big end at the origin, that of the small end at +y; the joint is
-    in the plane y = 0, the cap at -y. The big end is a box up to its shoulder, the small end a ring. The
-    shank is a bar of one width and one thickness; a pocket on each side leaves the web of an I. Bolt holes
-    run through the cap and end blind, with flat bottoms, in the rod.
+    z is along the crankpin; the axis of the big end passes through the origin, and that of the small end lies
+    at +y. The joint is in the plane y = 0, the cap at -y. The big end is a box up to its shoulder, the small
+    end a ring. The shank is a bar of constant width and thickness; a pocket on each side makes it an I
+    section. Bolt holes pass through the cap and end blind, with flat bottoms, in the rod.
 
-    Pockets or bolt holes of no width are none. Mass and centre of mass are measured on the solids.
+    A width of 0 omits pockets or bolt holes. Mass and centre of mass are measured on the solids.
 
-    Limits
-    ------
-    A part to mate shells with and to weigh, not a forging: no fillets, tapers, draft, bosses, oil holes,
-    threads or tang notches are drawn. Sizes by default are typical of engines and no standard's. Bores have
-    their nominal sizes; give tolerances with the parameters.
+    Limits ------ The part is for mating with shells and for its mass; it is not a forging: it has no fillets,
+    tapers, draft, bosses, oil holes, threads or tang notches. Default sizes are typical of engines and do not
+    come from a standard. Bores have their nominal sizes; give tolerances with the parameters.
 
     References
     ----------
@@ -83,17 +81,17 @@ class ConnectingRod(CadModel):
 
     @derived("mm", "big end width", symbol="B_b", ge=0.2, le=2000)
     def B(self) -> Array:
-        """Along the pin."""
+        """Return the default length along the pin."""
         return 0.42 * self.D
 
     @derived("mm", "big end breadth", symbol="A_b", ge=2, le=5000)
     def A(self) -> Array:
-        """Across the pin."""
+        """Return the default breadth across the pin."""
         return 1.6 * self.D
 
     @derived("mm", "shoulder height", symbol="H_b", ge=1, le=5000)
     def H_b(self) -> Array:
-        """From the axis of the big end to its shoulder, where the shank begins."""
+        """Return the default height from the axis of the big end to its shoulder, where the shank begins."""
         return 0.72 * self.D
 
     @derived("mm", "cap height", symbol="H_c", ge=1, le=5000)
@@ -114,7 +112,7 @@ class ConnectingRod(CadModel):
 
     @derived("mm", "centre distance", symbol="L", ge=4, le=10000, also=("rod length",))
     def L(self) -> Array:
-        """Between the axes of both ends."""
+        """Return the default distance between the axes of both ends."""
         return 2.8 * self.D
 
     @derived("mm", "small end bore", symbol="D_s", ge=0.5, le=2000)
@@ -123,22 +121,22 @@ class ConnectingRod(CadModel):
 
     @derived("mm", "small end diameter", symbol="A_s", ge=0.6, le=5000)
     def A_s(self) -> Array:
-        """Of its outside."""
+        """Return the default outer diameter of the small end."""
         return 1.5 * self.D_s
 
     @derived("mm", "small end width", symbol="B_s", ge=0.2, le=2000)
     def B_s(self) -> Array:
-        """Along the pin."""
+        """Return the default length along the pin."""
         return 0.45 * self.D
 
     @derived("mm", "shank width", symbol="b", ge=0.1, le=2000)
     def b(self) -> Array:
-        """Across the pin."""
+        """Return the default width across the pin."""
         return 0.65 * self.A_s
 
     @derived("mm", "shank thickness", symbol="h", ge=0.1, le=2000)
     def h(self) -> Array:
-        """Along the pin."""
+        """Return the default thickness along the pin."""
         return 0.6 * np.minimum(self.B, self.B_s)
 
     @derived("mm", "pocket width", symbol="b_p", ge=0, le=2000)
@@ -174,23 +172,23 @@ class ConnectingRod(CadModel):
     @require("bolt_spacing", "bolt_hole_diameter", "big_end_bore",
              remedy="move the bolts outwards or make their holes smaller, or 0 for none")  # fmt: skip
     def bolts_clear_bore(self) -> Truth:
-        """Bolt holes keep off the bore by 1 % of it."""
+        """The bolt holes are clear of the bore by at least 1 % of its diameter."""
         return (self.d_b <= 0) | (self.a_b - self.d_b >= 1.01 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "big_end_breadth",
              remedy="move the bolts inwards or make their holes smaller, or 0 for none")  # fmt: skip
     def bolts_keep_within(self) -> Truth:
-        """Bolt holes keep within 98 % of the big end's breadth."""
+        """The bolt holes lie within 98 % of the big end's breadth."""
         return (self.d_b <= 0) | (self.a_b + self.d_b <= 0.98 * self.A)
 
     @require("bolt_hole_diameter", "big_end_width", remedy="make the holes smaller or the big end wider")
     def holes_keep_within_width(self) -> Truth:
-        """Bolt holes take at most 90 % of the big end's width."""
+        """The bolt holes are at most 90 % as wide as the big end."""
         return self.d_b <= 0.9 * self.B
 
     @require("bolt_hole_depth", "shoulder_height", remedy="make the holes less deep, or the shoulder higher")
     def bolts_are_blind(self) -> Truth:
-        """Bolt holes take at most 95 % of the height to the shoulder."""
+        """The depth of the bolt holes is at most 95 % of the height to the shoulder."""
         return (self.d_b <= 0) | (self.l_b <= 0.95 * self.H_b)
 
     @require("small_end_diameter", "small_end_bore", remedy="make the small end larger or its bore smaller")
@@ -201,7 +199,7 @@ class ConnectingRod(CadModel):
     @require("centre_distance", "shoulder_height", "small_end_diameter",
              remedy="make the rod longer, or its ends smaller")  # fmt: skip
     def shank_is_left(self) -> Truth:
-        """Between shoulder and small end there is at least 10 % of the centre distance."""
+        """The distance between shoulder and small end is at least 10 % of the centre distance."""
         return self.l_s >= 0.1 * self.L
 
     @require("shank_width", "small_end_diameter", "big_end_breadth", remedy="make the shank narrower")
@@ -216,13 +214,16 @@ class ConnectingRod(CadModel):
 
     @require("pocket_width", "shank_width", remedy="make the pockets narrower, or 0 for none")
     def pockets_leave_flanges(self) -> Truth:
-        """Pockets take at most 90 % of the shank's width."""
+        """The pockets are at most 90 % as wide as the shank."""
         return self.b_p <= 0.9 * self.b
 
     @require("pocket_width", "shank_width", "centre_distance", "shoulder_height", "small_end_diameter",
              remedy="make the pockets wider, the shank longer, or 0 for none")  # fmt: skip
     def pockets_have_a_length(self) -> Truth:
-        """Pockets end as far from the ends of the shank as from its sides, and are a tenth of it long."""
+        """The pockets are at least a tenth of the shank long.
+
+        They end as far from its ends as from its sides.
+        """
         return (self.b_p <= 0) | (self.l_s - (self.b - self.b_p) >= 0.1 * self.l_s)
 
     @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
@@ -232,7 +233,7 @@ class ConnectingRod(CadModel):
 
     @require("bolt_hole_diameter", "pocket_width", "big_end_bore", remedy="use 0 for none")
     def features_are_drawable(self) -> Truth:
-        """Bolt holes and pockets measure 0, or at least 0.1 % of the big end's bore."""
+        """The sizes of bolt holes and pockets are 0, or at least 0.1 % of the big end's bore."""
         least = 1e-3 * self.D
         return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.b_p <= 0) | (self.b_p >= least))
 

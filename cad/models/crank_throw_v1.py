@@ -1,8 +1,8 @@
 """Crank throw: two webs, the crankpin between them, and half a main journal on each side.
 
-The part of a crankshaft from mid-journal to mid-journal, as stiffness formulas and finite elements take it.
-Without oil drilling it is its own mirror image in z = 0, and always in y = 0. The class below, which users
-read, explains the parameters; parameters, rules and the solid are those of `cad.cranks`.
+This is the part of a crankshaft from mid-journal to mid-journal that stiffness formulas and finite elements
+use. It is symmetric about y = 0 and, without an oil drilling, about z = 0. The docstring of the class below
+explains the parameters to users; parameters, rules and the solid come from `cad.cranks`.
 """
 
 from collections.abc import Mapping
@@ -31,29 +31,29 @@ from templates.core.language.template import Array, formula
 class CrankThrow(CrankRules):
     """Crank throw from mid-journal to mid-journal, solid or bored, with fillets and counterweights.
 
-    z is the axis of the main journals, x points from it to the pin, z = 0 is mid-pin; the cut faces stand
-    across the shaft at z = ±(pin_length + 2 web_thickness + journal_length)/2. Of the journal_length half is
-    drawn on each side. A bore, fillet, oil drilling, counterweight or inclination of 0 is none.
+    z is the axis of the main journals, x points from it to the pin, and z = 0 is mid-pin. The end faces are
+    perpendicular to the shaft at z = ±(pin_length + 2 web_thickness + journal_length)/2; half of
+    journal_length is drawn on each side. A size of 0 omits a bore, fillet, oil drilling, counterweight or
+    inclination.
 
-    Fillets run round the pin and the journals where they meet a web. The journals' bore goes through the
-    journals and their webs, the pin's through the pin and both webs. The oil drilling is straight: from
-    mid-pin, on the side away from the shaft, through the web at +z, to mid-length of the half journal, on its
-    other side. The counterweights are sectors about the shaft opposite to the pin, as thick as their webs.
+    Fillets run round the pin and the journals where these meet a web. The bore of the journals passes through
+    the journals and their webs, the bore of the pin through the pin and both webs. The oil drilling is
+    straight: it runs from mid-pin, on the side away from the shaft, through the web at +z, to the middle of
+    the half journal, on its opposite side. The counterweights are sectors about the shaft opposite the pin,
+    as thick as their webs.
 
-    The face inclination takes material off the outer face of each web, from beside the journal's fillet to
-    the end beyond the pin: 0 is the heaviest web. To add material there, as Punewale et al. do, make it
-    smaller.
+    The face inclination removes material from the outer face of each web, from next to the journal fillet to
+    the end beyond the pin: at 0 the web is heaviest. To add material there, as Punewale et al. do, reduce the
+    inclination.
 
     Limits
     ------
-    One throw with two webs alike, at least 2 % wider than journal and pin with their fillets. Journals and
+    The throw has two equal webs, at least 2 % wider than journal and pin with their fillets. Journals and
     pin are plain cylinders without grooves; edges other than at the fillets are sharp; a counterweight spans
     at most half a turn.
 
-    References
-    ----------
-    Punewale, Khobragade, Chaudhari and Khandre 2015: material on the face inclination of the webs, and what
-        it does to stiffness.
+    References ---------- Punewale, Khobragade, Chaudhari and Khandre 2015: effect of material on the inclined
+    web faces on stiffness.
     """
 
     example = {
@@ -113,7 +113,7 @@ class CrankThrow(CrankRules):
 
     @classmethod
     def is_throw(cls) -> bool:
-        """Return True: it is one throw from mid-journal to mid-journal."""
+        """Return True, because the model is one throw from mid-journal to mid-journal."""
         return True
 
     def throw_sizes(self) -> Crank:

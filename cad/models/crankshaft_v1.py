@@ -1,6 +1,6 @@
 """Crankshaft of any number of throws, undivided or with split pins: journals, counterweights, nose, flange.
 
-The throw is that of `crank_throw`. The class below, which users read, explains the parameters.
+Each throw is that of `crank_throw`. The docstring of the class below explains the parameters to users.
 """
 
 from collections.abc import Mapping
@@ -25,42 +25,42 @@ MOST_THROWS = 16
 class Crankshaft(SplitParameters, EndParameters):
     """Crankshaft with any number of throws, their pins undivided or split: counterweights, nose and flange.
 
-    z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
-    the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
-    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
+    z is the axis of rotation; z = 0 is the middle of the first main journal. The nose is at -z, the flange at
+    +z, where an engine has its flywheel. Pin angles are measured from x towards y, as in `engine` 1; there is
+    one for each throw. All throws are equal except for their counterweights.
 
-    A pin split of 0 is none: one pin a throw. Else each throw has a front pin at its
-    pin angle and a rear pin further on by the split, each as long as the pin length, each for one rod, and
-    between them a middle web: two half circles about the pins, joined by lines. Each outer web, with its
-    counterweight, stands as the pin beside it.
+    With a pin split of 0 each throw has one pin. Otherwise each throw has a front pin at its pin angle and a
+    rear pin that is further on by the split, each as long as the pin length and for one rod. Between them is
+    a middle web: two half circles about the pins, joined by lines. Each outer web, with its counterweight,
+    has the angle of the pin next to it.
 
-    A bore, fillet, oil drilling, counterweight, bolt hole or inclination of 0 is none. Counterweight radii
-    are one number, or one for each outer web from the nose on, two for each throw; their angle is common.
+    A size of 0 omits a bore, fillet, oil drilling, counterweight, bolt hole or inclination. The counterweight
+    radius is one number, or a list with one for each outer web starting at the nose, two for each throw; all
+    counterweights have the same angle.
 
-    Fillets run round pins and journals where they meet a web. The journals' bore goes through the whole
-    shaft, each pin's through the pin and both webs; of split pins through its outer web up to the middle web.
-    An oil drilling runs straight from mid-pin, on the side away from the shaft, through the web towards the
-    flange, to mid-length of the next main journal, on its other side; that of a front pin likewise to the
-    main journal before it. The counterweights are sectors about the shaft opposite to the pin, as thick as
-    their webs. Bolt holes are blind with flat bottoms, the first on the line x.
+    Fillets run round pins and journals where these meet a web. The bore of the journals passes through the
+    whole shaft, the bore of each pin through the pin and both webs; with split pins, through the outer web up
+    to the middle web. An oil drilling runs straight from mid-pin, on the side away from the shaft, through
+    the web towards the flange, to the middle of the next main journal, on its opposite side; the drilling of
+    a front pin runs to the main journal in front of it. The counterweights are sectors about the shaft
+    opposite the pin, as thick as their webs. Bolt holes are blind with flat bottoms; the first is on the x
+    axis.
 
-    The face inclination takes material off the outer face of each outer web, from beside the journal's fillet
-    to the end beyond the pin: 0 is the heaviest web.
+    The face inclination removes material from the outer face of each outer web, from next to the journal
+    fillet to the end beyond the pin: at 0 the web is heaviest.
 
-    The rotating couple, the integral of z (x + i y) over the mass, follows from what is measured:
+    The rotating couple, the integral of z (x + i y) over the mass, can be calculated from the measurements:
     mass centre_z centre_x - inertia_xz, and mass centre_z centre_y - inertia_yz.
 
-    Limits
-    ------
-    At most 16 throws of one size, all split by the same angle, of at least 1 deg; webs at least 2 % wider
-    than journal and pin with their fillets. Journals, pins, nose and flange are plain cylinders without
-    grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans at most half a
-    turn. Two drillings that end in one journal keep apart, so throws whose neighbouring pins stand at nearly
-    one angle are refused with drillings. The analysis `unit_loads` does not know split pins.
+    Limits ------ There are at most 16 throws of one size, all split by the same angle of at least 1 deg; webs
+    are at least 2 % wider than journal and pin with their fillets. Journals, pins, nose and flange are plain
+    cylinders without grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans
+    at most half a turn. Two drillings that end in one journal must not meet, so drillings are refused if
+    neighbouring pins have nearly the same angle. The analysis `unit_loads` does not support split pins.
 
     References
     ----------
-    Own closed form of the volume: the parts touch in faces, so their volumes add.
+    The closed form of the volume is our own: the parts touch only at faces, so their volumes add up.
     """
 
     example = {
@@ -132,12 +132,15 @@ class Crankshaft(SplitParameters, EndParameters):
 
     @formula("mm", "pitch of the mains", name="pitch", symbol="p")
     def p(self) -> Array:
-        """Two pins and a middle web if they are split."""
+        """Distance between neighbouring main journals.
+
+        With split pins it includes two pins and a middle web.
+        """
         return self.L_c + where_split(self.delta, self.L_c + self.L_m) + 2 * self.L_w + self.L_j
 
     @profile("mm**2", "counterweight sector", along="webs", symbol="A_w")
     def A_w(self) -> Array:
-        """Return the area of the sector that makes a counterweight, from the journal's axis on."""
+        """Area of the counterweight sector, measured from the journal axis."""
         return sectors(self.R_w, self.phi_w, self.n)
 
     @formula("mm", "overall length", symbol="L")
@@ -151,12 +154,12 @@ class Crankshaft(SplitParameters, EndParameters):
 
     @require("counterweight_radius", "pin_angles", remedy="give one number, or two for each throw")
     def each_web_has_its_counterweight(self) -> Truth:
-        """Counterweight radii are one number, or one for each web."""
+        """The counterweight radius is one number, or a list with one number for each web."""
         return webs_of(self.R_w, self.n) == 2 * self.n
 
     @require("fillet", "journal_length", remedy="make the fillet smaller or the journal longer")
     def fillets_fit_on_journal(self) -> Truth:
-        """The two fillets of a journal between two throws take at most 90 % of its length."""
+        """The two fillets of a journal between two throws occupy at most 90 % of its length."""
         return (self.n <= 1) | (2 * self.r_f <= 0.9 * self.L_j)
 
     @require(

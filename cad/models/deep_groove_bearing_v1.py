@@ -28,22 +28,21 @@ BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
 class DeepGrooveBearing(BallRow):
     """Deep groove ball bearing by its designation: rings, balls and cage, with its load ratings.
 
-    The designation, such as 6210, gives bore, outer diameter and width: series 618, 60, 62 and 63. A size
-    that is given beside it takes the place of the designation's, as where it has a tolerance.
+    The designation, such as 6210, determines bore, outer diameter and width; series 618, 60, 62 and 63 are
+    available. A size that you give replaces the size of the designation, for example to add a tolerance.
 
-    The cage is a machined ring of brass with a round pocket for each ball; a cage of no width is none.
+    The cage is a machined brass ring with a round pocket for each ball; a width of 0 omits the cage.
 
-    Dynamic and static capacity are those that ISO 281 and ISO 76 give for the balls as drawn: with the
-    calculation factor they are what `rolling_bearing_life` takes.
+    Dynamic and static capacity are the load ratings of ISO 281 and ISO 76 for the balls in the model. With
+    the calculation factor they are inputs of `rolling_bearing_life`.
 
-    Limits
-    ------
-    The standard leaves the inside to the maker. Ball size and number by default are common proportions; give
-    the maker's for the maker's capacities, which they otherwise miss by up to a tenth. No seals, shields,
-    snap rings, and no clearance between balls and grooves. Chamfers are in proportion, not those of ISO 582.
-    The tables of sizes and factors were typed without the standards at hand. The factors agree with the
-    theory behind them, and with ratings of 16 bearings by their makers within 1 %. Of the sizes of series
-    618, only 61800 and 61801 were compared with a maker's. Compare them with your edition before you order.
+    Limits ------ The standard leaves the internal geometry to the maker. The default size and number of balls
+    are common proportions; give the maker's values to get the maker's capacities, from which the defaults
+    differ by up to a tenth. There are no seals, shields or snap rings, and no clearance between balls and
+    grooves. Chamfers are proportional, not those of ISO 582. The tables of sizes and factors were compiled
+    without access to the standards. The factors agree with their theory, and with makers' ratings of 16
+    bearings within 1 %. Of the sizes of series 618, only 61800 and 61801 were compared with a maker's
+    catalogue. Compare the sizes with your edition of the standard before you order.
 
     References
     ----------
@@ -92,12 +91,12 @@ class DeepGrooveBearing(BallRow):
 
     @derived("mm", "cage thickness", symbol="t_c", ge=0.001, le=500)
     def t_c(self) -> Array:
-        """Along the radius."""
+        """Return the default thickness in the radial direction."""
         return 0.25 * self.D_w
 
     @derived("mm", "pocket bore", symbol="D_p", ge=0.003, le=1100)
     def D_p(self) -> Array:
-        """Of the cage's pockets."""
+        """Return the default diameter of the cage's pockets."""
         return 1.04 * self.D_w
 
     @formula("kN", "dynamic capacity", symbol="C", source="ISO 281:2007, 5.1.1")
@@ -114,12 +113,12 @@ class DeepGrooveBearing(BallRow):
 
     @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take balls of another size")
     def balls_are_rated(self) -> Truth:
-        """A ball measures 1 % to 40 % of the pitch diameter, as far as ISO 281 and ISO 76 have capacities."""
+        """The ball diameter is 1 % to 40 % of the pitch diameter, the range of ISO 281 and ISO 76."""
         return (self.D_w >= 0.01 * self.D_pw) & (self.D_w <= 0.4 * self.D_pw)
 
     @require("pocket_bore", "ball_diameter", "cage_width", remedy="make the pockets larger")
     def pockets_hold_balls(self) -> Truth:
-        """Pockets are 1 % to 20 % larger than balls."""
+        """The pockets are 1 % to 20 % larger than the balls."""
         return (self.B_c <= 0) | ((self.D_p >= 1.01 * self.D_w) & (self.D_p <= 1.2 * self.D_w))
 
     @require("cage_width", "pocket_bore", "width", remedy="make the cage wider, or 0 for none")
@@ -135,7 +134,7 @@ class DeepGrooveBearing(BallRow):
     @require("pocket_bore", "balls", "cage_thickness", "outer_diameter", "inner_diameter", "cage_width",
              remedy="take fewer balls or smaller pockets")  # fmt: skip
     def pockets_leave_bars(self) -> Truth:
-        """Between neighbouring pockets a bar is left: at the cage's bore they take at most 97 % of it."""
+        """The pockets occupy at most 97 % of the cage's bore, so that bars are left between them."""
         return (self.B_c <= 0) | (self.D_p <= (self.D_pw - self.t_c) * np.sin(0.97 * pi / self.n))
 
     def build(self) -> tuple[Part, ...]:
@@ -151,9 +150,9 @@ class DeepGrooveBearing(BallRow):
         return tuple(parts)
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every length and the count of balls, as the parts show them.
+        """Return every length and the number of balls, as read from the parts.
 
-        Include those of the cage if there is one.
+        The sizes of the cage are included if there is one.
         """
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         sizes: dict[str, float] = {

@@ -1,6 +1,6 @@
 """Flanged bush of copper alloy: a cylinder with a flange, chamfers, an oil groove and an oil hole.
 
-The class below, which users read, explains the parameters.
+The docstring of the class below explains the parameters to users.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from templates.core.language.template import Array, Truth, derived, formula, giv
 
 @units("m", returns="1")
 def drawable(length: Array) -> Truth:
-    """Return whether a length [m] is none, or one that the kernel can tell from none."""
+    """Return whether a length [m] is 0, or large enough for the kernel."""
     return (length <= 0) | (length >= 1e-5)
 
 
 @dataclass(frozen=True)
 class Bush:
-    """What is drawn [mm]: radii from the axis, levels from the face of the flange."""
+    """Sizes of a bush [mm]: radii from the axis, levels from the face of the flange."""
 
     bore: float
     outside: float
@@ -41,7 +41,7 @@ class Bush:
 
     @property
     def middle(self) -> float:
-        """Return the level of oil groove and oil hole: mid-length beyond the flange."""
+        """Return the level of oil groove and oil hole: the middle of the length beyond the flange."""
         return (self.flange_thickness + self.width) / 2
 
     def section(self) -> list[Point]:
@@ -62,12 +62,12 @@ class Bush:
         )
 
     def solid(self) -> Shape:
-        """Return the section turned about z, less the hole at the crown."""
+        """Return the section revolved about z, minus the hole at the crown."""
         body = turned(self.section())
         return cut(body, drill(self.hole, self.outside, self.middle)) if self.hole > 0 else body
 
     def volume(self) -> float:
-        """Return the turned section less the hole [mm³]."""
+        """Return the volume of the revolved section minus the hole [mm³]."""
         half_groove = self.half_groove if self.groove > self.bore else 0.0
         hole = drilled_volume(self.hole, self.outside, self.bore, self.groove, half_groove)
         return turned_volume(self.section()) - hole
@@ -76,18 +76,17 @@ class Bush:
 class FlangedBush(CadModel):
     """Flanged bush of copper alloy, with chamfers, an oil groove round the bore and an oil hole.
 
-    z is along the shaft; the outer face of the flange lies on z = 0, the bush beyond it on the side +z. Oil
-    groove and oil hole are at mid-length beyond the flange, the hole at the crown +y. Chamfers are of 45°: of
-    the bore at both ends, of the outside at the end that is pressed in first. A hole of no diameter, a groove
-    of no width or no depth and a chamfer of no width are none.
+    z is along the shaft; the outer face of the flange is at z = 0, and the bush extends from it towards +z.
+    Oil groove and oil hole are at the middle of the length beyond the flange, the hole at the crown +y. There
+    are chamfers of 45° on the bore at both ends, and on the outside at the end that is pressed in first. A
+    size of 0 omits the hole, the groove or a chamfer.
 
-    The bore is the finished one, as pressed in: the caller adds the clearance.
+    The bore is the finished bore after pressing in; it must already include the clearance.
 
-    Limits
-    ------
-    Proportions by default are near those of ISO 4379, form F (flange about one wall wide, one wall thick);
-    its table is not built in, so give the standard's dimensions where you need them. The undercut beneath the
-    flange and the edges of the flange are not drawn, nor is the seam that a wrapped bush of ISO 3547 has.
+    Limits ------ The default proportions are close to ISO 4379, form F (flange about one wall wide and one
+    wall thick). The table of the standard is not included, so give its dimensions if you need them. The model
+    omits the undercut beneath the flange, the chamfers of the flange, and the seam of a wrapped bush of ISO
+    3547.
 
     References
     ----------
@@ -129,7 +128,7 @@ class FlangedBush(CadModel):
 
     @derived("mm", "width", symbol="B", ge=0.1, le=10000, also=("bearing width",))
     def B(self) -> Array:
-        """Over all, with the flange."""
+        """Return the default overall length, including the flange."""
         return self.d
 
     @derived("mm", "flange diameter", symbol="D_f", ge=1, le=10000)
@@ -150,7 +149,7 @@ class FlangedBush(CadModel):
 
     @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=1000)
     def d_h(self) -> Array:
-        """None."""
+        """Return the default: no oil hole."""
         return 0 * self.d
 
     @derived("mm", "oil groove width", symbol="w_g", ge=0, le=1000)
@@ -176,19 +175,19 @@ class FlangedBush(CadModel):
 
     @require("flange_thickness", "width", remedy="make the flange thinner or the bush longer")
     def flange_leaves_a_bush(self) -> Truth:
-        """The flange takes at most 80 % of the width."""
+        """The thickness of the flange is at most 80 % of the width."""
         return self.b_f <= 0.8 * self.B
 
     @require("inner_chamfer", "outer_chamfer", "wall", remedy="make the chamfers smaller")
     def chamfers_leave_a_face(self) -> Truth:
-        """The chamfers together take at most 80 % of the wall."""
+        """The chamfers together are at most 80 % of the wall."""
         return self.c_i + self.c_o <= 0.8 * self.t
 
     @require(
         "inner_chamfer", "outer_chamfer", "width", "flange_thickness", remedy="make the chamfers smaller"
     )
     def chamfers_leave_a_length(self) -> Truth:
-        """A chamfer takes at most 40 % of the length beyond the flange."""
+        """A chamfer is at most 40 % of the length beyond the flange."""
         return (self.c_i <= 0.4 * self.L) & (self.c_o <= 0.4 * self.L)
 
     @require(
@@ -196,7 +195,7 @@ class FlangedBush(CadModel):
         remedy="make the groove narrower, the chamfers smaller or the bush longer",
     )  # fmt: skip
     def groove_keeps_off_the_ends(self) -> Truth:
-        """Oil groove and chamfers take at most 95 % of the length beyond the flange."""
+        """The oil groove and the chamfers occupy at most 95 % of the length beyond the flange."""
         return self.w_g + 2 * np.maximum(self.c_i, self.c_o) <= 0.95 * self.L
 
     @require(
@@ -204,22 +203,22 @@ class FlangedBush(CadModel):
         remedy="make the hole smaller, the chamfers smaller or the bush longer",
     )  # fmt: skip
     def hole_keeps_off_the_ends(self) -> Truth:
-        """Oil hole and chamfers take at most 95 % of the length beyond the flange."""
+        """The oil hole and the chamfers occupy at most 95 % of the length beyond the flange."""
         return self.d_h + 2 * np.maximum(self.c_i, self.c_o) <= 0.95 * self.L
 
     @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
     def groove_within_wall(self) -> Truth:
-        """The oil groove takes at most 80 % of the wall."""
+        """The depth of the oil groove is at most 80 % of the wall."""
         return self.t_g <= 0.8 * self.t
 
     @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
     def groove_has_width(self) -> Truth:
-        """An oil groove that has a depth has a width."""
+        """An oil groove with a depth also has a width."""
         return (self.t_g <= 0) | (self.w_g > 0)
 
     @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
     def hole_within_bore(self) -> Truth:
-        """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
+        """The oil hole is at most 80 % as wide as the bore, so that there is a wall all around it."""
         return self.d_h <= 0.8 * self.d
 
     @require(
@@ -235,7 +234,7 @@ class FlangedBush(CadModel):
         remedy="use 0 for none",
     )  # fmt: skip
     def features_are_drawable(self) -> Truth:
-        """Hole, groove and chamfers measure 0, or at least the 10 µm that the kernel draws reliably."""
+        """The sizes of hole, groove and chamfers are 0, or at least the 10 µm that the kernel can build."""
         hole = drawable(self.d_h) & drawable(self.w_g) & drawable(self.t_g)
         return hole & drawable(self.c_i) & drawable(self.c_o)
 
@@ -260,12 +259,12 @@ class FlangedBush(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return a box as wide as the flange."""
+        """Return the box of the bush, which is as wide as the flange."""
         radius = mm(self.D_f) / 2
         return Box((-radius, -radius, 0.0), (radius, radius, mm(self.B)))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every length that the bush has; no groove and no hole show none."""
+        """Return every length of the bush; without groove or hole, their sizes are omitted."""
         bush = seen["bush"]
         levels, holes = bush.levels(Z), [c for c in bush.cylinders if c.along(Y)]
         rings = bush.rings(Z)

@@ -1,6 +1,6 @@
-"""Plain bearing: half shells, in their housing or free, or a full bush; see the class below.
+"""Plain bearing: half shells in the housing or in their free state, or a full bush.
 
-Parameters and rules are in `cad.shells`.
+The docstring of the class below explains the parameters to users. Parameters and rules are in `cad.shells`.
 """
 
 from __future__ import annotations
@@ -37,52 +37,52 @@ BACKS = ("upper_back", "lower_back", "full_back")
 
 @units(None, returns="1")
 def is_fitted(state: str) -> Truth:
-    """Return whether a shell is drawn as the housing holds it."""
+    """Return whether a shell is drawn as fitted in the housing."""
     return np.asarray(state == "fitted")
 
 
 class PlainBearing(ShellRules):
-    """Plain bearing: a pair of half shells, one of them, or a full bush; in the housing or free.
+    """Plain bearing: a pair of half shells, a single one, or a full bush; fitted or in the free state.
 
-    z is along the shaft, the joint in the plane y = 0, the crown of the upper shell at +y. The upper shell
-    has the oil groove and the oil hole, the lower one is plain. Back and lining are bodies of their own, the
-    back of steel, the lining of an aluminium-tin alloy; a groove deeper than the lining, from joint to joint,
-    parts it in two rings. A shell without lining is one body of steel. The bore is the finished one: the
-    caller adds the clearance.
+    z is along the shaft, the joint is in the plane y = 0, and the crown of the upper shell is at +y. The
+    upper shell has the oil groove and the oil hole; the lower one is plain. Back and lining are separate
+    bodies, the back of steel, the lining of an aluminium-tin alloy. A groove from joint to joint that is
+    deeper than the lining divides the lining into two rings. A shell without lining is one body of steel. The
+    bore is the finished bore; it must already include the clearance.
 
-    - *Full*: a bush all round with its oil hole at the crown, without joint, tang, relief and crush height.
-      Its groove of 180° runs all round, a shorter one about the crown.
-    - *Tang*: the lip at the back beside the joint on the side +x that locates the shell; its length is
-      along the wall, its middle at a quarter of the width, on the side -z. The lower shell mirrors the upper
-      one, so the tangs meet. The notch inside, where the tang was pressed out, is not drawn.
-    - *Relief*: beside each joint the bore opens gradually, to the relief's depth at the joint.
-    - *Chamfers* of 45°: of the bore at both ends, of the back at ends without a flange.
-    - *Groove angle*: the turn of the groove about the crown; 180° is from joint to joint.
-    - *Flanges*: collars of the back for thrust, one at +z or two.
-    - *Crush height*: by so much each end of the wall goes on straight beyond the half circle, as before the
-      cap is tightened. The upper shell's crown keeps its place; in a pair the shells stand apart by it.
-    - *Free spread*: by so much a shell that nothing holds is wider over the outer edges of its joints than
-      its outside in the housing. It is what holds a shell in its seat while the engine is put together.
-    - *State*: `fitted` draws the shell as its housing holds it, and the free spread is a number only. `free`
-      draws it as it lies on a table: an arc of larger radius and less than half a turn. The middle of its
-      wall is as long as in the housing, which makes the volume of a plain wall the same. Sizes at a joint
-      (tang, relief, crush height) are those beside that joint; the groove keeps its length along the wall.
-      Diameters and the groove's angle are given as in the housing for both states.
+    - *Full*: a closed bush with its oil hole at the crown, without joint, tang, relief and crush height. A
+      groove of 180° runs all round; a shorter one is centred on the crown.
+    - *Tang*: the lip on the back that locates the shell, next to the joint on the side +x. Its length is
+      measured along the wall; its middle is at a quarter of the width, on the side -z. The lower shell is the
+      mirror image of the upper one, so the tangs meet. The notch on the inside, from which the tang was
+      pressed out, is not drawn.
+    - *Relief*: near each joint the bore opens gradually, to the depth of the relief at the joint.
+    - *Chamfers* of 45°: on the bore at both ends, on the back at ends without a flange.
+    - *Groove angle*: the angle of the groove, centred on the crown; at 180° it runs from joint to joint.
+    - *Flanges*: thrust flanges of the back, one at +z or two.
+    - *Crush height*: the straight length by which each end of the wall extends beyond the half circle before
+      the cap is tightened. The crown of the upper shell keeps its position; in a pair the shells are moved
+      apart accordingly.
+    - *Free spread*: the difference between the width of a free shell over the outer edges of its joints and
+      its outer diameter in the housing. The spread holds a shell in its seat during assembly.
+    - *State*: `fitted` draws the shell in its housing, and the free spread does not affect the shape. `free`
+      draws the unloaded shell: an arc of larger radius and less than half a turn. The middle line of its wall
+      is as long as in the housing, so the volume of a plain wall is the same. Sizes at a joint (tang, relief,
+      crush height) are relative to that joint; the groove keeps its length along the wall. In both states,
+      give diameters and groove angle as in the housing.
 
-    A lining, tang, relief, hole, flange or chamfer of no size is none, as is a groove of no depth.
+    A size of 0 omits a lining, tang, relief, hole, flange, chamfer or groove.
 
-    Limits
-    ------
-    Which features a shell has, and what they are called, is as in ISO 3548-1; it gives no sizes of most of
-    them. Sizes by default are typical of engines and no standard's: the free spread is 1 % of the bore;
-    Cummins' manual states about 0.64 mm. The wall is of one thickness (no eccentric bore).
+    Limits ------ The features of a shell and their names are those of ISO 3548-1, which gives no sizes for
+    most of them. Default sizes are typical of engines and do not come from a standard: the free spread is 1 %
+    of the bore; Cummins' manual states about 0.64 mm. The wall has a constant thickness (no eccentric bore).
 
-    A free shell bends evenly: that a groove or a flange makes it stiffer or softer in places is left out, as
-    are the pressure of the seat and the spread that is lost when the engine is hot. A diameter of the bore,
-    and of a flange, carries no tolerance in the file of a free shell, because no face has it.
+    The curvature of a free shell changes uniformly: the model neglects that grooves and flanges change the
+    local stiffness, the contact pressure of the seat, and the loss of spread in a hot engine. In the file of
+    a free shell the diameters of bore and flange have no tolerance, because no face has these diameters.
 
-    The tolerance of a wall with a lining lies between a face of the lining and one of the back, so in the
-    file it joins two parts.
+    The tolerance of a wall with a lining refers to a face of the lining and a face of the back, so in the
+    file it belongs to two parts.
 
     References
     ----------
@@ -143,7 +143,7 @@ class PlainBearing(ShellRules):
 
     @derived("mm", "free spread", symbol="s_f", ge=0, le=500)
     def s_f(self) -> Array:
-        """A hundredth of the bore; none of a full bush."""
+        """Return the default: a hundredth of the bore, or 0 for a full bush."""
         return joints(self.shells) * 0.01 * self.d
 
     @formula("mm", "length of the wall's middle from crown to leg", name="half_length", symbol="L_h")
@@ -170,19 +170,19 @@ class PlainBearing(ShellRules):
     @require("state", "free_spread", "inner_diameter",
              remedy="make the free spread larger, or draw the shell fitted")  # fmt: skip
     def a_free_shell_is_spread(self) -> Truth:
-        """A shell that is drawn free has a free spread of at least 0.05 % of the bore."""
+        """A shell in the free state has a free spread of at least 0.05 % of the bore."""
         return is_fitted(self.state) | (self.s_f >= 0.0005 * self.d)
 
     @require("state", "wall", "inner_diameter", remedy="make the wall thinner, or draw the shell fitted")
     def a_free_shell_is_thin(self) -> Truth:
-        """The wall of a shell that is drawn free is at most 20 % of the bore."""
+        """The wall of a shell in the free state is at most 20 % of the bore."""
         return is_fitted(self.state) | (self.t <= 0.2 * self.d)
 
     @require(
         "state", "free_spread", "shells", remedy="draw it fitted with a free spread of 0, or half shells"
     )
     def a_full_bush_is_fitted(self) -> Truth:
-        """A full bush has no free spread, and is drawn fitted."""
+        """A full bush has no free spread and is always fitted."""
         return (joints(self.shells) > 0) | (is_fitted(self.state) & (self.s_f <= 0))
 
     def build(self) -> tuple[Part, ...]:
@@ -244,7 +244,7 @@ class PlainBearing(ShellRules):
         )  # fmt: skip
 
     def bounding_box(self) -> Box:
-        """Return the back or its flanges, the tang on the side +x, and the legs."""
+        """Return the box of the back or its flanges, the tang on the side +x, and the legs."""
         shell = self.drawn("full" if self.shells == "full" else "upper")
         left, right, low = reach_of(shell)
         high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width
@@ -255,7 +255,7 @@ class PlainBearing(ShellRules):
         return Box((-left, bottom, -b), (right, top, b))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every length that the shells have, of the upper one if it is there."""
+        """Return every length of the shells, read from the upper shell if there is one."""
         which = "upper" if self.shells == "pair" else self.shells
         back = seen[f"{which}_back"]
         shown = back, seen.get(f"{which}_lining", back), self.drawn(which)

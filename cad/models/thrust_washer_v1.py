@@ -1,6 +1,6 @@
 """Thrust washer: a flat ring or a half ring with radial oil grooves, a pin hole, and a locating lug.
 
-The class below, which users read, explains the parameters.
+The docstring of the class below explains the parameters to users.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from templates.core.language.template import (
 
 @units("m", returns="1")
 def drawable(length: Array) -> Truth:
-    """Return whether a length [m] is none, or one that the kernel can tell from none."""
+    """Return whether a length [m] is 0, or large enough for the kernel."""
     return (length <= 0) | (length >= 1e-5)
 
 
 @units(None, "1", returns="rad")
 def half_pitch(washer: str, grooves: Array) -> Array:
-    """Return half the angle [rad] from groove to groove.
+    """Return half the angle [rad] between neighbouring grooves.
 
-    For a half washer it is also the angle from the joint to the first groove.
+    In a half washer this is also the angle from the joint to the first groove.
     """
     turn = {"full": 2 * pi, "half": pi}[washer]
     return np.minimum(turn / (2 * np.maximum(grooves, 1)), pi / 2)
@@ -47,19 +47,19 @@ def half_pitch(washer: str, grooves: Array) -> Array:
 
 @units(None, "1", returns="1")
 def is_free_at_crown(washer: str, grooves: Array) -> Truth:
-    """Return whether no groove runs to the crown, where the lug is."""
+    """Return whether there is no groove at the crown, where the lug is."""
     return (np.mod(grooves, 2) == 0) | (washer == "full")
 
 
 @units(None, "m", returns="1")
 def takes_a_pin(washer: str, hole: Array) -> Truth:
-    """Return whether there is no hole for a pin, or a full ring for it."""
+    """Return whether there is no hole for a pin, or the washer is a full ring."""
     return (hole <= 0) | (washer == "full")
 
 
 @dataclass(frozen=True)
 class Washer:
-    """What is drawn [mm]: radii, and angles in degrees against +x."""
+    """Sizes of a washer [mm]: radii, and angles in degrees from +x."""
 
     bore: float
     outside: float
@@ -74,17 +74,17 @@ class Washer:
     lug_height: float
 
     def groove_angles(self) -> list[float]:
-        """Return the angles of the grooves; a full ring has none at its crown."""
+        """Return the angles of the grooves; a full ring has no groove at its crown."""
         if self.is_half:
             return [180 * (n + 0.5) / self.grooves for n in range(self.grooves)]
         return [90 + 360 * (n + 0.5) / self.grooves for n in range(self.grooves)]
 
     def pin_angle(self) -> float:
-        """Midway between two grooves, or opposite to the crown if there are none."""
+        """Return the angle midway between two grooves, or opposite the crown if there are no grooves."""
         return 90 + 360 / self.grooves * (self.grooves // 2) if self.grooves else 270.0
 
     def solid(self) -> Shape:
-        """Return the face pushed up by its thickness, less what pin and grooves take."""
+        """Return the face extruded by the thickness, minus pin hole and grooves."""
         body: Shape = extrude(face(*self._wires()), (0, 0, self.thickness))
         tools = [self._groove(angle) for angle in self.groove_angles()]
         if self.pin > 0:
@@ -96,7 +96,7 @@ class Washer:
         return body
 
     def _groove(self, angle: float) -> Shape:
-        """Return a box from the axis to beyond the outside, its bottom in the washer."""
+        """Return a box from the axis to beyond the outside, with its bottom at that of the groove."""
         box = Solid.makeBox(
             1.5 * self.outside, 2 * self.half_groove, self.thickness,
             Vector(0, -self.half_groove, self.thickness - self.groove_depth),
@@ -104,7 +104,7 @@ class Washer:
         return box.rotate(Vector(0, 0, 0), Vector(0, 0, 1), angle)
 
     def _wires(self) -> list[Shape]:
-        """Return the outline, with the lug at the crown; of a full ring that of the bore too."""
+        """Return the outline with the lug at the crown; for a full ring also the outline of the bore."""
         arc = self._arc_outside()
         if self.is_half:
             inner = Edge.makeThreePointArc(*(Vector(self.bore * x, self.bore * y) for x, y in
@@ -117,7 +117,7 @@ class Washer:
         return [wire(*arc), wire(Edge.makeCircle(self.bore))]
 
     def _arc_outside(self) -> list[Shape]:
-        """From +x (half) or -y (full) over the crown and back to the other end."""
+        """Return the outer arc from +x (half) or -y (full) over the crown to the other end."""
         R, a = self.outside, self.half_lug
         if a == 0:
             return [self._arc(0.0, 180.0)] if self.is_half else [Edge.makeCircle(R)]
@@ -137,7 +137,7 @@ class Washer:
         return segment(Vector(*one), Vector(*other))
 
     def volume(self) -> float:
-        """Return the ring and lug less pin hole and grooves, which do not meet each other [mm³]."""
+        """Return the volume of ring and lug minus pin hole and grooves, which do not intersect [mm³]."""
         ring = pi * (self.outside**2 - self.bore**2) / (2 if self.is_half else 1)
         lug = 2 * self.half_lug * (self.outside + self.lug_height) if self.half_lug > 0 else 0.0
         lug -= sheet_under_arc(self.outside, self.half_lug)
@@ -145,7 +145,7 @@ class Washer:
         return (ring + lug - pi * self.pin**2) * self.thickness - taken
 
     def _under_groove(self) -> float:
-        """Return the area of a groove seen along the shaft [mm²]."""
+        """Return the area of a groove, seen along the shaft [mm²]."""
         if self.grooves == 0:
             return 0.0
         outside, bore = (sheet_under_arc(r, self.half_groove) for r in (self.outside, self.bore))
@@ -153,19 +153,18 @@ class Washer:
 
 
 class ThrustWasher(CadModel):
-    """Thrust washer: a full ring, or the half washer beside a main bearing of an engine.
+    """Thrust washer: a full ring, or a half washer next to a main bearing of an engine.
 
-    z is along the shaft; the back lies on z = 0, the running face with its oil grooves on z = thickness. A
-    half washer lies on the side +y, its joint in the plane y = 0. Grooves run from the bore to the outside,
-    with a rectangular section, evenly round; those of a half washer are half a pitch from its joint. The
-    locating lug is at the crown +y and as thick as the washer; the hole for a pin lies between two grooves of
-    a full ring. No grooves, a lug of no width and a hole of no diameter are none.
+    z is along the shaft; the back is at z = 0, the running face with its oil grooves at z = thickness. A half
+    washer is on the side +y, with its joint in the plane y = 0. The grooves run from the bore to the outside,
+    have a rectangular section, and are evenly spaced; in a half washer the first is half a pitch from the
+    joint. The locating lug is at the crown +y and as thick as the washer; the hole for a pin is between two
+    grooves of a full ring. A number or size of 0 omits the grooves, the lug or the hole.
 
-    Limits
-    ------
-    One solid of copper alloy: a steel back and chamfers are not drawn. Proportions by default are typical
-    ones of makers (outer 1.6 times inner diameter, thickness 8 % of it), not those of a standard. A full ring
-    has the features of ISO 6525, a half washer those of ISO 6526.
+    Limits ------ The washer is one solid of copper alloy; a steel back and chamfers are not drawn. The
+    default proportions are typical of makers (outer diameter 1.6 times, thickness 8 % of the inner diameter)
+    and do not come from a standard. A full ring has the features of ISO 6525, a half washer those of ISO
+    6526.
 
     References
     ----------
@@ -221,7 +220,7 @@ class ThrustWasher(CadModel):
 
     @derived("mm", "pin hole diameter", symbol="d_p", ge=0, le=500)
     def d_p(self) -> Array:
-        """None."""
+        """Return the default: no hole for a pin."""
         return 0 * self.d
 
     @derived("mm", "pin circle diameter", symbol="D_p", ge=1, le=10000)
@@ -230,7 +229,7 @@ class ThrustWasher(CadModel):
 
     @derived("mm", "lug width", symbol="w_l", ge=0, le=1000)
     def w_l(self) -> Array:
-        """None."""
+        """Return the default: no lug."""
         return 0 * self.d
 
     @derived("mm", "lug height", symbol="h_l", ge=0.01, le=1000)
@@ -239,7 +238,10 @@ class ThrustWasher(CadModel):
 
     @formula("mm", "chord from groove to groove at the bore", name="groove_chord", symbol="p_g")
     def p_g(self) -> Array:
-        """Of a half washer also twice the way from its joint to the first groove."""
+        """Pitch of the grooves.
+
+        In a half washer also twice the distance from the joint to the first groove.
+        """
         return self.d * np.sin(half_pitch(self.washer, self.n_g))
 
     @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger")
@@ -249,12 +251,12 @@ class ThrustWasher(CadModel):
 
     @require("oil_groove_depth", "thickness", remedy="make the grooves shallower or the washer thicker")
     def grooves_have_a_bottom(self) -> Truth:
-        """Oil grooves take at most 80 % of the thickness, and at least 10 µm."""
+        """The depth of the oil grooves is at least 10 µm and at most 80 % of the thickness."""
         return (self.n_g <= 0) | ((self.t_g <= 0.8 * self.t) & drawable(self.t_g))
 
     @require("oil_groove_width", "oil_grooves", "inner_diameter", remedy="take fewer or narrower grooves")
     def grooves_keep_apart(self) -> Truth:
-        """Oil grooves do not meet at the bore, nor the joint: they leave 5 % of the pitch there."""
+        """Oil grooves do not meet each other or the joint at the bore: at least 5 % of the pitch is left."""
         return (self.n_g <= 0) | (self.w_g <= 0.95 * self.p_g)
 
     @require("pin_hole_diameter", "washer", remedy="take a full ring, or 0 for no hole")
@@ -267,7 +269,7 @@ class ThrustWasher(CadModel):
         remedy="make the hole smaller, or move its circle",
     )  # fmt: skip
     def pin_keeps_within_the_face(self) -> Truth:
-        """The hole for a pin lies within the face, 1 % of the diameters off its edges."""
+        """The hole for a pin lies within the face, clear of its edges by 1 % of the diameters."""
         inside = (self.D_p - self.d_p >= 1.01 * self.d) & (self.D_p + self.d_p <= 0.99 * self.D)
         return (self.d_p <= 0) | inside
 
@@ -276,7 +278,7 @@ class ThrustWasher(CadModel):
         remedy="make the hole smaller, or take fewer or narrower grooves",
     )  # fmt: skip
     def pin_clears_grooves(self) -> Truth:
-        """The hole for a pin keeps off the grooves beside it by 2 %."""
+        """The hole for a pin is clear of the grooves next to it by 2 %."""
         clear = self.D_p * np.sin(half_pitch(self.washer, self.n_g)) >= 1.02 * (self.d_p + self.w_g)
         return (self.d_p <= 0) | (self.n_g <= 0) | clear
 
@@ -287,7 +289,7 @@ class ThrustWasher(CadModel):
 
     @require("lug_width", "oil_grooves", "washer", remedy="take an even number of grooves, or no lug")
     def lug_has_no_groove(self) -> Truth:
-        """No groove of a half washer runs into its lug: their number is even."""
+        """No groove of a half washer runs into its lug, so the number of grooves is even."""
         return (self.w_l <= 0) | is_free_at_crown(self.washer, self.n_g)
 
     @require(
@@ -295,7 +297,7 @@ class ThrustWasher(CadModel):
         remedy="make the lug narrower, or take fewer or narrower grooves",
     )  # fmt: skip
     def lug_clears_grooves(self) -> Truth:
-        """The lug keeps off the grooves beside it by 2 % of their width."""
+        """The lug is clear of the grooves next to it by 2 % of their width."""
         foot = np.sqrt(np.maximum(self.D**2 - self.w_l**2, 0 * self.D**2))
         turn = half_pitch(self.washer, self.n_g)
         clear = foot * np.sin(turn) - self.w_l * np.cos(turn) >= 1.02 * self.w_g
@@ -303,7 +305,7 @@ class ThrustWasher(CadModel):
 
     @require("pin_hole_diameter", "lug_width", remedy="use 0 for none")
     def features_are_drawable(self) -> Truth:
-        """Pin hole and lug measure 0, or at least the 10 µm that the kernel draws reliably."""
+        """The sizes of pin hole and lug are 0, or at least the 10 µm that the kernel can build reliably."""
         return drawable(self.d_p) & drawable(self.w_l)
 
     def build(self) -> tuple[Part, ...]:
@@ -328,12 +330,15 @@ class ThrustWasher(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """As wide as the outer diameter and as high as the lug; a half washer on the side of its crown."""
+        """Return a box as wide as the outer diameter and as high as the lug.
+
+        A half washer is on the crown's side.
+        """
         R, top = mm(self.D) / 2, mm(self.D) / 2 + (mm(self.h_l) if self.w_l > 0 else 0.0)
         return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every parameter; those of grooves, pin hole and lug only if there are any."""
+        """Return every parameter; the sizes of grooves, pin hole and lug only if they exist."""
         washer, wanted = seen["washer"], self.drawn()
         about, levels = washer.diameters(Z), washer.levels(Z)
         outside = washer.rings(Z)[-1]

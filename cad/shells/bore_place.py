@@ -1,7 +1,7 @@
-"""The position of a model's split bore, and the support of its solid, for finite elements.
+"""Find the split bore of a model, and the support of its solid, for finite elements.
 
-A housing is held by the flat top of its block, where the crankcase goes on. A rod is held by the bore of its
-small end.
+A housing is held by the flat top of its block, where the crankcase continues. A rod is held by the bore of
+its small end.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from cad.shells.rod import Rod
 
 
 def has_split_bore(cls: type[CadModel]) -> bool:
-    """Return whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`.
+    """Return whether a model is a housing or a rod: its `drawn` returns a `Housing` or a `Rod`.
 
-    An assembly on one of them is not: parts that stand beside it are none of its bore.
+    An assembly based on one of them does not count, because its added parts do not belong to the bore.
     """
     if issubclass(cls, ImportedModel):
         return False

@@ -1,4 +1,4 @@
-"""A half shell or a full bush of steel with its lining, drawn about z with its crown at +y; its volumes."""
+"""Build a half shell or a full bush of steel with its lining, about z with the crown at +y; its volumes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Groove:
 
 @dataclass(frozen=True)
 class Tang:
-    """The locating lip at the back, beside the joint on the side +x [mm]."""
+    """The locating lip on the back, next to the joint on the side +x [mm]."""
 
     width: float
     length: float
@@ -37,7 +37,7 @@ class Tang:
 
 @dataclass(frozen=True)
 class Flange:
-    """Collars at one end (+z) or at both [mm]."""
+    """Flanges at one end (+z) or at both [mm]."""
 
     radius: float
     thickness: float
@@ -46,12 +46,14 @@ class Flange:
 
 @dataclass(frozen=True)
 class HalfShell:
-    """What is drawn [mm]: radii about z; the joint is at y = -crush, the wall goes on straight so far.
+    """Sizes of a half shell [mm]: radii about z.
 
-    Of a shell that nothing holds, the arc ends above the plane y = 0, by the angle `lift` on either side;
-    what is at a joint is drawn as at y = 0, and turned about z by so much.
+    The joint is at y = -crush, to which the wall continues straight.
 
-    Without a lining its radius is that of the bore, and all is back.
+    The arc of a shell in its free state ends above the plane y = 0 by the angle `lift` on either side;
+    features at a joint are built at y = 0 and rotated about z by this angle.
+
+    Without a lining, the lining radius is that of the bore, and the whole wall is the back.
     """
 
     bore: float
@@ -70,7 +72,7 @@ class HalfShell:
 
     @property
     def turn(self) -> float:
-        """Return the turn of its arc [rad]."""
+        """Return the angle of the arc [rad]."""
         return pi - 2 * self.lift
 
     @property
@@ -80,12 +82,12 @@ class HalfShell:
 
     @property
     def is_split(self) -> bool:
-        """Return whether the groove parts the lining in two rings."""
+        """Return whether the groove divides the lining into two rings."""
         deep = self.groove and self.groove.is_whole and self.groove.bottom > self.lining
         return bool(self.is_lined and deep)
 
     def back_section(self) -> list[Point]:
-        """Return the steel back as a closed line through (r, z), without a groove."""
+        """Return the section of the steel back as a closed line through (r, z), without a groove."""
         return outline(*self._back_ends())
 
     def _back_ends(self, *groove: Point) -> list[Point]:
@@ -111,11 +113,14 @@ class HalfShell:
         return [(self.outside - self.outer_chamfer, 0.0), (self.outside, self.outer_chamfer)]
 
     def back_joint(self) -> list[Point]:
-        """Return the back at its joint: its section, less a groove that goes so far."""
+        """Return the section of the back at its joint, minus a groove that extends to the joint."""
         return outline(*self._back_ends(*self._notch(self.lining, self.outside)))
 
     def lining_joint(self) -> list[Point]:
-        """Return the lining at its joint; if the groove parts it, that piece on the side +z."""
+        """Return the section of the lining at its joint.
+
+        If the groove divides it, the piece on the side +z.
+        """
         b, c, s = self.half_width, self.inner_chamfer, self.lining
         inside = self.bore + (self.relief.depth if self.relief else 0.0)
         up = [(s, max(self.bore + c - s, 0.0)), (min(self.bore + c, s), max(self.bore + c - s, 0.0))]
@@ -130,7 +135,7 @@ class HalfShell:
         return outline(*low, *high, *self._notch(inside, s))
 
     def _notch(self, inside: float, outside: float) -> list[Point]:
-        """Return the corners of a groove that goes from joint to joint, at its height above the inside."""
+        """Return the corners of a groove that extends from joint to joint, at its height above the inside."""
         groove = self.groove
         if groove is None or not groove.is_whole or groove.bottom <= inside or groove.bottom >= outside:
             return []
@@ -138,7 +143,7 @@ class HalfShell:
         return [(inside, w), (groove.bottom, w), (groove.bottom, -w), (inside, -w)]
 
     def back(self) -> Shape:
-        """Return the steel: the section turned, with legs and lip, less groove and hole."""
+        """Return the steel back: the section revolved, with legs and lip, minus groove and hole."""
         body = turned(self.back_section(), degrees(self.lift), degrees(self.turn))
         if self.groove and self.groove.bottom > self.lining:
             body = cut(body, self._ring(self.groove))
@@ -148,7 +153,7 @@ class HalfShell:
         return fuse(body, self._lip(self.tang)) if self.tang else body
 
     def _with_legs(self, body: Shape, joint: list[Point]) -> Shape:
-        """Return a body with the crush height below both joints."""
+        """Return a body extended by the crush height below both joints."""
         if self.crush == 0:
             return body
         if self.lift > 0:
@@ -159,20 +164,23 @@ class HalfShell:
         return body
 
     def _leg(self, body: Shape, side: int) -> Shape:
-        """The joint's own face drawn out: vertices of another one, 1e-15 mm off, make bytes that differ."""
+        """Return the extrusion of the joint face.
+
+        Another face with vertices 1e-15 mm off would change the bytes.
+        """
         normal = Vector(side * sin(self.lift), -cos(self.lift), 0)
         feet = [f for f in body.Faces() if f.geomType() == "PLANE" and f.normalAt().dot(normal) > 1 - 1e-12]
         foot = min(feet, key=lambda f: abs(f.Center().dot(normal)))
         return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
-        """Return a shape that was drawn at y = 0, turned to the joint on that side."""
+        """Return a shape that was built at y = 0, rotated to the joint on that side."""
         if self.lift == 0:
             return body
         return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
 
     def _lip(self, tang: Tang) -> Shape:
-        """Return a box that grows out of the back."""
+        """Return the box of the locating lip, which starts inside the back."""
         foot = sqrt(self.outside**2 - tang.length**2) - 0.1 * (self.outside - self.lining)
         lip = Solid.makeBox(
             self.outside + tang.height - foot, tang.length + self.crush, tang.width,
@@ -188,7 +196,7 @@ class HalfShell:
         return turned(section, 90 - turn / 2, turn)
 
     def lining_piece(self) -> Shape:
-        """Return the lining, or that half of it on the side +z if the groove parts it.
+        """Return the lining, or its half on the side +z if the groove divides it.
 
         See `lining_places`.
         """
@@ -204,7 +212,7 @@ class HalfShell:
         return self._with_legs(body, self.lining_joint())
 
     def _cone(self, side: int) -> Shape:
-        """Return the solid that the bore's chamfer removes at one end, with an allowance."""
+        """Return the solid that the bore's chamfer removes at one end, with some oversize."""
         c, b, r = self.inner_chamfer, self.half_width, self.bore
         over, inside = 0.5 * c, 0.1 * r
         section = outline(
@@ -214,7 +222,7 @@ class HalfShell:
         return turned(section, -_BEYOND, 180.0 + 2 * _BEYOND)
 
     def _lining_face(self, z: float) -> Shape:
-        """Return the lining across the shaft, with both reliefs."""
+        """Return the cross-section of the lining with both reliefs."""
         right, left = self.lift, pi - self.lift
         edges = [self._arc(self.lining, right, left, z)]
         deep, inner = self.bore, [self._arc(self.bore, right, left, z)]
@@ -244,7 +252,7 @@ class HalfShell:
         return (Location(), other) if self.is_split else (Location(),)
 
     def back_volume(self) -> float:
-        """Return the turned section, legs and lip, less groove and hole [mm³]."""
+        """Return the volume of the back: revolved section, legs and lip, minus groove and hole [mm³]."""
         volume = (
             turned_volume(self.back_section(), degrees(self.turn)) + 2 * area(self.back_joint()) * self.crush
         )
@@ -256,7 +264,7 @@ class HalfShell:
         return volume - taken
 
     def lining_volume(self) -> float:
-        """Return all of the lining, in one piece or two [mm³]."""
+        """Return the volume of the whole lining, in one piece or two [mm³]."""
         r, s = self.bore, self.lining
         volume = (s * s - r * r) * self.turn * self.half_width
         volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
@@ -289,7 +297,7 @@ class HalfShell:
         return turned_volume(section, degrees(self.turn))
 
     def _relief_in_chamfer(self, relief: Relief) -> float:
-        """Return the volume that one chamfer and one relief share [mm³]."""
+        """Return the volume that belongs to both a chamfer and a relief [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
@@ -301,7 +309,7 @@ class HalfShell:
 
 
 class FullBush(HalfShell):
-    """A bush all round, without joints: a groove from joint to joint is a ring; the hole is at the crown."""
+    """A full bush without joints: a groove from joint to joint becomes a ring; the hole is at the crown."""
 
     @property
     def turn(self) -> float:
@@ -309,14 +317,14 @@ class FullBush(HalfShell):
         return 2 * pi
 
     def back(self) -> Shape:
-        """Return the steel: the section turned, with its ring groove, less another groove and the hole."""
+        """Return the steel back: the revolved section with its ring groove, minus other cuts."""
         body = turned(self.back_joint())
         if self.groove and not self.groove.is_whole and self.groove.bottom > self.lining:
             body = cut(body, self._ring(self.groove))
         return cut(body, drill(self.hole, self.outside)) if self.hole > 0 else body
 
     def lining_piece(self) -> Shape:
-        """Return the lining, or that ring of it on the side +z if the groove parts it."""
+        """Return the lining, or its ring on the side +z if the groove divides it."""
         body = turned(self.lining_joint())
         if self.groove and not self.groove.is_whole:
             body = cut(body, self._ring(self.groove))

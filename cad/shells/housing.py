@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 @dataclass(frozen=True)
 class Housing:
-    """What is drawn [mm]; a bolt or drilling of no radius is none."""
+    """Sizes of a housing [mm]; a radius of 0 omits a bolt hole or the drilling."""
 
     bore: float  # radius
     half_width: float  # along the shaft
@@ -26,7 +26,7 @@ class Housing:
     drilling: float = 0.0  # radius
 
     def block(self) -> Shape:
-        """Return the half at +y, its bolt holes blind, its drilling from the top to the bore."""
+        """Return the half at +y, with blind bolt holes and the drilling from the top to the bore."""
         body = self._half(1, self.block_height)
         for axis in self._bolts():
             body = cut(body, self._hole(self.bolt, axis, -self.bolt_depth, self.bolt_depth))
@@ -35,7 +35,7 @@ class Housing:
         return body
 
     def cap(self, gap: float = 0.0) -> Shape:
-        """Return the half at -y, bolt holes through it; with a gap it stands off so far."""
+        """Return the half at -y with through holes for the bolts; a gap moves it away from the joint."""
         body = self._half(-1, self.cap_height)
         for axis in self._bolts():
             body = cut(body, self._hole(self.bolt, axis, -1.5 * self.cap_height, self.cap_height))
@@ -54,19 +54,19 @@ class Housing:
         return Solid.makeCylinder(radius, high - low, Vector(x, low, 0), Vector(0, 1, 0))
 
     def block_volume(self) -> float:
-        """Return the box less half a bore, blind holes and the drilling [mm³]."""
+        """Return the volume of the box minus half a bore, blind holes and the drilling [mm³]."""
         bolts = len(self._bolts()) * pi * self.bolt**2 * self.bolt_depth
         return self._half_volume(self.block_height) - bolts - self._drilled()
 
     def cap_volume(self) -> float:
-        """Return the box less half a bore and the holes through it [mm³]."""
+        """Return the volume of the box minus half a bore and the through holes [mm³]."""
         return self._half_volume(self.cap_height) - len(self._bolts()) * pi * self.bolt**2 * self.cap_height
 
     def _half_volume(self, height: float) -> float:
         return 2 * self.half_width * (2 * self.half_breadth * height - pi * self.bore**2 / 2)
 
     def _drilled(self) -> float:
-        """From the top down to the bore: a bar of the height less what is in the bore."""
+        """Return the volume of the drilling: the cylinder up to the top, minus its part inside the bore."""
         a, R = self.drilling, self.bore
         if a == 0:
             return 0.0

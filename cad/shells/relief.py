@@ -14,7 +14,7 @@ from cad.revolution import sheet_under_arc
 
 @dataclass(frozen=True)
 class Relief:
-    """Sizes [mm]: radius of the bore, height above the joint, depth at the joint."""
+    """Sizes of a relief [mm]: radius of the bore, height above the joint, depth at the joint."""
 
     bore: float
     height: float
@@ -27,13 +27,13 @@ class Relief:
 
     @property
     def axis(self) -> float:
-        """Return the distance of the axis from the bore's, towards the joint."""
+        """Return the distance of the relief's axis from that of the bore, towards the joint."""
         fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # of the bore's arc
         return self.depth * (2 * self.bore + self.depth) / (2 * (self.depth + fall))
 
     @property
     def radius(self) -> float:
-        """Return the radius of the circle."""
+        """Return the radius of the relief's circle."""
         return self.bore + self.depth - self.axis
 
     def arc(self) -> list[tuple[float, float]]:
@@ -44,19 +44,19 @@ class Relief:
         return [(self.bore + self.depth, 0.0), (sqrt(x * x + y * y), atan2(y, x)), (self.bore, self.angle)]
 
     def area(self) -> float:
-        """Return the cross-section that it removes from the wall [mm²]."""
+        """Return the area that the relief removes from the cross-section of the wall [mm²]."""
         circle, bore = (sheet_under_arc(r, self.height) / 2 for r in (self.radius, self.bore))
         return self.axis * self.height + circle - bore
 
     def angle_at(self, radius: float) -> float:
-        """Return the angle [rad] from the joint about the bore at which the arc is at a radius."""
+        """Return the angle [rad] about the bore, from the joint, at which the arc has a given radius."""
         c, rho = self.axis, self.radius
         cosine = ((radius - rho) * (radius + rho) + c * c) / (2 * radius * c)
         return acos(min(1.0, max(-1.0, cosine)))
 
 
 def read_relief(bore: float, axis: float, radius: float) -> tuple[float, float]:
-    """Return the height and depth [mm] of a relief from the bore's radius and the relief's circle."""
+    """Return the height and depth [mm] of a relief from the radius of the bore and the relief's circle."""
     depth = axis + radius - bore
     fall = depth * (2 * bore + depth) / (2 * axis) - depth  # inverts `Relief.axis`
     return sqrt(fall * (2 * bore - fall)), depth

@@ -14,7 +14,7 @@ from cad.shells.housing import Housing
 
 @dataclass(frozen=True)
 class Rod:
-    """What is drawn [mm]: the shank goes along +y, from the shoulder of the big end to the small end."""
+    """Sizes of a rod [mm]: the shank runs along +y, from the shoulder of the big end to the small end."""
 
     big_end: Housing
     distance: float  # of the two axes
@@ -33,7 +33,7 @@ class Rod:
 
     @property
     def pocket(self) -> tuple[float, float]:
-        """Return the ends of a pocket, as far from the ends of the shank as from its sides."""
+        """Return the ends of a pocket, which is as far from the ends of the shank as from its sides."""
         edge = (self.shank_width - self.pocket_width) / 2
         return self.shoulder + edge, self.distance - self.outside - edge
 

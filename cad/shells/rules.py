@@ -1,8 +1,8 @@
 """Rules that refuse a half shell; each names the parameters and a remedy.
 
-The digest of a released model covers this file: put a change into a new file. The rules are a little stricter
-than geometry requires, so that edges keep clear of each other. The kernel can draw every shell that they
-accept, and the closed form of the volume covers it.
+The digest of a released model covers this file, so put a change into a new file. The rules are slightly
+stricter than geometry requires, so that edges do not come too close to each other. The kernel can build every
+shell that the rules accept, and the closed form of the volume is valid for it.
 """
 
 from __future__ import annotations
@@ -14,34 +14,34 @@ from templates.core.language.template import Array, Truth, require
 
 
 class ShellRules(ShellParameters):
-    """Parameters that make half shells or a full bush."""
+    """Rules for the parameters of half shells or of a full bush."""
 
     @require("lining_thickness", "wall", remedy="make the lining thinner or the wall thicker")
     def back_is_steel(self) -> Truth:
-        """The lining takes at most 60 % of the wall."""
+        """The lining is at most 60 % of the wall."""
         return self.t_l <= 0.6 * self.t
 
     @require("oil_groove_width", "inner_chamfer", "width", remedy="make the groove narrower")
     def groove_within_width(self) -> Truth:
-        """Oil groove and chamfers of the bore take at most 90 % of the width."""
+        """The oil groove and the chamfers of the bore occupy at most 90 % of the width."""
         return self.w_g + 2 * self.c_i <= 0.9 * self.B
 
     @require("oil_hole_diameter", "inner_chamfer", "width", remedy="make the hole smaller or the shell wider")
     def hole_within_width(self) -> Truth:
-        """Oil hole and chamfers of the bore take at most 90 % of the width."""
+        """The oil hole and the chamfers of the bore occupy at most 90 % of the width."""
         return self.d_h + 2 * self.c_i <= 0.9 * self.B
 
     @require("oil_hole_diameter", "outer_chamfer", "flange_thickness", "flange_diameter", "width",
              remedy="make the hole smaller or the shell wider")  # fmt: skip
     def hole_within_seat(self) -> Truth:
-        """The oil hole keeps off the chamfers of the back and off flanges."""
+        """The oil hole is clear of the chamfers of the back and of the flanges."""
         edge = np.maximum(self.c_o, np.sign(self.D_f) * self.b_f)
         taken: Array = self.d_h + 2 * edge
         return taken <= 0.95 * self.B
 
     @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
     def hole_within_bore(self) -> Truth:
-        """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
+        """The oil hole is at most 80 % as wide as the bore, so that there is a wall all around it."""
         return self.d_h <= 0.8 * self.d
 
     @require("oil_hole_diameter", "relief_height", "relief_depth", "inner_diameter",
@@ -53,18 +53,18 @@ class ShellRules(ShellParameters):
 
     @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
     def groove_within_wall(self) -> Truth:
-        """The oil groove takes at most 80 % of the wall."""
+        """The depth of the oil groove is at most 80 % of the wall."""
         return self.t_g <= 0.8 * self.t
 
     @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
     def groove_has_width(self) -> Truth:
-        """An oil groove that has a depth has a width."""
+        """An oil groove with a depth also has a width."""
         return (self.t_g <= 0) | (self.w_g > 0)
 
     @require("oil_groove_depth", "lining_thickness",
              remedy="end the groove within the lining or in the back, 5 % of the lining off")  # fmt: skip
     def groove_ends_clearly(self) -> Truth:
-        """The bottom of the groove is off the back of the lining by 5 % of its thickness."""
+        """The bottom of the groove is at least 5 % of the lining thickness away from the lining's back."""
         return abs(self.t_g - self.t_l) >= 0.05 * self.t_l
 
     @require("oil_groove_depth", "relief_depth", remedy="make the groove deeper, or the relief shallower")
@@ -87,33 +87,33 @@ class ShellRules(ShellParameters):
     @require("oil_groove_angle", "relief_height",
              remedy="take 180°, or end the groove 5° above the relief")  # fmt: skip
     def groove_ends_above_relief(self) -> Truth:
-        """A groove goes from joint to joint (180°), or ends 5° above the joint relief and at 160° at most."""
+        """A groove runs from joint to joint (180°), or is at most 160° and ends 5° above the joint relief."""
         end = np.arcsin(np.minimum(2 * self.h_r / self.d, 1.0)) + np.pi / 36
         return (self.t_g <= 0) | (self.phi_g > 3.14159) | (self.phi_g <= np.minimum(np.pi - 2 * end, 2.8))
 
     @require("relief_height", "inner_diameter", remedy="make the relief lower")
     def relief_is_low(self) -> Truth:
-        """The joint relief is at most 30 % of the bore high."""
+        """The height of the joint relief is at most 30 % of the bore."""
         return self.h_r <= 0.3 * self.d
 
     @require("relief_depth", "lining_thickness", remedy="make the relief shallower")
     def relief_within_lining(self) -> Truth:
-        """The joint relief takes at most 80 % of the lining."""
+        """The depth of the joint relief is at most 80 % of the lining."""
         return self.d_r <= 0.8 * self.t_l
 
     @require("relief_depth", "relief_height", remedy="make the relief shallower or higher")
     def relief_is_shallow(self) -> Truth:
-        """The joint relief is at most a tenth as deep as it is high."""
+        """The depth of the joint relief is at most a tenth of its height."""
         return self.d_r <= 0.1 * self.h_r
 
     @require("inner_chamfer", "outer_chamfer", "wall", remedy="make the chamfers smaller")
     def chamfers_leave_a_face(self) -> Truth:
-        """The chamfers together take at most 80 % of the wall."""
+        """The chamfers together are at most 80 % of the wall."""
         return self.c_i + self.c_o <= 0.8 * self.t
 
     @require("inner_chamfer", "lining_thickness", remedy="change the chamfer by 5 % of the lining")
     def chamfer_clears_lining(self) -> Truth:
-        """The chamfer of the bore ends in the lining or in the back, 5 % of the lining's thickness off."""
+        """The chamfer of the bore ends at least 5 % of the lining thickness away from the lining's back."""
         return abs(self.c_i - self.t_l) >= 0.05 * self.t_l
 
     @require("inner_chamfer", "relief_depth", remedy="make the chamfer larger, or 0 for none")
@@ -129,7 +129,7 @@ class ShellRules(ShellParameters):
         remedy="make the chamfers or flanges smaller",
     )
     def seat_is_left(self) -> Truth:
-        """Chamfers and flanges leave at least 30 % of the width to the seat in the housing."""
+        """Chamfers and flanges leave at least 30 % of the width for the seat in the housing."""
         return self.B_s - 2 * self.c_o >= 0.3 * self.B
 
     @require("flange_diameter", "inner_diameter", "wall", remedy="make the flange larger, or 0 for none")
@@ -140,38 +140,38 @@ class ShellRules(ShellParameters):
     @require("flange_thickness", "flange_diameter", "inner_chamfer", "lining_thickness",
              remedy="make the flange thicker or the chamfer smaller")  # fmt: skip
     def flange_holds_chamfer(self) -> Truth:
-        """A flange is thicker than what the chamfer of the bore takes."""
+        """A flange is thicker than the chamfer of the bore."""
         return (self.D_f <= 0) | (self.b_f >= 1.02 * (self.c_i - self.t_l))
 
     @require("tang_length", "wall", "lining_thickness", "inner_diameter", remedy="make the tang shorter")
     def tang_grows_out_of_the_back(self) -> Truth:
-        """Along the tang the back bends away by at most 70 % of the thickness of its steel."""
+        """Along the tang the back curves away by at most 70 % of the thickness of its steel."""
         R = self.D / 2
         return (self.w_t <= 0) | (self.l_t <= np.sqrt(2 * R * 0.7 * self.t_s * (1 - 0.35 * self.t_s / R)))
 
     @require("tang_width", "width", "outer_chamfer", "flange_thickness", "flange_diameter",
              remedy="make the tang narrower")  # fmt: skip
     def tang_within_seat(self) -> Truth:
-        """The tang keeps off the chamfers of the back and off flanges, by 2 % of the width."""
+        """The tang is clear of the chamfers of the back and of the flanges, by 2 % of the width."""
         edge = np.maximum(self.c_o, np.sign(self.D_f) * self.b_f)
         return (self.w_t <= 0) | (self.w_t / 2 <= 0.23 * self.B - edge)
 
     @require("tang_width", "oil_groove_width", "width",
              remedy="change the tang or the groove by 1 % of the width")  # fmt: skip
     def tang_clears_groove_edge(self) -> Truth:
-        """No side of the tang is in the plane of a groove's side; 0.5 % of the width is between them."""
+        """The sides of the tang are at least 0.5 % of the width off the planes of the groove's sides."""
         low, high, off = self.B / 4 - self.w_t / 2, self.B / 4 + self.w_t / 2, 0.005 * self.B
         clear = (abs(low - self.w_g / 2) >= off) & (abs(high - self.w_g / 2) >= off)
         return (self.w_t <= 0) | (self.t_g <= 0) | clear
 
     @require("tang_height", "wall", remedy="make the tang lower")
     def tang_is_low(self) -> Truth:
-        """The tang stands out by at most the thickness of the wall."""
+        """The height of the tang is at most the thickness of the wall."""
         return self.h_t <= self.t
 
     @require("tang_height", "flange_diameter", "inner_diameter", "wall", remedy="make the tang lower")
     def tang_is_lower_than_flange(self) -> Truth:
-        """Beside a flange the tang is lower, by 1 % of the diameter."""
+        """The tang is lower than a flange, by at least 1 % of the diameter."""
         return (self.D_f <= 0) | (self.w_t <= 0) | (self.D_f >= 1.01 * (self.D + 2 * self.h_t))
 
     @require("crush_height", "inner_diameter", remedy="make the crush height smaller")
@@ -182,7 +182,7 @@ class ShellRules(ShellParameters):
     @require("oil_hole_diameter", "oil_groove_width", "oil_groove_depth", "tang_width", "inner_chamfer",
              "outer_chamfer", "crush_height", remedy="use 0 for none")  # fmt: skip
     def features_are_drawable(self) -> Truth:
-        """Features measure 0, or at least the 10 µm that the kernel draws reliably."""
+        """The sizes of features are 0, or at least the 10 µm that the kernel can build reliably."""
         sizes = (self.d_h, self.w_g, self.t_g, self.w_t, self.c_i, self.c_o)
         fits = drawable(self.a, 1.0)
         for size in sizes:
@@ -191,12 +191,12 @@ class ShellRules(ShellParameters):
 
     @require("relief_depth", remedy="use 0 for none")
     def relief_is_drawable(self) -> Truth:
-        """The relief is 0 deep, or at least 1 µm."""
+        """The depth of the relief is 0, or at least 1 µm."""
         return drawable(self.d_r, 1.0)
 
     @require("lining_thickness", remedy="use 0 for none")
     def lining_is_drawable(self) -> Truth:
-        """The lining is 0 thick, or at least 5 µm."""
+        """The thickness of the lining is 0, or at least 5 µm."""
         return drawable(self.t_l, 5.0)
 
     @require("shells", "tang_width", "relief_depth", "crush_height", remedy="use 0 for none, or half shells")

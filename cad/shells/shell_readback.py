@@ -1,4 +1,4 @@
-"""Sizes of a half shell, read from the surfaces of its back and its lining."""
+"""Read the sizes of a half shell back from the surfaces of its back and its lining."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ _SAME = 1e-6  # [mm]
 
 @dataclass(frozen=True)
 class ShellReadback:
-    """Back and lining of one shell, and what it should be: of equal sizes the nearer one is meant.
+    """Surfaces of back and lining of one shell, and its expected sizes.
 
-    Without a lining the back stands for it.
+    Candidates are chosen by the nearest size.
+
+    Without a lining the surfaces of the back replace those of the lining.
     """
 
     back: PartSurfaces
@@ -26,7 +28,10 @@ class ShellReadback:
     wanted: HalfShell
 
     def sizes(self, *, with_oil: bool, side: int) -> dict[str, float]:
-        """Every parameter by name; `side` is 1 of an upper shell, -1 of a lower one, 0 of a full bush."""
+        """Return every parameter by name.
+
+        `side` is 1 for an upper shell, -1 for a lower one, 0 for a full bush.
+        """
         joint = self.back.levels(Y)[0 if side > 0 else -1] if side else 0.0
         return {
             "inner_diameter": Size.diameter(self.bore_ring),
@@ -42,7 +47,7 @@ class ShellReadback:
         }
 
     def _crush(self, side: int, joint: float) -> float:
-        """Return the distance of the joint from the axis of the shaft [mm]; none of a full bush."""
+        """Return the distance of the joint from the axis of the shaft [mm]; 0 for a full bush."""
         if side == 0:
             return 0.0
         return Size.distance(-side * joint + 0.0, self.bore_ring, self.back.planes_at(Y, joint))
@@ -54,22 +59,22 @@ class ShellReadback:
 
     @property
     def outside_ring(self) -> list[Surface]:
-        """Return the faces of the back's outside; a flange is larger."""
+        """Return the faces of the outside of the back, without a flange."""
         return self.back.rings(Z)[-2 if self.wanted.flange else -1]
 
     @property
     def bore(self) -> float:
-        """Return the radius [mm]."""
+        """Return the radius of the bore [mm]."""
         return self.bore_ring[0].diameter / 2
 
     @property
     def wall(self) -> float:
-        """Return the back and lining [mm]."""
+        """Return the wall thickness of back and lining together [mm]."""
         return Size.wall(self.bore_ring, self.outside_ring)
 
     @property
     def outside(self) -> float:
-        """Return the radius of the back [mm]; a flange is larger."""
+        """Return the outer radius of the back [mm], without a flange."""
         return self.outside_ring[0].diameter / 2
 
     @property
@@ -79,7 +84,10 @@ class ShellReadback:
 
     @property
     def groove_turn(self) -> float:
-        """Return the angle of the groove [rad] from end to end; half a turn from joint to joint."""
+        """Return the angle of the groove [rad] from end to end.
+
+        A half turn if it runs from joint to joint.
+        """
         groove = self.wanted.groove
         if groove is None or groove.is_whole:
             return pi
@@ -93,7 +101,7 @@ class ShellReadback:
         return self.back.length(Z)
 
     def chamfers(self) -> dict[str, float]:
-        """Return the chamfers of the bore, and of the back where it has no flange."""
+        """Return the chamfers of the bore, and of the back where there is no flange."""
         half = self.width() / 2
         bore, outside = self.bore_ring, self.outside_ring
         flange = self.wanted.flange
@@ -111,10 +119,11 @@ class ShellReadback:
         one = circles[0]
         height, depth = read_relief(self.bore, hypot(one.point.x, one.point.y), one.diameter / 2)
         deep = Size.distance(depth, self.bore_ring, circles)
-        return {"relief_height": height, "relief_depth": deep}
+        edge = Size(height, "edge", Place(faces_of(self.bore_ring), faces_of(circles)))
+        return {"relief_height": edge, "relief_depth": deep}
 
     def groove(self) -> dict[str, float]:
-        """Return the width, depth and turn of the oil groove, and the diameter of the oil hole."""
+        """Return the width, depth and angle of the oil groove, and the diameter of the oil hole."""
         holes = [c for c in self.back.cylinders if c.about(Y)]
         sizes = {"oil_hole_diameter": Size.diameter(holes) if holes else 0.0}
         groove = self.wanted.groove
@@ -128,7 +137,7 @@ class ShellReadback:
         }
 
     def _groove_width(self, half: float) -> float:
-        """Return the distance of its sides; those of a groove that parts the lining are on the back."""
+        """Return the distance between the sides of the groove; if it divides the lining, on the back."""
         levels = self.lining.levels(Z)
         if not self.wanted.is_split:
             return self.lining.apart(Z, nearest(levels, -half), nearest(levels, half))
@@ -136,7 +145,7 @@ class ShellReadback:
         return self.back.apart(Z, nearest(sides, -levels[0]), nearest(sides, levels[0]))
 
     def _groove_angle(self) -> float:
-        """Return the angle between its ends [deg], which are planes through the axis of the shaft."""
+        """Return the angle [deg] between the ends of the groove, planes through the axis of the shaft."""
         angle = degrees(self.groove_turn)
         ends = [p for p in self._radial() if abs(_from_crown(p) - self.groove_turn / 2) < _SAME]
         right, left = ([p for p in ends if _side(p) == side] for side in (1, -1))
@@ -147,7 +156,7 @@ class ShellReadback:
         return lining[1] if len(lining) == 3 else self.back.rings(Z)[1]
 
     def tang(self) -> dict[str, float]:
-        """Return the lip at the back."""
+        """Return the sizes of the locating lip on the back."""
         tang = self.wanted.tang
         if tang is None:
             return {"tang_width": 0.0}
@@ -166,7 +175,7 @@ class ShellReadback:
         }
 
     def flange(self) -> dict[str, float]:
-        """Return the collars."""
+        """Return the sizes of the flanges."""
         flange = self.wanted.flange
         if flange is None:
             return {"flange_diameter": 0.0}
@@ -187,7 +196,7 @@ def _nearest_planes(planes: Sequence[Surface], away: float) -> list[Surface]:
 
 
 def off_axis(plane: Surface) -> float:
-    """Return the distance [mm] of the shaft's axis from a plane along it."""
+    """Return the distance [mm] between the axis of the shaft and a plane parallel to it."""
     return abs(plane.point.dot(plane.direction))
 
 
@@ -198,5 +207,5 @@ def _side(plane: Surface) -> int:
 
 
 def _from_crown(plane: Surface) -> float:
-    """Return the angle [rad] of a plane that holds the shaft's axis, against the plane of crown and shaft."""
+    """Return the angle [rad] between a plane through the shaft's axis and the plane of crown and shaft."""
     return asin(min(1.0, abs(plane.direction.dot(Y))))

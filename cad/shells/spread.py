@@ -1,8 +1,8 @@
 """Free spread: the shape of a free half shell, which is wider at its joints than the seat.
 
-The free shell is drawn as an arc of a larger radius: the middle of the wall keeps the length that it has in
-the housing, and each crush height stays a straight leg. So the curvature changes equally everywhere, as in a
-thin ring under a uniform moment; the seat forces the arc back to a half circle.
+The free shell is built as an arc of a larger radius: the middle line of the wall keeps the length that it has
+in the housing, and each crush height remains a straight leg. So the curvature changes by the same amount
+everywhere, as in a thin ring under a uniform moment; the seat forces the arc back to a half circle.
 """
 
 from __future__ import annotations
@@ -25,23 +25,22 @@ _STEPS = 12  # of Newton's method, which doubles the digits with each
 @on_paper("solved by Newton's method from a quarter turn on")
 @units("m", "m", "m", "m", returns="rad")
 def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
-    r"""Return the angle from the crown to a joint of a free shell [rad].
+    """Return the angle from the crown to a joint of a free shell [rad].
 
     The outer edges of the joints are `width` apart: 2 ((s/φ + t/2) sin φ + a cos φ) = W.
 
     Parameters
     ----------
     length
-        s, from the crown to where the straight leg begins, along the middle of the wall [m].
+        s, from the crown to the start of the straight leg, along the middle of the wall [m].
     wall, crush
-        t and a, thickness of the wall and height of the leg [m].
+        t and a, the thickness of the wall and the height of the leg [m].
     width
-        W, over the joints [m].
+        W, the width over the joints [m].
 
-    Notes
-    -----
-    W falls as the angle grows up to a quarter turn, and bends downwards, so Newton's method comes from there
-    without a swing. Where no angle between 0.5 rad and a quarter turn fits, the result is one of these ends.
+    Notes ----- W decreases with the angle up to a quarter turn and is concave, so Newton's method converges
+    monotonically from there. If no angle between 0.5 rad and a quarter turn fits, the result is one of these
+    limits.
     """
     angle = np.full(np.broadcast_shapes(*map(np.shape, (length, wall, crush, width))), pi / 2)
     for _ in range(_STEPS):
@@ -54,11 +53,11 @@ def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
 
 @dataclass(frozen=True)
 class FreeShellReadback(ShellReadback):
-    """A free half shell: the sizes in the housing follow from its arc, and its spread from its joints."""
+    """A free half shell: its arc gives the sizes in the housing, and its joints give the spread."""
 
     @property
     def angle(self) -> float:
-        """Return the angle from the crown to a joint [rad]; the legs are along the tangent there."""
+        """Return the angle from the crown to a joint [rad]; the legs are tangential there."""
         return nearest(map(_from_crown, self._joints()), pi / 2 - self.wanted.lift)
 
     def _upright(self) -> list[Surface]:
@@ -96,7 +95,7 @@ class FreeShellReadback(ShellReadback):
 
 
 def reach_of(shell: HalfShell) -> tuple[float, float, float]:
-    """Return the reach of a shell [mm]: to the side without a tang, to that with one, and down."""
+    """Return the extents of a shell [mm]: to the side without a tang, to the side with one, and downwards."""
     lift, crush = shell.lift, shell.crush
     collar = shell.flange.radius if shell.flange else shell.outside
     lip = shell.outside + shell.tang.height if shell.tang else 0.0
@@ -106,5 +105,5 @@ def reach_of(shell: HalfShell) -> tuple[float, float, float]:
 
 
 def _from_crown(plane: Surface) -> float:
-    """Return the angle [rad] of a plane along the shaft, against the plane of crown and shaft."""
+    """Return the angle [rad] between a plane along the shaft and the plane of crown and shaft."""
     return atan2(abs(plane.direction.dot(Y)), abs(plane.direction.dot(X)))

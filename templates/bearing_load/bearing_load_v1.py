@@ -36,39 +36,40 @@ PEAK = ("p_max",)
 class BearingLoad(Cylinder):
     """Loads of crankpin, main and wristpin bearing, wall and crank over the cycle of one cylinder (DYREMI).
 
-    From gas pressure and the motion of crank, rod and piston at constant speed; each load as a curve whose x
-    and y draw the polar diagram.
+    The loads follow from the gas pressure and the motion of crank, rod and piston at constant speed. Each
+    load is a curve whose x and y draw the polar diagram.
 
     Limits
     ------
-    Axes are fixed to the frame: x points from the crankshaft to the cylinder head, y to where the crankpin
-    moves first. The crank angle counts from top dead centre: suction begins at 0° and combustion at 360° in
-    four strokes, combustion at 0° in two.
-    Constant speed, rigid bodies, cylinder axis through the crankshaft's; no friction, no gravity.
+    Axes are fixed to the frame: x points from the crankshaft to the cylinder head, y in the direction in
+    which the crankpin first moves. The crank angle is measured from top dead centre: in a four-stroke engine
+    the intake stroke begins at 0° and combustion at 360°, in a two-stroke engine combustion begins at 0°.
+    Constant speed, rigid bodies, cylinder axis through that of the crankshaft; no friction, no gravity.
     A crankpin load acts from the rod on the crank, a main load from the frame on the crank (the sum of all
     its bearings), a wristpin load from the rod on the piston, a wall force from the piston on the cylinder, a
     torque from the rod on the crank.
-    Where `oil_film_cycle` asks for what a journal bears, that is the load here with the sign turned; in a
-    plain bore film, pressure and loss are the same, and the orbit is seen turned by 180°.
+    `oil_film_cycle` needs the force of the journal, which is the load here with opposite sign; in a plain
+    bore film, pressure and loss are the same, and the orbit is rotated by 180°.
     The sleeve of a big end swings with rod_angular_velocity.
-    Level lumped: the rod is two masses, statically equivalent, as in DYREMI. Level rigid: it is a rigid body,
-    which needs rod_inertia (about its centre of mass) or rod_pendulum_period (about the wristpin); it is
-    taken where one of them is given.
-    Gas forces go with the pressure less that of the crankcase. Polytropes (otto, diesel, four_stroke) need
-    absolute pressures: give crankcase_pressure too, or the force is too large by the ambient pressure.
-    A table is linear between its points; its pressures may be effective ones.
-    The mean torque is indicated, the work of the gas less none of friction: exact, whatever the step. Curves
-    are exact at their angles; greatest values come from a grid of at most 1 deg with both sides of each jump
-    of pressure, whatever the step.
-    Speeds may be negative: the angle then falls with time, and forces are those of the same angle.
-    crank_centre counts from the shaft's axis towards the crankpin, counterweight_centre away from it.
+    Level lumped: the rod is two statically equivalent masses, as in DYREMI. Level rigid: the rod is a rigid
+    body, which needs rod_inertia (about its centre of mass) or rod_pendulum_period (about the wristpin); this
+    level is used if one of them is given.
+    Gas forces are proportional to the pressure minus that of the crankcase. Polytropes (otto, diesel,
+    four_stroke) need absolute pressures: give crankcase_pressure too, or the force is too large by the
+    ambient pressure.
+    A table is linear between its points; its pressures may be gauge pressures.
+    The mean torque is indicated, from the work of the gas without friction; it is exact for any step. Curves
+    are exact at their angles; greatest values come from a grid of at most 1 deg with both sides of each
+    pressure jump, for any step.
+    Speeds may be negative: the angle then decreases with time, and forces are those of the same angle.
+    crank_centre is measured from the shaft's axis towards the crankpin, counterweight_centre away from it.
 
     Errata
     ------
-    DYREMI prints −pA in F_32y; the crankpin load here is that of free bodies in balance.
+    DYREMI prints −pA in F_32y; the crankpin load here satisfies the equilibrium of the free bodies.
     DYREMI prints n cos θ for n cos φ in the torque.
-    DYREMI's correction torque m_3 b (l − L) mixes the two pivots of the rod; here it is that of the
-    rigid body.
+    DYREMI's correction torque m_3 b (l − L) mixes the two pivots of the rod; here it is that of the rigid
+    body.
 
     References
     ----------

@@ -1,6 +1,6 @@
 """Gas pressure of a four-stroke cylinder from the heat of its fuel: single zone, Wiebe's law.
 
-Its curve serves as the pressure table of `engine` and `bearing_load`.
+The calculated curve serves as the pressure table of `engine` and `bearing_load`.
 """
 
 from __future__ import annotations
@@ -31,24 +31,26 @@ CYCLE = "crank_angle"
 
 
 class CombustionCycle(Template):
-    """Gas pressure of a four-stroke cylinder from the heat of its fuel: one zone, Wiebe's law.
+    """Gas pressure of a four-stroke cylinder from the heat of its fuel: single zone, Wiebe's law.
 
-    Its curve is the pressure table of `engine` and `bearing_load`.
+    The calculated curve serves as the pressure table of `engine` and `bearing_load`.
 
     Limits
     ------
-    One zone, one ratio of specific heats from the inlet's closing to the exhaust's opening, no heat to the
-    walls and no blow-by: take these from heat_release. Cylinder axis through the crankshaft's.
-    The crank angle counts from top dead centre at which suction begins; the cylinder fires at 360 deg, as
-    bearing_load and engine want a pressure table. Start of combustion counts from the firing dead centre.
-    Suction is at constant pressure until the inlet closes, exhaust at constant pressure from 540 deg on; from
-    the exhaust's opening to there the pressure goes linearly in the crank angle.
-    The burnt share is 1 - exp(-a y^(m+1)), y the share of the duration; what is left at its end, exp(-a),
-    does not burn.
-    steps says at which angles the curves are returned; the peak does not depend on it.
-    Work and energy balance are of the closed part, from inlet closing to exhaust opening.
-    energy_balance_error is heat less work less change of inner energy, over the heat and suction pressure
-    times swept volume: work is a quadrature of the pressure of its own, so this measures both.
+    One zone, one ratio of specific heats from inlet closing to exhaust opening, no wall heat loss and no
+    blow-by: subtract these from heat_release. Cylinder axis through that of the crankshaft.
+    The crank angle is measured from top dead centre at the start of the intake stroke; the cylinder fires at
+    360 deg, as in the pressure tables of bearing_load and engine. Start of combustion is measured from firing
+    dead centre.
+    The pressure is constant during intake until the inlet closes, and during exhaust from 540 deg on; from
+    exhaust opening to 540 deg it changes linearly with the crank angle.
+    The burnt fraction is 1 - exp(-a y^(m+1)), y the fraction of the duration; the fraction exp(-a) that is
+    left at the end does not burn.
+    steps determines the angles at which the curves are returned; the peak does not depend on it.
+    Work and energy balance are those of the closed part, from inlet closing to exhaust opening.
+    energy_balance_error is heat minus work minus change of internal energy, over the heat plus intake
+    pressure times swept volume. The work is an independent quadrature of the pressure, so the balance checks
+    both.
 
     References
     ----------
@@ -101,7 +103,7 @@ class CombustionCycle(Template):
 
     @require("combustion_start", "inlet_closes", remedy="begin later, or close the inlet earlier")
     def burns_after_closing(self) -> Truth:
-        """Combustion begins after the inlet is closed."""
+        """Combustion begins after the inlet closes."""
         return FIRING + self.t_s >= self.ic
 
     @require("combustion_start", "combustion_duration", "exhaust_opens", remedy="burn for a shorter time")
@@ -119,7 +121,7 @@ class CombustionCycle(Template):
 
     @shared
     def highest(self) -> Peak:
-        """The largest pressure, and where it is."""
+        """The largest pressure and its crank angle."""
         return highest(self.cylinder, self.p_s, self.p_e)
 
     @formula("1", "rod ratio")

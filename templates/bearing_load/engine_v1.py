@@ -1,7 +1,7 @@
-"""A whole engine of any layout: pins and firing, balance by orders, torque, and loads of every bearing.
+"""A whole engine of any layout: crankpin and firing angles, balance by orders, torque, all bearing loads.
 
 In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
-that need not be equal; mains with play.
+that may differ; mains with clearance.
 """
 
 from __future__ import annotations
@@ -61,62 +61,64 @@ UNLOADED = "no load, or no mains, or no crank"
 
 
 class Engine(ArticulatedEngine):
-    """A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+    """A whole engine of any layout: crankpin and firing angles, balance by orders, torque, all bearing loads.
 
     In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes;
-    cylinders that need not be equal; mains with play.
+    cylinders that may differ; mains with clearance.
 
     Limits
     ------
     Constant speed, rigid bodies in the mechanism, no friction, no gravity.
-    Seen from the flywheel, which is at the end of the largest positions, x is up, y left, and the shaft turns
-    from x to y; angles count in that sense. A reference line on the shaft stands at the crank angle.
-    Pin j stands at pin_angles from that line, its cylinder at bank_angles from x; it fires where its piston
-    is highest: pin angle = bank angle - firing angle + the pin's angle from the axis at that dead centre.
+    Seen from the flywheel, which is at the end of the largest positions, x is up, y left, and the shaft
+    rotates from x to y; angles are positive in that sense. A reference line on the shaft is at the crank
+    angle.
+    Pin j is at pin_angles from that line, its cylinder at bank_angles from x; it fires when its piston is at
+    top dead centre: pin angle = bank angle - firing angle + the pin's angle from the cylinder axis at that
+    dead centre.
     Give firing_order (equal intervals), pin_angles with firing_order, or firing_angles. With pins and order
-    each cylinder may fire in either turn of four strokes: the order is kept, and the smallest interval is
-    largest.
-    Bank angles with their signs turned describe another crank: where throws name a shared pin this is
-    refused.
+    each cylinder of a four-stroke engine may fire in either revolution: the choice keeps the order and makes
+    the smallest interval as large as possible.
+    Bank angles with opposite signs describe another crank: if throws name a shared pin this is refused.
     Positions are along the shaft, from any plane; couples are about reference_position. A couple is the sum
-    of place times force, as a vector; its moment is that vector turned by 90 deg.
+    of position times force, as a vector; its moment is that vector rotated by 90 deg.
     Fork and blade rods have one position, side-by-side rods two.
     masters names for each cylinder the one whose rod carries its rod, 0 for a rod on the crankpin. The pin of
     an articulated rod is articulation_radius from the crankpin, at articulation_angle from the axis of the
-    master rod. Both stand on one throw, at one pin and position: give pin_angles with firing_order, then each
-    fires where its own piston is highest. The stroke of an articulated cylinder is what follows; crankpin
-    load is then the load of its own pin, and the master's that of the crankpin with all rods. For balance the
-    mass at its pin counts as turning with the crankpin; shaking force and couple have its true way, and
-    orders of its piston are exact.
-    cylinder_offset is where the cylinder's axis passes beside the shaft, positive on the side to which the
+    master rod. Master and articulated rod share throw, pin and position: give pin_angles with firing_order,
+    then each fires when its own piston is at top dead centre. The stroke of an articulated cylinder is a
+    result. crankpin_load of an articulated cylinder is the load of its own pin, and that of a master the load
+    of the crankpin with all rods. For balance by orders the mass at an articulated pin counts as rotating
+    with the crankpin; shaking force and couple use its exact path, and orders of its piston are exact.
+    cylinder_offset is the distance of the cylinder's axis from the shaft, positive on the side to which the
     pin moves first; an offset of the piston pin adds to it.
-    rod_centre counts from the big end. Without rod_inertia the rod is two masses at its pins.
+    rod_centre is measured from the big end. Without rod_inertia the rod is two masses at its pins.
     crank_unbalance is that of the throw of each cylinder, at its pin and position, without the rod; two rods
-    on one pin share what is given. Webs and their counterweights add to it at web_positions; their angles
-    count from the pin of the throw, the nearest one unless web_throws says otherwise.
-    A pressure table counts from suction as in bearing_load: combustion is at 360 deg in four strokes, at 0 in
-    two. pressure_factor multiplies the pressure of a cylinder; gas_pressure is the one before that factor.
-    Valve angles count from top dead centre.
-    Orders 1 and 2 by harmonics leading are r and r²/l, as in textbooks; exact, from order 3 on and with an
-    offset they are Fourier coefficients of the exact motion. Forward parts turn with the crank. Force and
-    couple of an order are largest, forward plus backward, at its crank angle, where they point in its
-    direction; one that only turns points to x at that angle.
-    Orders are of the pistons alone; shaking force and couple are exact and of all that moves, with balance
-    shafts. Roll moment is what walls and heads put on the frame about the shaft.
-    Mean torque and power are indicated, the work of the gas less none of friction: exact, whatever the step.
-    crank_angle_step says only at which angles curves are returned. Greatest loads, energy and areas come from
-    a grid of at most 1 deg with both sides of each jump of pressure. Energy is by the trapezoidal rule less
-    the mean of the same grid, so it closes. An energy area is that between torque and mean from crossing to
-    crossing; energy_area shows at each angle the area in which it lies.
+    on one pin share the given value. Webs and their counterweights at web_positions add to it; their angles
+    are measured from the pin of the throw, which is the nearest one unless web_throws is given.
+    A pressure table begins with the intake stroke as in bearing_load: combustion is at 360 deg in four
+    strokes, at 0 in two. pressure_factor multiplies the pressure of a cylinder; gas_pressure is that before
+    the factor. Valve angles are measured from top dead centre.
+    With harmonics leading, orders 1 and 2 are r and r²/l, as in textbooks; with harmonics exact, from order 3
+    on and with an offset they are Fourier coefficients of the exact motion. Forward components rotate with
+    the crank. Force and couple of an order are largest, forward plus backward, at the given crank angle,
+    where they point in the given direction; one that only rotates points to x at that angle.
+    Orders are of the pistons alone; shaking force and couple are exact and include all moving parts and
+    balance shafts. Roll moment is that of walls and heads on the frame about the shaft.
+    Mean torque and power are indicated, from the work of the gas without friction; they are exact for any
+    step. crank_angle_step determines only the angles at which curves are returned. Greatest loads, energy and
+    areas come from a grid of at most 1 deg with both sides of each pressure jump. Energy is the trapezoidal
+    integral of torque minus its mean on the same grid, so it closes. An energy area lies between torque and
+    mean from crossing to crossing; energy_area gives at each angle the area to which it belongs.
     Main loads act from the frame on the shaft, crankpin loads from the rod on the pin, in the engine's axes;
-    rows are bearings. oil_film_cycle asks for the sense: say load_sense sleeve_on_journal.
-    main_load: determinate, every load on the two mains of its span by the lever.
-    elastic_main_load: a crank of beams on supports of support_stiffness (rigid if not given), alike in x
-    and y; torque leaves at the flywheel. With main_clearance (radial) a support pushes back by what its main
-    is displaced beyond it, from the middle of its bore, which bore_offset moves off the line. Webs twist
-    web_torsion_factor times as stiffly as St Venant's bar: against finite elements of a shaft of four throws
-    the reactions to a load on a pin then err by 0.014 of it radially and 0.045 across; with a factor of 1 by
-    0.37 across. Quasi-static: no resonance, no oil film in the clearance.
+    rows are bearings. For oil_film_cycle set load_sense to sleeve_on_journal.
+    main_load is determinate: the lever rule distributes every load to the two mains of its span.
+    elastic_main_load: a crank of beams on supports of support_stiffness (rigid if not given), equal in x and
+    y; the flywheel end takes the torque. With main_clearance (radial) a support reacts to the displacement of
+    its main beyond the clearance, measured from the centre of its bore, which bore_offset moves off the line.
+    Webs have web_torsion_factor times the torsional stiffness of a St Venant bar: relative to finite elements
+    of a four-throw shaft the reactions to a load on a pin then have errors of 0.014 of it radially and 0.045
+    tangentially; with a factor of 1, 0.37 tangentially. Quasi-static: no resonance, no oil film in the
+    clearance.
 
     References
     ----------
@@ -202,13 +204,13 @@ class Engine(ArticulatedEngine):
     @require("support_stiffness", "main_positions", missing=True,
              remedy="give one number, or one for each main")  # fmt: skip
     def stiffness_of_each_main(self) -> Truth:
-        """Each main has its stiffness."""
+        """The support stiffness is one value, or one for each main."""
         return has_one_for_each_main(self.k_s, self.z_m)
 
     @require("main_clearance", "bore_offset_x", "bore_offset_y", "main_positions", missing=True,
              remedy="give one number, or one for each main")  # fmt: skip
     def play_of_each_main(self) -> Truth:
-        """Each main has its clearance and its offset."""
+        """Clearance and offset of the mains are one value each, or one for each main."""
         return play_of_each_main(self.c_m, self.o_x, self.o_y, self.z_m)
 
     @require("crankpin_length", "web_thickness", "main_positions", "cylinder_positions",
@@ -250,7 +252,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Loads of mains with clearance; none if they have none, or the crank is not given."""
+        """Loads of mains with clearance; None without clearance or without the sections of the crank."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,

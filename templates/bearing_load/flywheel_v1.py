@@ -1,6 +1,6 @@
-"""A whole engine of equal cylinders: torque and its evenness, flywheel, balance of forces and couples.
+"""An engine of equal cylinders: torque and its fluctuation, flywheel, balance of forces and couples.
 
-Any number of cylinders that fire at equal intervals, in line or in banks (DYREMI).
+It has any number of cylinders that fire at equal intervals, in line or in banks (DYREMI).
 """
 
 from __future__ import annotations
@@ -53,36 +53,36 @@ NO_CRITERION = "needs speed_fluctuation (and a speed) or maximum_acceleration"
 
 
 class Flywheel(Cylinder):
-    """A whole engine of equal cylinders: torque and its evenness, flywheel, balance of forces and couples.
+    """An engine of equal cylinders: torque and its fluctuation, flywheel, balance of forces and couples.
 
-    Any number of cylinders that fire at equal intervals, in line or in banks (DYREMI).
+    It has any number of cylinders that fire at equal intervals, in line or in banks (DYREMI).
 
     Limits
     ------
-    Equal cylinders, equal firing intervals; the shaft is rigid and turns at constant speed.
-    The crank angle counts from where the first cylinder of the firing order begins suction (four strokes) or
-    fires (two strokes).
-    Crank i stands at −(firing interval) · (its place in the firing order, counted from 0), plus the angle of
-    its bank; angles of balancing masses count likewise, in the sense of the crank angle.
+    Equal cylinders, equal firing intervals; the shaft is rigid and rotates at constant speed.
+    The crank angle is measured from the position at which the first cylinder of the firing order begins its
+    intake stroke (four strokes) or fires (two strokes).
+    Crank i is at −(firing interval) · (its position in the firing order, from 0), plus the angle of its bank;
+    angles of balancing masses are measured likewise, in the sense of the crank angle.
     Positions are along the shaft, from any plane; couples are about reference_position.
-    Bank angles (V engines) count from the x axis in the sense of rotation; each cylinder brings its own crank
-    masses, so two rods on one pin share what is given. Bank angles with their signs
-    swapped describe another crank: each throw follows from the bank of its cylinder. Left out for banks:
-    unequal firing intervals, and articulated rods.
-    Primary and secondary amplitudes are of the reciprocating masses alone, in banks the largest on the way
-    round; the rotating couple is of the rotating masses alone. Residual forces are all of these, up to the
-    second harmonic.
-    Balancing masses (mass times radius) in the planes of flywheel and damper take away forces and couples of
-    the rotating masses.
-    The mean torque is indicated, the work of the gas less none of friction: exact, whatever the step. The
-    energy is summed over a grid of at most 1 deg with both sides of each jump of pressure, less the mean of
-    that grid; crank_angle_step says only at which angles curves are returned.
-    A flywheel inertia below zero says that what is installed suffices.
+    Bank angles (V engines) are measured from the x axis in the sense of rotation. Each cylinder includes its
+    own crank masses, so two rods on one pin share the given value. Bank angles with opposite signs describe
+    another crank: each throw follows from the bank of its cylinder. Unequal firing intervals and articulated
+    rods are not supported for banks.
+    Primary and secondary amplitudes are those of the reciprocating masses alone, in banks the largest over a
+    revolution; the rotating couple is that of the rotating masses alone. Residual forces include both, up to
+    the second harmonic.
+    Balancing masses (mass times radius) in the planes of flywheel and damper cancel forces and couples of the
+    rotating masses.
+    The mean torque is indicated, from the work of the gas without friction; it is exact for any step. The
+    energy is integrated over a grid of at most 1 deg with both sides of each pressure jump, relative to the
+    mean of that grid; crank_angle_step determines only the angles at which curves are returned.
+    A negative flywheel inertia means that the installed inertia is sufficient.
 
     Errata
     ------
     DYREMI drops r in the secondary force m_rec ω² r cos 2θ/n.
-    The errata of the loads stand at `bearing_load`.
+    The errata of the loads are listed in `bearing_load`.
 
     References
     ----------
@@ -174,7 +174,7 @@ class Flywheel(Cylinder):
 
     @require("firing_order", "cylinders", remedy="name each cylinder from 1 on once, in the order they fire")
     def each_fires_once(self) -> Truth:
-        """The firing order has every cylinder once."""
+        """The firing order contains every cylinder once."""
         return is_firing_order(self.order, self.N)
 
     @require("cylinder_positions", "cylinders", remedy="give a position for each cylinder")
@@ -209,7 +209,7 @@ class Flywheel(Cylinder):
 
     @shared
     def grid(self) -> CrankGrid:
-        """The angles over which the energy is summed."""
+        """The angles over which the energy is integrated."""
         return crank_grid(self.strokes, self.step, corners(self.gas, self.strokes, self.N))
 
     @shared

@@ -27,24 +27,24 @@ CYCLE, MEASURED = "crank_angle", "measured_angle"
 
 
 class MeasuredCurves(Template):
-    """Measured curves beside calculated ones: film, angular speed or strain over the crank angle.
+    """Measured curves compared with calculated ones: film, angular speed or strain over the crank angle.
 
-    A measurement has its own angles; it is read at those of the calculation, and the difference is stated.
-    Each curve has two criteria: the root of the mean square of its difference, and the largest difference,
-    against a limit that you give. There is no usual limit: without one a criterion is not checked.
+    A measurement has its own angles; it is interpolated at those of the calculation, and the difference is
+    stated. Each curve has two criteria: the root mean square of its difference, and the largest difference,
+    each compared with a limit that you give. There is no usual limit: without one a criterion is not checked.
 
     Limits
     ------
-    Calculation and measurement repeat with one cycle. Between its points, and from the last to the first, a
-    measurement is linear; it leaves no gap above a quarter of the cycle. Its angles plus measured_shift are
-    those of the calculation. A difference is measured less calculated. Means count each calculated angle
-    alike. Nothing is filtered, and the error of the measurement is not known here: a limit smaller than it
-    judges the instrument. The verdict holds at the calculated angles: a peak that lies between two of them
-    is not seen.
+    Calculation and measurement are periodic with one cycle. A measurement is interpolated linearly between
+    its points, and from the last to the first; it leaves no gap above a quarter of the cycle. Its angles plus
+    measured_shift are those of the calculation. A difference is measured minus calculated. In means every
+    calculated angle has the same weight. Nothing is filtered, and the error of the measurement is unknown
+    here: a limit below it would judge the instrument. The verdict applies to the calculated angles: a peak
+    between two of them is missed.
 
     References
     ----------
-    Own formulas: linear interpolation, mean, root of the mean square.
+    Own formulas: linear interpolation, mean, root mean square.
     """
 
     example = {
@@ -137,12 +137,12 @@ class MeasuredCurves(Template):
 
     @require("crank_angle", remedy="give one list of three angles or more that rise")
     def angles_rise(self) -> Truth:
-        """The angles of the calculation rise."""
+        """The angles of the calculation are in ascending order."""
         return rises(self.theta)
 
     @require("measured_angle", remedy="sort the rows of the measurement by their angle")
     def measured_angles_rise(self) -> Truth:
-        """The angles of the measurement rise."""
+        """The angles of the measurement are in ascending order."""
         return rises(self.theta_m)
 
     @require("measured_angle", "cycle", remedy="measure one whole cycle, or give its length")

@@ -42,14 +42,15 @@ class RollingBearingLife(Template):
     Limits
     ------
     Basic rating life L10 and its reliability factor a1. The factor a_ISO for lubrication, cleanliness and
-    fatigue limit is left out: a clean, well lubricated bearing lives longer, a dirty one shorter.
-    Capacities are those of the bearing's catalogue; the standard's own formulas for them are left out.
-    Loads are sizes, constant or at equal steps over one cycle at constant speed; a load that repeats counts
-    by the mean of its power p. Its direction does not count: the inner ring turns against the load.
-    An axial load is for single-row deep groove ball bearings of normal clearance. X, Y and e are linear
-    between the rows of the table and held below its first row, 0.172; beyond its last, 6.89, it is refused.
-    The equivalent load is never below the radial one.
-    The standard claims its formulas for an equivalent load up to half the dynamic capacity.
+    fatigue limit is not included: a clean, well lubricated bearing lasts longer, a dirty one shorter.
+    Capacities are those of the bearing's catalogue; the standard's own formulas for them are not included.
+    Loads are magnitudes, constant or at equal steps over one cycle at constant speed; a periodic load is
+    replaced by the mean of its power p. Its direction is ignored: the inner ring rotates relative to the
+    load.
+    An axial load applies to single-row deep groove ball bearings of normal clearance. X, Y and e are linear
+    between the rows of the table and constant below its first row, 0.172; beyond its last, 6.89, the load is
+    refused. The equivalent load is never below the radial one.
+    The standard states its formulas for an equivalent load up to half the dynamic capacity.
 
     References
     ----------

@@ -24,7 +24,7 @@ _UNREADABLE = (
     OSError, EOFError, ImportError, AttributeError, LookupError, TypeError, ValueError,
     pickle.UnpicklingError,
 )  # fmt: skip
-"""What reading of pickles may raise that are damaged, or that others have written."""
+"""Errors that reading may raise for damaged pickles, or for those of other programs."""
 
 
 def place(name: str) -> Path:

@@ -21,10 +21,10 @@ from typing import Any
 from templates.core.nearest import nearest
 
 MOST_SUGGESTED = 10
-"""Unknown names of one request that get a suggestion; a thousand typing errors are not typing errors."""
+"""Most unknown names of one request that get a suggestion; a thousand of them are not typing errors."""
 
 MOST_LISTED = 100
-"""Names that one sentence lists."""
+"""Most names that one sentence lists."""
 
 
 @dataclass(frozen=True)

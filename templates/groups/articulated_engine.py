@@ -29,7 +29,7 @@ from templates.physics.engine.offset_crank import OffsetCrank, wall_force
 
 
 class ArticulatedEngine(EngineMotion):
-    """An engine some of whose rods are articulated: they work on the big end of a master rod."""
+    """An engine in which some rods are articulated: they are attached to the big end of a master rod."""
 
     masters: Array = curve("1", "masters", along=EACH, alternative=True, integer=True, ge=0, le=32,
                            symbol=r"\mathrm{master}")  # fmt: skip
@@ -41,7 +41,7 @@ class ArticulatedEngine(EngineMotion):
     @require("masters", missing=True,
              remedy="name the cylinder whose rod carries this one, 0 for a rod on the crankpin")  # fmt: skip
     def masters_are_named(self) -> Truth:
-        """Each cylinder has a master on the crankpin, or 0."""
+        """For each cylinder, masters names a cylinder whose rod is on the crankpin, or 0."""
         return masters_are_named(self.masters, self.order, self.psi_g, self.phi_g)
 
     @require("articulation_radius", "masters", missing=True, remedy="from crankpin to the rod's pin, in mm")
@@ -52,13 +52,13 @@ class ArticulatedEngine(EngineMotion):
     @require("masters", "throws", "cylinder_positions", "pin_angles", missing=True,
              remedy="name their throws, give pin_angles with firing_order, and one position")  # fmt: skip
     def rods_share_a_pin(self) -> Truth:
-        """Articulated rods stand on the throw of their master, at its pin, position and crank radius."""
+        """Articulated rods have the throw, pin, position and crank radius of their master."""
         return rods_share_a_pin(self.crank, self.layout, self.z_i)
 
     @require("articulation_radius", "articulation_angle", "rod_length", missing=True,
              remedy="take a longer rod or a smaller radius")  # fmt: skip
     def articulated_rods_reach(self) -> Truth:
-        """Articulated rods turn all the way round."""
+        """Articulated rods are long enough for a full revolution."""
         return articulated_rods_reach(self.crank)
 
     @shared
@@ -87,7 +87,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def wall(self) -> Array:
-        """Force of each piston on its wall [N], with what articulated rods put on a master's."""
+        """Force of each piston on its wall [N], with the reaction of articulated rods on that of a master."""
         return walls_with_articulated(self.own_wall, self.motion, self.links)
 
     @shared
@@ -102,7 +102,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def moving(self) -> Parts:
-        """All that moves, by the forces that it puts on the frame."""
+        """All moving parts, by their forces on the frame."""
         omega, bank = self.omega[..., None], self.layout.bank
         return Parts(
             piston_shaking(self.m_rec, omega, self.motion, bank)

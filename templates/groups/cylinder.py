@@ -39,7 +39,7 @@ class CrankMechanism(Template):
 
     @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
     def manageable(self) -> Truth:
-        """There are at most 2 000 000 points times crank angles of 1 deg or the step."""
+        """Points times crank angles, at 1 deg or the step, are at most 2 000 000."""
         return is_manageable(self.shape_of_points(), self.strokes, self.step)
 
     @require("crank_angle_step", warning="coarse_curves",
@@ -67,17 +67,17 @@ class Cylinder(CylinderGas, CrankMechanism):
     @derived("kg*m**2", "rod inertia", symbol="I_3", shown=True, ge=0, absent=NO_INERTIA, source=DYREMI,
              remedy="no rod swings faster about its wristpin than a point mass at its centre")  # fmt: skip
     def I_3(self) -> Array:
-        """About its centre of mass."""
+        """Moment of inertia of the rod about its centre of mass."""
         return pendulum_inertia(self.m_3, self.a_g, self.tau)
 
     @require("crank_mass", "crankpin_mass", "counterweight_mass", warning="massless_crank",
              remedy="give their masses; main loads, balance and inertia are of rods alone")  # fmt: skip
     def crank_has_mass(self) -> Truth:
-        """Web, crankpin or counterweight has a mass."""
+        """At least one of web, crankpin and counterweight has a mass."""
         return (self.m_w > 0) | (self.m_cp > 0) | (self.m_cb > 0)
 
     def ladder(self) -> tuple[str, ...]:
-        """Return the levels for which the rod is known well enough."""
+        """Return the levels for which the data of the rod are sufficient."""
         known = not np.isnan(np.asarray(self.I_3)).all()
         return self.levels if known else self.levels[:1]
 
@@ -93,7 +93,7 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("mm", "rod centre from wristpin", symbol="a_{g}")
     def a_g(self) -> Array:
-        """The rest of the rod."""
+        """Distance of the rod's centre of mass from the wristpin: the rest of the rod's length."""
         return self.l - self.b_g
 
     @formula("kg", "rod mass at crankpin", symbol="m_{3A}", source=DYREMI)
@@ -108,28 +108,28 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("kg", "rotating mass", symbol="M", source=DYREMI)
     def M(self) -> Array:
-        """All that turns, as a mass at the crank radius."""
+        """All rotating parts as a mass at the crank radius."""
         return self.m_3A + self.m_w * self.g_w / self.r + self.m_cp - self.m_cb * self.g_cb / self.r
 
     @formula("kg", "reciprocating mass", symbol=r"m_\mathrm{rec}", source=DYREMI)
     def m_rec(self) -> Array:
-        """All that moves with the piston."""
+        """Mass of all parts that move with the piston."""
         return self.m_3B + self.m_4
 
     @formula("cm**2", "bore area", symbol="A")
     def A(self) -> Array:
-        """The area of the piston under the gas pressure."""
+        """Piston area under the gas pressure."""
         return np.pi * self.D**2 / 4
 
     @formula("kg*m**2", "inertia excess", symbol=r"\Delta I", source=DYREMI, absent=NO_INERTIA)
     def dI(self) -> Array:
-        """Excess of the moment of inertia of the two masses over that of the rod."""
+        """Moment of inertia of the two masses minus that of the rod."""
         return self.m_3 * self.a_g * self.b_g - self.I_3
 
     @formula("kg*m**2", "inertia correction", symbol=r"\Delta I_{c}", source=DYREMI,
              remedy="level rigid needs rod_inertia or rod_pendulum_period; take level lumped")  # fmt: skip
     def dI_c(self) -> Array:
-        """None if the rod is taken as two masses."""
+        """0 if the rod is treated as two masses."""
         return excess_at(self.level, self.dI)
 
     @shared
@@ -142,5 +142,5 @@ class Cylinder(CylinderGas, CrankMechanism):
     @formula("bar", "indicated mean effective pressure", symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
     def p_mi(self) -> Array:
-        """Exact, whatever the step."""
+        """Exact for any crank angle step."""
         return mean_effective(self.gas)

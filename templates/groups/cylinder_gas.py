@@ -1,4 +1,4 @@
-"""Group: the gas cycle of cylinders, as one cylinder and those of an engine share it."""
+"""Group: the gas cycle of cylinders, shared by the templates of one cylinder and of an engine."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from templates.physics.engine.slider_crank import steps_in
 
 
 class CylinderGas(Template):
-    """The gas cycle of cylinders; their mechanisms give speed, strokes, step and the cycle itself."""
+    """The gas cycle of cylinders; the mechanism defines speed, strokes, step and the cycle itself."""
 
     omega: Array
     strokes: Array
@@ -66,12 +66,12 @@ class CylinderGas(Template):
 
     @derived("bar", "exhaust pressure", gt=0, le=100, absent="no suction pressure is given")
     def p_e(self) -> Array:
-        """Default: the suction pressure."""
+        """Default: the intake pressure."""
         return self.p_s
 
     @require("strokes", remedy="give 2 or 4")
     def two_or_four(self) -> Truth:
-        """An engine has two strokes or four."""
+        """The engine has two or four strokes."""
         return self.strokes != 3
 
     @require("crank_angle_step", "strokes", remedy="take 1 deg, 2 deg, 5 deg or the like")
@@ -81,7 +81,7 @@ class CylinderGas(Template):
 
     @require("gas_cycle", "strokes", remedy="take otto, diesel or a table for two strokes")
     def cycle_has_its_strokes(self) -> Truth:
-        """The practical four-stroke cycle has four strokes."""
+        """The practical four-stroke cycle needs four strokes."""
         return (self.gas_cycle != "four_stroke") | (self.strokes != 2)
 
     @require("suction_pressure", remedy="an absolute pressure, with that of the crankcase", missing=True)
@@ -106,7 +106,7 @@ class CylinderGas(Template):
 
     @require("pressure_angle", remedy="give one list, ascending, a value for each pressure")
     def table_rises(self) -> Truth:
-        """The angles of the table rise strictly and are as many as its pressures."""
+        """The angles of the table are in strictly ascending order, one for each pressure."""
         return angles_rise(self.gas_cycle, self.theta_p, self.p_t)
 
     @require("pressure_angle", "pressure", "strokes",
@@ -117,7 +117,7 @@ class CylinderGas(Template):
 
     @require("pressure", remedy="leave the last point out")
     def table_closes(self) -> Truth:
-        """A last point that repeats the first has its pressure."""
+        """A last point one cycle after the first repeats its pressure."""
         return table_closes(self.gas_cycle, self.strokes, self.theta_p, self.p_t)
 
     @require("inlet_opens", "inlet_closes", "exhaust_opens", "exhaust_closes",
@@ -133,30 +133,30 @@ class CylinderGas(Template):
 
     @require("combustion_pressure", warning="pressure_falls", remedy="check pressures, ratio and exponent")
     def pressure_rises(self) -> Truth:
-        """Combustion does not begin below the pressure at the end of compression."""
+        """The combustion pressure is not below the pressure at the end of compression."""
         return (self.p_3 >= self.p_2) | (self.gas_cycle not in GIVEN_PEAK)
 
     @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
              remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
     def crankcase_is_filled(self) -> Truth:
-        """The crankcase of cycles otto, diesel and four_stroke has an absolute pressure above 0."""
+        """With cycles otto, diesel and four_stroke the crankcase has an absolute pressure above 0."""
         return crankcase_is_filled(self.gas_cycle, self.p_0)
 
     @require("pressure", "crankcase_pressure", warning="gauge_or_absolute",
              remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
     def pressures_are_of_one_kind(self) -> Truth:
-        """The pressures of the table and of the crankcase are both absolute, or both gauge."""
+        """The pressures of table and crankcase are both absolute, or both gauge."""
         is_gauge = (self.p_low < self.p_absolute) | (self.p_0 > 0)
         return is_gauge & ((self.p_low >= 0) | (self.p_0 < self.p_ambient))
 
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:
-        """The crank angle rises with time."""
+        """The crank angle increases with time."""
         return (self.omega >= 0) | (self.gas_cycle == "none")
 
     @shared
     def steps(self) -> Array:
-        """Number of steps of a cycle."""
+        """Number of steps in a cycle."""
         return steps_in(self.strokes, self.step)
 
     @shared(unit="bar")
@@ -171,20 +171,20 @@ class CylinderGas(Template):
 
     @shared(unit="bar")
     def p_absolute(self) -> Array:
-        """Least pressure of a table that is taken for absolute."""
+        """Pressure from which a table counts as absolute."""
         return np.asarray(absolute_table())
 
     @shared(unit="bar")
     def p_ambient(self) -> Array:
-        """Least pressure of a crankcase that is taken for absolute."""
+        """Pressure from which a crankcase pressure counts as absolute."""
         return np.asarray(absolute_crankcase())
 
     @shared
     def charge(self) -> Charge:
-        """What the cylinder takes in, compresses and burns."""
+        """Pressures, volume ratios and exponents of the cycle."""
         return Charge(self.p_s, self.p_e, self.p_3, self.epsilon, self.rho, self.k_c, self.k_e)
 
     @shared
     def valves(self) -> Valves:
-        """When the valves open and close."""
+        """Crank angles at which the valves open and close."""
         return Valves(self.io, self.ic, self.eo, self.ec)

@@ -1,4 +1,4 @@
-"""Group: the layout of an engine (pins, firing, places along the shaft) and its unbalance by orders."""
+"""Group: the layout of an engine (pins, firing, axial positions) and its unbalance by orders."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ SIGN = "turn the sign of bank_angles, or say split with pins_of_a_throw"
 
 
 class EngineBalance(EngineCylinders):
-    """The layout of an engine (pins, firing, places along the shaft) and its unbalance by orders."""
+    """The layout of an engine (pins, firing, axial positions) and its unbalance by orders."""
 
     order: Array = curve("1", "firing order", along=EACH, alternative=True, integer=True, ge=1, le=32,
                          symbol=r"\mathrm{order}")  # fmt: skip
@@ -99,37 +99,37 @@ class EngineBalance(EngineCylinders):
 
     @derived("mm", "reference position", symbol="z_{0}", ge=-1e6, le=1e6)
     def z_0(self) -> Array:
-        """Midway between the outermost cylinders, unless given."""
+        """Default: midway between the outermost cylinders."""
         return mid_plane(self.z_i)
 
     @require("firing_order", "pin_angles", "firing_angles", missing=True,
              remedy="give firing_order as [1, 3, 4, 2] for equal intervals")  # fmt: skip
     def layout_is_said(self) -> Truth:
-        """The layout follows from firing_order, pin_angles with it, or firing_angles."""
+        """The layout is defined by firing_order, by pin_angles with firing_order, or by firing_angles."""
         return says_layout(self.order, self.psi_g, self.phi_g)
 
     @require("firing_order", "pin_angles", "firing_angles", missing=True,
              remedy="give each a value for each cylinder")  # fmt: skip
     def one_layout(self) -> Truth:
-        """Firing order, pin angles and firing angles are lists of one length."""
+        """Firing order, pin angles and firing angles are lists of equal length."""
         return is_one_layout(self.order, self.psi_g, self.phi_g)
 
     @require("firing_order", missing=True, remedy="name each cylinder from 1 on once, in the order they fire")
     def each_fires_once(self) -> Truth:
-        """The firing order has every cylinder once."""
+        """The firing order contains every cylinder once."""
         return is_order(self.order, self.psi_g, self.phi_g)
 
     @require("pin_angles", "firing_order", "firing_angles", missing=True,
              remedy="give firing_order too, or take gas_cycle none")  # fmt: skip
     def times_are_said(self) -> Truth:
-        """In four strokes pin angles alone do not say in which turn a cylinder fires; gas forces need it."""
+        """With gas forces a four-stroke engine needs firing data: pin angles leave two revolutions."""
         return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g, self.gas_cycle)
 
     @require("bank_angles", "cylinder_offset", "stroke", "crank_radius", "rod_length", "bore", "rod_mass",
              "rod_centre", "rod_inertia", "piston_mass", "crank_unbalance", "pressure_factor", missing=True,
              remedy="give one number, or a list with one for each cylinder")  # fmt: skip
     def one_for_each(self) -> Truth:
-        """What differs between cylinders has one value for each of them."""
+        """Inputs that differ between cylinders have one value for each cylinder."""
         return has_one_each(
             (self.beta, self.e, self.s, self.r_g, self.l, self.D, self.m_3, self.b_g, self.I_3, self.m_4,
              self.U_c, self.f_p),
@@ -138,12 +138,12 @@ class EngineBalance(EngineCylinders):
 
     @require("bank_angles", remedy="give one list of angles")
     def one_set_of_banks(self) -> Truth:
-        """The banks are those of one engine."""
+        """The bank angles describe a single engine."""
         return is_one_list(self.beta)
 
     @require("orders", remedy="give one list of whole orders, such as [1, 2, 4]")
     def one_set_of_orders(self) -> Truth:
-        """The orders are one list."""
+        """The orders are a single list."""
         return orders_are_whole(self.h)
 
     @require("cylinder_positions", missing=True, remedy="give a position for each cylinder, in mm")
@@ -159,7 +159,7 @@ class EngineBalance(EngineCylinders):
     @require("pin_angles", "firing_order", missing=True,
              remedy="turn the firing order, or give firing_angles")  # fmt: skip
     def order_has_times(self) -> Truth:
-        """With these pins the cylinders can fire in this order within one cycle."""
+        """With these pin angles the cylinders can fire in this order within one cycle."""
         return has_times(self.layout)
 
     @require("pin_angles", "firing_angles", "bank_angles", missing=True,
@@ -176,20 +176,20 @@ class EngineBalance(EngineCylinders):
 
     @require("throws", "bank_angles", "pins_of_a_throw", missing=True, remedy=SIGN)
     def pins_are_shared(self) -> Truth:
-        """Cylinders on one throw share its pin."""
+        """Cylinders on the same throw share its pin angle."""
         return pins_are_shared(self.layout, self.shares)
 
     @require("web_positions", "web_unbalance", "counterweights", "web_throws", missing=True,
              remedy="give web_positions as one list, and throws that exist")  # fmt: skip
     def webs_are_whole(self) -> Truth:
-        """Webs with an unbalance or a counterweight have their places."""
+        """Webs with an unbalance or a counterweight have positions."""
         return webs_are_whole(self.z_w, self.U_w, self.U_k, self.t_w, self.layout.throws)
 
     @require("crank_unbalance", "web_unbalance", "counterweights", warning="massless_crank",
              remedy="give crank_unbalance, or web_unbalance, counterweights and web_positions; main loads"
              " and balance are of rods and pistons alone")  # fmt: skip
     def crank_has_mass(self) -> Truth:
-        """Throws or webs have an unbalance."""
+        """At least one throw or web has an unbalance."""
         return has_any_unbalance(self.U_c, self.U_w, self.U_k)
 
     @shared
@@ -207,7 +207,7 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def web_places(self) -> Array:
-        """Positions of the webs [m]; none if none are given."""
+        """Positions of the webs [m]; empty if none are given."""
         return or_none(self.z_w)
 
     @shared
@@ -225,7 +225,7 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def turning(self) -> tuple[Rotors, Rotors]:
-        """All that turns with the crank: throws with the rods' big ends, and webs."""
+        """All parts that rotate with the crank: throws with the big ends of the rods, and webs."""
         return (
             Rotors(
                 self.throw_unbalance + self.rods.at_crank * self.crank.r * np.exp(1j * self.layout.pin),
@@ -236,12 +236,12 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def rotating(self) -> Phasor:
-        """Force of all that turns [N] at crank angle 0."""
+        """Force of all rotating parts [N] at crank angle 0."""
         return rotating_sum([(one.unbalance, one.place) for one in self.turning], self.omega, None)
 
     @shared
     def rotating_couples(self) -> Phasor:
-        """Couple of all that turns about the reference position [N m] at crank angle 0."""
+        """Couple of all rotating parts about the reference position [N m] at crank angle 0."""
         return rotating_sum([(one.unbalance, one.place) for one in self.turning], self.omega, self.z_0)
 
     @shared
@@ -285,12 +285,12 @@ class EngineBalance(EngineCylinders):
 
     @profile("deg", "pin split", along="pin_split", symbol=r"\Delta\psi")
     def dpsi(self) -> Array:
-        """Between the pins of each throw."""
+        """Largest angle between the pins of each throw."""
         return pin_splits(self.layout)
 
     @formula("N", "rotating force", symbol="F_{r}")
     def F_r(self) -> Array:
-        """Force of all masses that turn with the crank."""
+        """Force of all masses that rotate with the crank."""
         return force_size(self.rotating)
 
     @formula("deg", "rotating force angle", symbol=r"\gamma_{F}")
@@ -300,7 +300,7 @@ class EngineBalance(EngineCylinders):
 
     @formula("N*m", "rotating couple", symbol="C_{r}")
     def C_r(self) -> Array:
-        """Couple of all masses that turn with the crank."""
+        """Couple of all masses that rotate with the crank."""
         return couple_size(self.rotating_couples)
 
     @formula("deg", "rotating couple angle", symbol=r"\gamma_{C}")
@@ -311,13 +311,13 @@ class EngineBalance(EngineCylinders):
     @profile("N", "order force forward", along=ORDERS, symbol=r"F_\mathrm{fwd}",
              latex=r"\left|\tfrac12\sum w\,e^{i(\beta+h(\psi-\beta))}\right|")  # fmt: skip
     def F_f(self) -> Array:
-        """Part of the force that turns with the crank."""
+        """Component of the force that rotates with the crank."""
         return forward_force(self.forces)
 
     @profile("N", "order force backward", along=ORDERS, symbol=r"F_\mathrm{bwd}",
              latex=r"\left|\tfrac12\sum w\,e^{i(\beta-h(\psi-\beta))}\right|")  # fmt: skip
     def F_b(self) -> Array:
-        """Part of the force that turns against the crank."""
+        """Component of the force that rotates against the crank."""
         return backward_force(self.forces)
 
     @profile("deg", "order force crank angle", along=ORDERS, symbol=r"\theta_{F}")
@@ -333,13 +333,13 @@ class EngineBalance(EngineCylinders):
     @profile("N*m", "order couple forward", along=ORDERS, symbol=r"C_\mathrm{fwd}",
              latex=r"\left|\tfrac12\sum z\,w\,e^{i(\beta+h(\psi-\beta))}\right|")  # fmt: skip
     def C_f(self) -> Array:
-        """Part of the couple that turns with the crank."""
+        """Component of the couple that rotates with the crank."""
         return forward_couple(self.couples)
 
     @profile("N*m", "order couple backward", along=ORDERS, symbol=r"C_\mathrm{bwd}",
              latex=r"\left|\tfrac12\sum z\,w\,e^{i(\beta-h(\psi-\beta))}\right|")  # fmt: skip
     def C_b(self) -> Array:
-        """Part of the couple that turns against the crank."""
+        """Component of the couple that rotates against the crank."""
         return backward_couple(self.couples)
 
     @profile("deg", "order couple crank angle", along=ORDERS, symbol=r"\theta_{C}")

@@ -13,7 +13,7 @@ EACH = "cylinders"
 
 
 class CylinderSizes(Template):
-    """The mechanisms of an engine's cylinders, which need not be equal."""
+    """The crank mechanisms of an engine's cylinders, which may differ."""
 
     omega: Array = given("rpm", "speed", ge=-1e6, le=1e6)
     strokes: Array = given("1", "strokes", symbol="z", integer=True, single=True, ge=2, le=4)
@@ -35,12 +35,12 @@ class CylinderSizes(Template):
 
     @require("stroke", "crank_radius", remedy="give one of them, in mm", missing=True)
     def one_of_two(self) -> Truth:
-        """Either the stroke or the crank radius is given."""
+        """Either the stroke or the crank radius is given, not both."""
         return is_either(self.s, self.r_g)
 
     @require("rod_length", "stroke", "crank_radius", "cylinder_offset", remedy="take a longer rod")
     def rod_is_long_enough(self) -> Truth:
-        """The rod is longer than crank radius and offset together."""
+        """The rod is longer than crank radius plus offset."""
         return turns_through(self.s, self.r_g, self.l, self.e)
 
     @require("rod_centre", "rod_length", remedy="it is counted from the big end")
@@ -50,7 +50,7 @@ class CylinderSizes(Template):
 
 
 class EngineCylinders(CylinderGas, CylinderSizes):
-    """The cylinders of an engine that need not be equal, their mechanisms and their gas."""
+    """The cylinders of an engine, which may differ, with their mechanisms and their gas."""
 
     @shared
     def crank(self) -> OffsetCrank:

@@ -1,4 +1,4 @@
-"""Group: forces of rods and walls, torque, energy and shaking forces of an engine over its cycle."""
+"""Group: rod and wall forces, torque, energy and shaking forces of an engine over its cycle."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ STILL = "no torque that varies"
 
 
 class EngineMotion(EngineBalance):
-    """What an engine does over its cycle: forces of rods and walls, torque, energy, shaking."""
+    """Rod and wall forces, torque, energy and shaking forces of an engine over its cycle."""
 
     U_b: Array = curve("kg*mm", "balancer unbalance", along=SHAFTS, alternative=True, ge=0, le=1e8)
     i_b: Array = curve("1", "balancer ratios", along=SHAFTS, alternative=True, integer=True, ge=-4, le=4)
@@ -52,7 +52,7 @@ class EngineMotion(EngineBalance):
 
     @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
     def manageable(self) -> Truth:
-        """There are at most 6 000 000 points times cylinders times crank angles of 1 deg or the step."""
+        """Points times cylinders times crank angles, at 1 deg or the step, are at most 6 000 000."""
         return is_manageable(self.shape_of_points(), self.layout.throw, self.strokes, self.step)
 
     @require("crank_angle_step", warning="coarse_curves",
@@ -64,7 +64,7 @@ class EngineMotion(EngineBalance):
     @require("balancer_unbalance", "balancer_ratios", "balancer_positions", missing=True,
              remedy="give three lists, of one value for each balance shaft")  # fmt: skip
     def balancers_are_whole(self) -> Truth:
-        """Each balance shaft has an unbalance, a ratio to the crank's speed and a position."""
+        """Each balance shaft has an unbalance, a speed ratio to the crank and a position."""
         return balancers_are_whole(self.U_b, self.i_b, self.z_b)
 
     @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
@@ -94,7 +94,7 @@ class EngineMotion(EngineBalance):
 
     @shared
     def axial(self) -> Array:
-        """Force along each cylinder by which the crank moves the piston against the gas [N]."""
+        """Force along each cylinder with which the crank drives the piston against the gas [N]."""
         return axial_force(self.m_rec, self.omega[..., None], self.motion, self.gas_forces)
 
     @shared
@@ -119,13 +119,13 @@ class EngineMotion(EngineBalance):
 
     @shared
     def rotors(self) -> tuple[tuple[Vectors, Array], ...]:
-        """Forces of all that turns at constant speed [N], and their places [m]."""
+        """Forces of all parts that rotate at constant speed [N], and their positions [m]."""
         rotors = (*self.turning, self.balancers)
         return tuple((one.forces(self.omega, self.grid.theta), one.place) for one in rotors)
 
     @shared
     def moving(self) -> Parts:
-        """All that moves, by the forces that it puts on the frame."""
+        """All moving parts, by their forces on the frame."""
         return Parts(
             piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank),
             self.places,
@@ -134,12 +134,12 @@ class EngineMotion(EngineBalance):
 
     @shared
     def shaking(self) -> Vectors:
-        """Force of all that moves on the frame [N], complex."""
+        """Force of all moving parts on the frame [N], complex."""
         return self.moving.resultant()
 
     @shared
     def couple(self) -> Vectors:
-        """Sum of place times force of all that moves [N m], complex."""
+        """Sum of position times force of all moving parts [N m], complex."""
         return self.moving.couple(self.z_0)
 
     @profile(
@@ -167,13 +167,13 @@ class EngineMotion(EngineBalance):
     @profile("bar", "indicated mean effective pressure", along=EACH, symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
     def p_mi(self) -> Array:
-        """Value of each cylinder; it does not depend on the step."""
+        """Value for each cylinder, independent of the step."""
         return indicated(self.gas, self.f_p, self.layout)
 
     @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}",
              latex=r"\frac{1}{\pi\,z}\sum p_{mi}\,A\,s")  # fmt: skip
     def T_mean(self) -> Array:
-        """Mean torque from the work of the gas; it does not depend on the step."""
+        """Mean torque from the work of the gas, independent of the step."""
         return torque_of_work(self.p_mi, self.D, self.crank.stroke, self.strokes)
 
     @formula("kW", "indicated mean power", name="mean_power", symbol="P")
@@ -184,22 +184,22 @@ class EngineMotion(EngineBalance):
     @profile("J", "running energy", along=CYCLE, symbol="E_{r}",
              latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
     def E_r(self) -> Array:
-        """Energy from the first angle on."""
+        """Energy since the first angle."""
         return energy_curve(self.energies, self.grid)
 
     @formula("J", "energy fluctuation", symbol=r"\Delta E")
     def dE(self) -> Array:
-        """Largest less smallest running energy, whatever the step."""
+        """Largest minus smallest running energy, independent of the step."""
         return swing_of(self.energies)
 
     @profile("J", "energy area", along=CYCLE, symbol="A_{E}")
     def A_E(self) -> Array:
-        """The whole area in which each angle lies."""
+        """The whole energy area to which each angle belongs."""
         return area_curve(self.theta, self.torques, self.grid)
 
     @text("energy areas", absent=STILL)
     def areas(self) -> str | Array:
-        """All of them."""
+        """All energy areas."""
         return areas_in_words(self.torques, self.grid)
 
     @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
@@ -214,7 +214,7 @@ class EngineMotion(EngineBalance):
 
     @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
     def F_max(self) -> Array:
-        """Largest force over the cycle; it does not depend on the step."""
+        """Largest force over the cycle, independent of the step."""
         return greatest_force(self.shaking)
 
     @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")

@@ -1,4 +1,4 @@
-"""Group: a bearing over a cycle, and the groove and holes that feed it."""
+"""Group: a bearing over a cycle, and the groove and holes that supply it with oil."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ EXAMPLE: dict[str, object] = {
 
 
 class FedBearing(Template):
-    """Load, speeds and sizes of a bearing over a cycle, and the groove and holes that feed it."""
+    """Load, speeds and sizes of a bearing over a cycle, and the groove and holes that supply it with oil."""
 
     theta: Array = curve("deg", "crank angle", symbol=r"\theta", ge=-720, le=1440)
     F_x: Array = curve("N", "load x")
@@ -91,22 +91,22 @@ class FedBearing(Template):
 
     @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it in rpm where the journal rests")
     def Omega(self) -> Array:
-        """Speed of the crank; the mean of the journal unless it is given."""
+        """Speed of the crank; default: the mean speed of the journal."""
         return mean_speed(self.omega_J)
 
     @derived("mm", "sleeve hole arc", symbol="a_{B}", gt=0, absent="the sleeve has no hole")
     def a_B(self) -> Array:
-        """Extent of the hole along the circumference; as its length unless it is given."""
+        """Circumferential extent of the hole; default: its length."""
         return 1 * self.l_B
 
     @derived("mm", "pin hole arc", symbol="a_{J}", gt=0, absent="the pin has no hole")
     def a_J(self) -> Array:
-        """Extent of the hole along the circumference; as its length unless it is given."""
+        """Circumferential extent of the hole; default: its length."""
         return 1 * self.l_J
 
     @require("crank_angle", remedy="give 12 to 3600 angles in deg, without the first again at the end")
     def one_cycle(self) -> Truth:
-        """The crank angles rise and cover one cycle of 360° or 720° once."""
+        """The crank angles ascend and cover one cycle of 360° or 720° once."""
         return bool(np.isfinite(self.period))
 
     @require("diametral_clearance", "bearing_diameter", remedy="give bore less journal diameter, in mm")
@@ -116,17 +116,17 @@ class FedBearing(Template):
 
     @require("groove_width", "bearing_width", remedy="give the groove's width in mm, across the bearing")
     def groove_within_bearing(self) -> Truth:
-        """The groove takes at most 95 % of the bearing's width."""
+        """The width of the groove is at most 95 % of that of the bearing."""
         return within_bearing(self.W_g, self.W, 0 * self.W_g, self.D)
 
     @require("sleeve_hole_length", "sleeve_hole_arc", "bearing_width", remedy="give both in mm")
     def sleeve_hole_within_bearing(self) -> Truth:
-        """The sleeve's hole takes at most 95 % of the bearing's width and goes around once at most."""
+        """The sleeve's hole covers at most 95 % of the bearing's width and extends at most once around."""
         return within_bearing(self.l_B, self.W, self.a_B, self.D)
 
     @require("pin_hole_length", "pin_hole_arc", "bearing_width", remedy="give both in mm")
     def pin_hole_within_bearing(self) -> Truth:
-        """The pin's hole takes at most 95 % of the bearing's width and goes around once at most."""
+        """The pin's hole covers at most 95 % of the bearing's width and extends at most once around."""
         return within_bearing(self.l_J, self.W, self.a_J, self.D)
 
     @require("groove_width", "sleeve_hole_length", "pin_hole_length", missing=True, remedy=DESCRIBE)
@@ -136,32 +136,32 @@ class FedBearing(Template):
 
     @require("oil_supply", warning="unused_input", remedy="leave it out, or the groove and holes")
     def flooded_ends_count(self) -> Truth:
-        """Flooded ends count where neither a groove nor a hole is given."""
+        """Flooded ends apply only without groove and holes."""
         return (self.feeding.count == 0) | (self.fed_by != "flooded_ends")
 
     @require("supply_pressure", missing=True, remedy="give the pressure above ambient, such as 4 bar")
     def fed_under_pressure(self) -> Truth:
-        """The supply pressure is known where a groove or a hole feeds oil."""
+        """The supply pressure is given if there is a groove or hole."""
         return np.isfinite(self.p_s) | (self.feeding.count == 0)
 
     @require("sleeve_speed", "frame_speed", remedy=SLEEVE_BACK)
     def sleeve_comes_back(self) -> Truth:
-        """A sleeve with a hole or a groove that ends is back at its place in the frame after the cycle."""
+        """A sleeve with a hole or a partial groove is back at its position in the frame after the cycle."""
         return is_back(self.motion, self.omega_B, self.feeding.sleeve_holed | self.feeding.partial())
 
     @require("speed", "crank_speed", "frame_speed", remedy=PIN_BACK)
     def journal_comes_back(self) -> Truth:
-        """A journal with a hole is back at its place in the frame after the cycle."""
+        """A journal with a hole is back at its position in the frame after the cycle."""
         return is_back(self.motion, self.omega_J, self.feeding.pin_holed)
 
     @shared
     def period(self) -> Array:
-        """The cycle [rad]; NaN where the angles are none."""
+        """The cycle [rad]; NaN if the angles do not cover one."""
         return cycle_length(self.theta)
 
     @formula("deg", "cycle", symbol="T")
     def cycle(self) -> Array:
-        """Crank angle from the first value until the load repeats."""
+        """Crank angle after which the load repeats."""
         return cycle_length(self.theta)
 
     @formula("1", "relative clearance", symbol=r"\psi")
@@ -188,7 +188,7 @@ class FedBearing(Template):
     @formula("1", "inlets", symbol="n_{F}", remedy=FED, per_level={"supplied": limits(ge=1)},
              latex=r"\text{number of groove, hole in the sleeve and hole in the pin}")  # fmt: skip
     def inlets(self) -> Array:
-        """Number of groove, sleeve hole and pin hole that exist."""
+        """Number of inlets among groove, sleeve hole and pin hole."""
         return self.feeding.count
 
     @text("supply")
@@ -202,7 +202,7 @@ class FedBearing(Template):
         per_level={"mobility_grooved": limits(0.02, 5)},
     )  # fmt: skip
     def b_g(self) -> Array:
-        """Width over diameter of each land beside the groove."""
+        """Width over diameter of each land next to the groove."""
         return (self.W - self.W_g) / (2 * self.D)
 
     @formula("N", "largest load", symbol=r"F_{max}")
@@ -212,7 +212,7 @@ class FedBearing(Template):
 
     @shared
     def motion(self) -> Duty:
-        """Duty of the bearing, with an unscaled load."""
+        """Loads and speeds of the bearing, with an unscaled load."""
         sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
         return Duty(
             self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,

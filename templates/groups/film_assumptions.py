@@ -1,4 +1,4 @@
-"""What models of films take for granted and what makes a bearing look safer, as answers list it."""
+"""Assumptions of film models on the unsafe side, as answers list them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Criteria that films of bearings of several kinds share."""
+"""Criteria shared by films of several kinds of bearings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ISOVISCOUS: dict[str, object] = {
 
 
 def hot_oil(temperature: str) -> dict[str, object]:
-    """Return the criterion of the hottest oil with which plain bearings run at all, for a temperature."""
+    """Return the criterion for the highest oil temperature at which plain bearings operate."""
     return {
         "require": f"{temperature} <= 125 degC",
         "words": "the oil is no hotter than plain bearings run with, in exceptional cases too",
@@ -22,7 +22,7 @@ def hot_oil(temperature: str) -> dict[str, object]:
 
 
 def temperature(output: str, words: str) -> dict[str, object]:
-    """Return the criterion of the temperature that the bearing material bears, for an output."""
+    """Return the criterion for the permissible temperature of the bearing material, for an output."""
     return {
         "require": f"{output} <= permissible_temperature",
         "words": words,
@@ -37,7 +37,7 @@ def temperature(output: str, words: str) -> dict[str, object]:
 
 
 def film_exists(thickness: str = "minimum_film_thickness") -> dict[str, object]:
-    """Return the criterion that there is a film at all, for the relation that gives its thickness."""
+    """Return the criterion that a full film exists, for the relation that gives its thickness."""
     return {
         "require": f"{thickness} >= 0.05 um",
         "words": "the film is not thinner than the finest surfaces are rough",

@@ -1,4 +1,4 @@
-"""Group: a journal bearing's load, size and speeds, and the ratios that its film depends on."""
+"""Group: load, size and speeds of a journal bearing, and the ratios on which its film depends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ ISO = "ISO 7902-1:1998"
 
 
 class Journal(Template):
-    """A journal bearing's load, size and speeds."""
+    """Load, size and speeds of a journal bearing."""
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))
     c: Array = given("mm", "diametral clearance", gt=0)
@@ -26,7 +26,7 @@ class Journal(Template):
 
     @formula("mm", "journal diameter")
     def d(self) -> Array:
-        """The bore minus the clearance."""
+        """Bore diameter minus clearance."""
         return self.D - self.c
 
     @formula("1", "relative clearance", symbol=r"\psi", source=ISO)
@@ -46,7 +46,7 @@ class Journal(Template):
         remedy="without it there is no film: speed + sleeve speed must differ from twice the load speed",
     )  # fmt: skip
     def omega_h(self) -> Array:
-        """Speed of the wedge: journal and sleeve relative to the load."""
+        """Hydrodynamic speed: that of journal and sleeve relative to the load."""
         return hydrodynamic_speed(self.omega_J, self.omega_B, self.omega_F)
 
     @formula("rad/s", "sliding speed", symbol=r"\omega_{s}")

@@ -46,7 +46,7 @@ BELOW_POLE = "temperature_1 or temperature_2 lies below the pole of Vogel's law,
 
 
 class Oil(Template):
-    """An oil by grade or by two viscosities, and its viscosity at a film's temperature."""
+    """An oil by grade or by two viscosities, and its viscosity at the film temperature."""
 
     T_film: Array  # a formula of the template: the temperature of its film [K], NaN without one
 
@@ -72,14 +72,14 @@ class Oil(Template):
         "delta_degC", "Vogel slope", symbol="b_{V}", shown=True, ge=0, source="Vogel 1921", absent=BELOW_POLE
     )
     def b_V(self) -> Array:
-        """Through the two viscosities."""
+        """Vogel's slope from the two viscosities."""
         return vogel_slope(self.eta_1, self.T_1, self.eta_2, self.T_2, self.c_V)
 
     @derived(
         "mPa*s", "Vogel factor", symbol="a_{V}", shown=True, gt=0, source="Vogel 1921", absent=BELOW_POLE
     )
     def a_V(self) -> Array:
-        """Through the first viscosity."""
+        """Vogel's factor from the first viscosity."""
         return vogel_factor(self.eta_1, self.T_1, self.b_V, self.c_V)
 
     @require("temperature_1", "temperature_2", remedy="give the viscosity at two temperatures")
@@ -89,44 +89,44 @@ class Oil(Template):
 
     @require("kinematic_viscosity_1", "kinematic_viscosity_2", remedy="swap the two viscosities")
     def oil_thins_when_hot(self) -> Truth:
-        """The oil is not thicker at the higher temperature."""
+        """The viscosity is not higher at the higher temperature."""
         return (self.nu_1 - self.nu_2) * (self.T_2 - self.T_1) >= 0
 
     @require("viscosity_law", remedy="say viscosity_law vogel, or leave out vogel_factor and vogel_slope")
     def vogel_is_asked_for(self) -> Truth:
-        """Vogel's constants are given for Vogel's law only."""
+        """Vogel's constants are given only with Vogel's law."""
         return (self.law == "vogel") | (np.isnan(self.as_given("a_V")) & np.isnan(self.as_given("b_V")))
 
     @require("vogel_factor", "vogel_slope", remedy="the one left out would be that of another oil")
     def vogel_is_whole(self) -> Truth:
-        """Vogel's factor and slope are given both, or neither."""
+        """Vogel's factor and slope are given together, or neither."""
         return np.isnan(self.as_given("a_V")) == np.isnan(self.as_given("b_V"))
 
     @require("temperature_1", "temperature_2", "vogel_offset", remedy="give viscosities above it")
     def vogel_is_known(self) -> Truth:
-        """Vogel's law is known from two temperatures above its pole, at minus its offset in degC."""
+        """Both temperatures of Vogel's law are above its pole, which is at minus its offset in degC."""
         return (self.law != "vogel") | (np.isfinite(self.a_V) & np.isfinite(self.b_V))
 
     @formula("1", "Walther slope", symbol="B", source="ASTM D341")
     def B(self) -> Array:
-        """Through the two viscosities."""
+        """Walther's slope from the two viscosities."""
         return (double_logarithm(self.nu_1) - double_logarithm(self.nu_2)) / (
             temperature_logarithm(self.T_2) - temperature_logarithm(self.T_1)
         )
 
     @formula("1", "Walther intercept", symbol="A", source="ASTM D341")
     def A(self) -> Array:
-        """Through the second viscosity."""
+        """Walther's intercept from the second viscosity."""
         return double_logarithm(self.nu_2) + self.B * temperature_logarithm(self.T_2)
 
     @formula("mPa*s", "dynamic viscosity 1", symbol=r"\eta_{1}")
     def eta_1(self) -> Array:
-        """At temperature 1."""
+        """Viscosity at temperature 1."""
         return self.nu_1 * density(self.rho_ref, self.T_1, self.T_ref)
 
     @formula("mPa*s", "dynamic viscosity 2", symbol=r"\eta_{2}")
     def eta_2(self) -> Array:
-        """At temperature 2."""
+        """Viscosity at temperature 2."""
         return self.nu_2 * density(self.rho_ref, self.T_2, self.T_ref)
 
     @formula(
@@ -134,7 +134,7 @@ class Oil(Template):
         remedy="the linear law ends 1428 K above its reference",
     )  # fmt: skip
     def rho(self) -> Array:
-        """At the film's temperature, or where there is none at that of reference."""
+        """Density at the film temperature, or at the reference temperature if there is none."""
         return density(self.rho_ref, or_reference(self.T_film, self.T_ref), self.T_ref)
 
     @derived(
@@ -151,12 +151,12 @@ class Oil(Template):
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:
-        """The dynamic viscosity over the density."""
+        """Dynamic viscosity over density."""
         return self.eta / self.rho
 
 
 class WarmOil(Oil):
-    """An oil whose temperature in a film is a given mean, or follows from a heat balance, or is not known."""
+    """An oil whose film temperature is a given mean, follows from a heat balance, or is unknown."""
 
     balance: HeatBalance  # shared by the template: NaN where no balance is requested
 
@@ -172,7 +172,7 @@ class WarmOil(Oil):
         remedy="both; or supply_temperature; or ambient_temperature, heat_transfer; or dynamic_viscosity",
     )  # fmt: skip
     def viscosity_follows(self) -> Truth:
-        """The viscosity follows from some temperature, or is given."""
+        """The viscosity is given, or follows from a temperature."""
         return self.viscosity_is_known
 
     @require(
@@ -180,7 +180,7 @@ class WarmOil(Oil):
         remedy="leave them out, or the supply and ambient temperatures",
     )  # fmt: skip
     def mean_not_overruled(self) -> Truth:
-        """Inlet and outlet temperature are not used where a heat balance gives the film temperature."""
+        """Inlet and outlet temperature are used only if no heat balance gives the film temperature."""
         return self.mean_is_used
 
     @shared
@@ -195,7 +195,7 @@ class WarmOil(Oil):
 
     @formula("degC", "service temperature", absent="needs oil_inlet_temperature and oil_outlet_temperature")
     def T(self) -> Array:
-        """The mean of inlet and outlet."""
+        """Mean of inlet and outlet temperature."""
         return (self.T_in + self.T_out) / 2
 
     @formula(
@@ -203,20 +203,20 @@ class WarmOil(Oil):
         remedy="the heat balance finds none below 500 °C: cool more, or lower load or speed",
     )  # fmt: skip
     def T_film(self) -> Array:
-        """Temperature by the heat balance, or the mean temperature."""
+        """Temperature from the heat balance, or the mean temperature."""
         return film_temperature(self.T, self.balance)
 
     @formula("degC", "outlet temperature", symbol=r"T_{e}", absent=NO_SUPPLY, source=ISO)
     def T_e(self) -> Array:
-        """Temperature of the leaving oil, by the heat balance."""
+        """Temperature of the outflowing oil, from the heat balance."""
         return outlet_temperature(self.balance)
 
     @formula("delta_degC", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY, source=ISO)
     def rise(self) -> Array:
-        """Difference between outlet and supply."""
+        """Difference between outlet and supply temperature."""
         return self.T_e - self.T_s
 
     @formula("1", "heat balance residual", absent=NO_BALANCE)
     def residual(self) -> Array:
-        """Share of the heat that the balance does not account for."""
+        """Fraction of the heat that the balance does not account for."""
         return self.balance.residual

@@ -1,4 +1,4 @@
-"""Values of a petrol engine of 86 mm bore and stroke, from which examples and designs of engines begin."""
+"""Values of a petrol engine of 86 mm bore and stroke, from which examples and designs of engines start."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ PETROL_CYCLE: dict[str, Any] = {
     "exhaust_opens": "492 deg",
     "crankcase_pressure": "1 bar",
 }
-"""Its gas cycle, with the valves of the exchange still at the dead centre."""
+"""Gas cycle of the engine, with the valves of the gas exchange at dead centre."""
 
 OVERLAP: dict[str, Any] = {"inlet_opens": "705 deg", "exhaust_closes": "14 deg"}
-"""The other two angles of its valves."""
+"""The other two valve angles, with overlap."""
 
 SHAFT: dict[str, Any] = {
     "web_unbalance": "12 kg*mm",
@@ -32,7 +32,7 @@ SHAFT: dict[str, Any] = {
     "web_thickness": "18 mm",
     "web_width": "80 mm",
 }
-"""Its crankshaft, whatever the number of throws."""
+"""Crankshaft of the engine, for any number of throws."""
 
 IN_LINE_FOUR: dict[str, Any] = {
     "speed": "4500 rpm",
@@ -51,4 +51,4 @@ IN_LINE_FOUR: dict[str, Any] = {
     "web_positions": {"value": [22, 72, 116, 166, 210, 260, 304, 354], "unit": "mm"},
     **SHAFT,
 }
-"""Its inputs of `engine` with four cylinders in line."""
+"""Inputs of `engine` with four cylinders in line."""

@@ -1,4 +1,4 @@
-"""Group: the fatigue strength of steel, by its ultimate strength, Marin's factors, and notch sensitivity."""
+"""Group: the fatigue strength of steel, from its ultimate strength, Marin factors and notch sensitivity."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NEUBER = "Neuber 1937, by Budynas, Nisbett 2015"
 
 
 class SteelEndurance(Template):
-    """What steel bears in fatigue, by its ultimate strength and Marin's factors; what a notch counts."""
+    """Fatigue strength of steel from its ultimate strength and Marin factors, and the effect of a notch."""
 
     sigma_u: Array = given("MPa", "ultimate strength", symbol="S_u", ge=50, le=5000)
     sigma_y: Array = given("MPa", "yield strength", symbol="S_y", alternative=True, gt=0, le=5000)
@@ -44,7 +44,7 @@ class SteelEndurance(Template):
     @require("notch_radius", "stress_concentration_factor", missing=True,
              remedy="give its radius; beyond 1750 MPa its notch_sensitivity")  # fmt: skip
     def notch_is_known(self) -> Truth:
-        """A stress concentration factor comes with what its notch sensitivity needs."""
+        """A stress concentration factor is given with the data of its notch sensitivity."""
         return both_or_none(self.K_t, self.q)
 
     @formula("MPa", "specimen limit", symbol="S_e'", source=SHIGLEY)
@@ -54,37 +54,37 @@ class SteelEndurance(Template):
 
     @formula("1", "surface factor", symbol="k_a", source=SHIGLEY)
     def k_a(self) -> Array:
-        """Marin's factor for the surface."""
+        """Marin factor for the surface."""
         return surface_factor(self.surface, self.sigma_u)
 
     @formula("1", "size factor", symbol="k_b", source=SHIGLEY)
     def k_b(self) -> Array:
-        """Marin's factor for the size."""
+        """Marin factor for the size."""
         return size_factor(self.d)
 
     @formula("1", "loading factor", symbol="k_c", source=SHIGLEY)
     def k_c(self) -> Array:
-        """Marin's factor for the loading."""
+        """Marin factor for the loading."""
         return loading_factor(self.loading)
 
     @formula("1", "reliability factor", symbol="k_e", source=SHIGLEY)
     def k_e(self) -> Array:
-        """Marin's factor for the reliability."""
+        """Marin factor for the reliability."""
         return reliability_factor(self.R)
 
     @derived("MPa", "endurance limit", symbol="S_e", shown=True, gt=0, le=5000, source="Marin 1962")
     def S_e(self) -> Array:
-        """Default: the limit of a specimen times Marin's factors."""
+        """Default: the limit of a specimen times the Marin factors."""
         return self.k_a * self.k_b * self.k_c * self.k_e * self.k_m * self.S_0
 
     @formula("1", "strength share", symbol="f", source=SHIGLEY)
     def f(self) -> Array:
-        """Strength at 1000 cycles as a share of the ultimate strength."""
+        """Strength at 1000 cycles over the ultimate strength."""
         return share_at_1000_cycles(self.sigma_u)
 
     @derived("MPa", "strength at 1000 cycles", symbol="S_3", shown=True, gt=0, le=5000, source=SHIGLEY)
     def S_3(self) -> Array:
-        """Borne for 1000 cycles."""
+        """Fatigue strength at 1000 cycles."""
         return self.f * self.sigma_u
 
     @derived("MPa", "fatigue strength coefficient", symbol=r"\sigma_F'", gt=0, le=10_000)
@@ -110,5 +110,5 @@ class SteelEndurance(Template):
 
     @formula("1", "notch support", symbol=r"\frac{K_f}{K_t}", source=NEUBER)
     def c_n(self) -> Array:
-        """K_f/K_t."""
+        """Fraction of the local stress that is effective in fatigue, K_f/K_t."""
         return notch_support(self.K_t, self.q)

@@ -11,7 +11,6 @@ from templates.physics.torsion.train_layout import (
     are_pairs,
     exist,
     has_no_loop,
-    have_stiffness,
     is_joined,
     name_inertias,
     train_layout,
@@ -56,17 +55,12 @@ class TorsionTrain(Template):
 
     @require("shaft_from", "shaft_to", remedy="give two lists of one number for each shaft")
     def pairs(self) -> Truth:
-        """Each shaft joins two numbers."""
+        """Each shaft connects two numbered inertias."""
         return are_pairs(self.s_i, self.s_j)
-
-    @require("shaft_stiffness", "shaft_from", remedy="one for each shaft, 0 for a viscous damper")
-    def stiffness_of_each(self) -> Truth:
-        """Each shaft has a stiffness."""
-        return have_stiffness(self.s_i, self.k)
 
     @require("shaft_from", "shaft_to", "inertias", remedy=NUMBERS)
     def shafts_join(self) -> Truth:
-        """Shafts join two inertias that exist."""
+        """Shafts connect two existing inertias."""
         return name_inertias(self.J, self.s_i, self.s_j)
 
     @require("gear_from", "gear_to", "gear_ratios", missing=True,
@@ -77,7 +71,7 @@ class TorsionTrain(Template):
 
     @require("gear_from", "gear_to", "inertias", missing=True, remedy=NUMBERS)
     def gears_join(self) -> Truth:
-        """Gears join two inertias that exist."""
+        """Gears connect two existing inertias."""
         return name_inertias(self.J, self.g_i, self.g_j)
 
     @shared
@@ -88,24 +82,24 @@ class TorsionTrain(Template):
     @require("gear_to", "gear_from", missing=True,
              remedy="leave the gear out that closes the loop: the others fix its ratio")  # fmt: skip
     def no_gear_loop(self) -> Truth:
-        """Gears drive each inertia once at most, and not in a circle."""
+        """Gears drive each inertia at most once, and not in a loop."""
         return has_no_loop(self.layout)
 
     @require("shaft_from", "shaft_to", "inertias", remedy="join what hangs loose, or leave it out")
     def joined(self) -> Truth:
-        """Shafts and gears join all inertias to one train."""
+        """Shafts and gears connect all inertias to one train."""
         return is_joined(self.layout)
 
     @require("gear_ratios", "shaft_from", "shaft_to", missing=True,
              remedy="correct a ratio: around a loop their product is 1")  # fmt: skip
     def turns(self) -> Truth:
-        """The train turns without twisting its shafts."""
+        """The train can rotate without twisting its shafts."""
         return turns_freely(self.layout)
 
     @require("propeller_inertia", "propeller_torque", "propeller_speed", missing=True,
              remedy="give all three, or none")  # fmt: skip
     def whole_propeller(self) -> Truth:
-        """A propeller has its inertia, its torque and its speed."""
+        """A propeller has an inertia, a torque and a speed."""
         return is_whole_propeller(self.p, self.T_p, self.n_p)
 
     @require("propeller_inertia", "inertias", missing=True, remedy=NUMBERS)

@@ -1,1 +1,1 @@
-"""Library: bearing materials, oils and surface finishes as tables, each value with its source."""
+"""Library: tables of bearing materials, oils and surface finishes, each value with its source."""

@@ -13,7 +13,7 @@ CHOICES = ("bearing_material",)
 
 
 def register_choices() -> None:
-    """Let limits be taken from the rows of the library."""
+    """Register the tables of the library, so that limits can be taken from their rows."""
     for name in CHOICES:
         register(name, Library(partial(_rows, name), partial(_row, name)))
 

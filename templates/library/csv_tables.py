@@ -1,8 +1,8 @@
 """Read a table of the library from its CSV file, and refuse an incomplete one.
 
-A file has comments (`#`), then a head: `id`, `words`, one column `NAME [UNIT]` for each quantity, `source`,
-`note` and `confirmed`; `source of NAME` names the source of one value where it is not that of the row.
-An empty cell is a value that no source gives. A source is the key of a row in `sources.csv`.
+A file has comments (`#`), then a header: `id`, `words`, one column `NAME [UNIT]` for each quantity, `source`,
+`note` and `confirmed`. `source of NAME` names the source of one value if it differs from that of the row. An
+empty cell means that no source gives a value. A source is the key of a row in `sources.csv`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _OTHERS = ("id", "words", "source", "note", "confirmed")
 
 
 class UnusableTable(TemplateError):
-    """A file of the library that is not whole; the message names the file and the row."""
+    """A file of the library is incomplete; the message names the file and the row."""
 
     def __init__(self, path: Path, reason: str) -> None:
         super().__init__(f"{path.name}: {reason}")
@@ -32,7 +32,7 @@ class UnusableTable(TemplateError):
 
 @dataclass(frozen=True)
 class CitedValue:
-    """A value in its unit, and where it comes from."""
+    """A value in its unit, with its source."""
 
     value: float
     unit: str
@@ -59,12 +59,12 @@ class Source:
 
 
 def read_sources(path: Path) -> dict[str, Source]:
-    """Return the sources of a file by their key.
+    """Return the sources of a file by key.
 
     Raises
     ------
     UnusableTable
-        If a key is there twice, or a citation is empty.
+        If a key occurs twice, or a citation is empty.
     """
     records = list(_records(path))
     _each_once(path, (record["key"] for record in records))
@@ -75,12 +75,12 @@ def read_sources(path: Path) -> dict[str, Source]:
 
 
 def read_rows(path: Path, sources: Mapping[str, Source]) -> tuple[Row, ...]:
-    """Check the rows of a table and return them.
+    """Return the rows of a table after checking them.
 
     Raises
     ------
     UnusableTable
-        If a row occurs twice or is not confirmed, names an unknown source or no value, or has an invalid
+        If a row occurs twice or is not confirmed, names an unknown source or has no value, or has an invalid
         number or unit.
     """
     records = list(_records(path))

@@ -19,7 +19,7 @@ SOURCES = _FOLDER / "sources.csv"
 
 @dataclass(frozen=True)
 class Column:
-    """A quantity of a table: its unit, its words, and which inputs of templates it may fill."""
+    """A quantity of a table: its unit, its label, and the inputs of templates that it may fill."""
 
     name: str
     unit: str
@@ -29,7 +29,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """A table: `limits` says that its rows give limits of criteria, where its id is asked for as such."""
+    """A table; `limits` is true if the id of a row can be given to fill limits of criteria."""
 
     id: str
     title: str
@@ -81,12 +81,12 @@ OILS = (
 
 @cache
 def tables() -> dict[str, Table]:
-    """Return every table by its id, read once.
+    """Return every table by its id; the files are read once.
 
     Raises
     ------
     UnusableTable
-        If a file is not whole.
+        If a file is incomplete.
     """
     return {table.id: table for table in (_materials(), _oils(), _finishes())}
 
@@ -120,7 +120,7 @@ def table(id: str) -> Table:
     Raises
     ------
     UnknownTable
-        If there is none of that name.
+        If there is no table of that name.
     """
     if id not in tables():
         raise UnknownTable(id)
@@ -133,7 +133,7 @@ def limits_of(table_id: str, row_id: str) -> Mapping[str, CitedValue]:
     Raises
     ------
     UnknownTable
-        If the library has no such table, or one whose rows give no limits.
+        If there is no such table, or its rows give no limits.
     KeyError
         If the table has no such row.
     """
@@ -146,7 +146,7 @@ def limits_of(table_id: str, row_id: str) -> Mapping[str, CitedValue]:
 
 
 def fills(input_name: str) -> Iterator[tuple[Row, CitedValue]]:
-    """Yield the rows whose values an input may take, such as the finishes for `journal_roughness`."""
+    """Yield the rows whose values can fill an input, such as the finishes for `journal_roughness`."""
     for one in tables().values():
         names = [column.name for column in one.columns if input_name in column.fills]
         for row in one.rows:
@@ -154,7 +154,7 @@ def fills(input_name: str) -> Iterator[tuple[Row, CitedValue]]:
 
 
 def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:
-    """Return the rows of a file, whose quantities are those of the columns, in their units."""
+    """Return the rows of a file, with the quantities of the columns in their units."""
     path = _FOLDER / name
     rows = read_rows(path, read_sources(SOURCES))
     units = {column.name: unit(column.unit).text for column in columns}
@@ -177,6 +177,6 @@ def _oil(grade: str) -> Row:
 
 
 def _words_of_oil(grade: str) -> str:
-    """Return `sae_15w_40` as SAE 15W-40, `iso_vg_46` as ISO VG 46."""
+    """Return the label of an oil: `sae_15w_40` is SAE 15W-40, `iso_vg_46` is ISO VG 46."""
     kind, *rest = grade.upper().split("_")
     return f"{kind} {'-'.join(rest) if kind == 'SAE' else ' '.join(rest)}"

@@ -1,8 +1,8 @@
 """Heat balance of a journal bearing's film over an engine cycle: effective viscosity and dependent results.
 
-One viscosity follows from the power loss and side flow of the film over the cycle, from the flow that the
-supply pressure drives, and from the supply temperature; the orbit and the smallest film are calculated at
-that viscosity.
+One effective viscosity follows from the power loss and side flow of the film over the cycle, from the flow
+that the supply pressure drives, and from the supply temperature. The orbit and the smallest film are
+calculated at that viscosity.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ from templates.physics.heat.cycle_heat import (
     left_by_HTHS,
     loss_of,
     rate_of,
+    shear_loss_of,
     side_flow_of,
     temperature_of,
     viscosity_at_150,
@@ -66,35 +67,36 @@ UNBALANCED = (
 class CycleHeatBalance(Oil, FedBearing):
     """Heat balance of a journal bearing's film over an engine cycle: its effective viscosity.
 
-    Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the
-    temperature of the supply give one viscosity; the orbit and the smallest film are those of it.
+    One effective viscosity follows from the power loss and side flow of the film over the cycle, from the
+    flow that the supply pressure drives, and from the supply temperature. The orbit and the smallest film are
+    calculated at that viscosity.
 
     Limits
     ------
-    One temperature and one viscosity for the whole film and cycle, at the mean of supply and outlet, as ISO
-    7902-1 has it for a steady load. Nothing is stored in the walls, and what they carry off is the share of
-    the loss that heat_share leaves. The film is that of oil_film_cycle 1 at the same level: massless journal,
-    rigid, aligned, laminar; see there for load sense, angles and axes.
-    Side flow is what the motion of the journal displaces from the ends. Feed flow is what the supply
-    pressure drives from the groove over its two lands, with the gap along the orbit; the film's pressure does
-    not hinder it, as in the standard. The ends of a groove that does not go around let out oil besides, and
-    holes do: both are left out. The film is taken as always full, so more oil is displaced than leaves.
-    Level supplied conserves the oil: its side flow is all that leaves by the ends, and no feed flow is added.
-    It takes three or four marches of a second each, and one point at a time. A film that starves or does not
-    settle has no balance. On the example half as much oil leaves as at level mobility_grooved, and the rise
-    is half as large again.
-    Levels mobility_short and mobility do not know the groove in their film, but count its flow.
+    The whole film has one temperature and one viscosity over the cycle, at the mean of supply and outlet
+    temperature, as in ISO 7902-1 for a steady load. The walls store no heat; heat_share is the share of the
+    loss that the oil removes, and the walls remove the rest. The film is that of oil_film_cycle 1 at the same
+    level (massless journal; rigid, aligned bearing; laminar flow); see there for load sense, angles and axes.
+    Side flow is the oil that the motion of the journal displaces from the ends. Feed flow is the oil that the
+    supply pressure drives from the groove over its two lands, with the gap along the orbit; the pressure of
+    the film does not reduce it, as in the standard. Oil from the ends of a partial groove and from holes is
+    neglected. The film is treated as always full, so the calculated flow is larger than the real one.
+    Level supplied conserves the oil: its side flow is all the oil that leaves at the ends, and no feed flow
+    is added. It needs three or four marches of about a second each, and accepts one point at a time. A film
+    that starves or does not converge has no balance. In the example the side flow is half that of level
+    mobility_grooved, and the temperature rise is half as large again.
+    Levels mobility_short and mobility ignore the groove in their film, but include its feed flow.
     Shear thinning after Cross needs the HTHS viscosity of the oil (150 °C, 1e6 1/s). The shear rate is |U|/h,
-    as mean over the circle and the cycle. What endless shear leaves, by default half, and the exponent, by
-    default 1, are properties of the oil, for which there is no general source. The critical rate is taken
-    from 150 °C to the film's temperature by the ratio of the viscosities at low shear, as where time and
-    temperature superpose.
-    Power loss and mean shear rate have the formulas of a full film; level supplied takes the shear of the oil
-    that is there in the loss, and leaves the rate as it is.
-    A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
+    averaged over circumference and cycle. The viscosity ratio at infinite shear rate (default 0.5) and the
+    exponent (default 1) are properties of the oil, for which there is no general source. The critical shear
+    rate is converted from 150 °C to the film's temperature by the ratio of the low-shear viscosities, as in
+    time–temperature superposition.
+    Power loss and mean shear rate are those of a full film. At level supplied the loss includes only the
+    shear of the oil that is present; the shear rate is unchanged.
+    A given dynamic_viscosity is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
-    No level states an error: no ensemble against level supplied was made, and no measured cycle with all its
-    inputs was at hand.
+    No level states an error: there was no comparison of many cases with level supplied, and no measured cycle
+    with all its inputs was available.
 
     References
     ----------
@@ -150,12 +152,12 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @require("hths_viscosity", warning="unused_input", remedy="leave it out, or dynamic_viscosity")
     def viscosity_follows(self) -> Truth:
-        """Shear thins the oil where its viscosity is not given."""
+        """Shear thinning applies only if the viscosity is not given."""
         return np.isnan(self.as_given("eta")) | np.isnan(self.eta_H)
 
     @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
     def groove_counts(self) -> Truth:
-        """A groove counts in the film of levels mobility_grooved and supplied."""
+        """A groove affects the film only at levels mobility_grooved and supplied."""
         return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
 
     @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
@@ -179,17 +181,17 @@ class CycleHeatBalance(Oil, FedBearing):
         return (*cheap, "supplied") if np.all(self.feeding.count > 0) else cheap
 
     def starting_level(self) -> str:
-        """The cheap level that knows the groove, if there is one."""
+        """Return the inexpensive level that models the groove, if there is one."""
         return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
 
     @formula("s/m**2", "load scale", symbol="s")
     def s(self) -> Array:
-        """The load number over load and fluidity."""
+        """The load number divided by load and fluidity."""
         return self.psi**2 / (self.D * self.W * self.Omega)
 
     @shared
     def duty(self) -> Duty:
-        """Duty of the bearing, with oil of 1 Pa s."""
+        """Loads and speeds of the bearing, for an oil of 1 Pa s."""
         return replace(self.motion, scale=self.s)
 
     @shared
@@ -205,7 +207,7 @@ class CycleHeatBalance(Oil, FedBearing):
     @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}", source=LAWS,
              latex=r"\eta\left(150\,\mathrm{°C}\right)")  # fmt: skip
     def eta_150(self) -> Array:
-        """At low shear and 150 °C, the temperature of the HTHS viscosity."""
+        """Viscosity at low shear and 150 °C, the temperature of the HTHS viscosity."""
         return viscosity_at_150(
             self.law, self.A, self.B, self.a_V, self.b_V, self.c_V, self.eta_given, self.rho_ref,
             self.T_ref,
@@ -216,12 +218,12 @@ class CycleHeatBalance(Oil, FedBearing):
         source=CROSS, remedy=BETWEEN,
     )  # fmt: skip
     def hths_ratio(self) -> Array:
-        """Share of the shear-dependent viscosity that remains at 1e6 1/s."""
+        """Fraction of the shear-dependent viscosity that remains at 1e6 1/s."""
         return left_by_HTHS(self.eta_H, self.eta_150, self.r_inf, self.eta_given)
 
     @shared
     def oil(self) -> CycleOil:
-        """The oil and what it carries off."""
+        """The oil and its heat capacity."""
         return CycleOil(
             A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V), b=self.b_V, offset=self.c_V,
             eta=self.as_given("eta"), rho_ref=self.rho_ref, T_ref=self.T_ref, left=self.hths_ratio,
@@ -230,7 +232,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def heat(self) -> CycleHeat:
-        """The balance."""
+        """The heat balance."""
         return heat_of_cycle(self.bearing, self.oil)
 
     @formula(
@@ -246,43 +248,43 @@ class CycleHeatBalance(Oil, FedBearing):
     @formula("degC", "film temperature", symbol="T_{m}", source=ISO,
              latex=r"T_{s}+\frac{k\,P}{2\,\rho_{c}\left(Q+Q_{p}\right)}")  # fmt: skip
     def T_film(self) -> Array:
-        """The mean of supply and outlet, by the heat that the oil carries off; supplied: without Q_p."""
+        """Mean of supply and outlet temperature, from the heat to the oil; at level supplied without Q_p."""
         return temperature_of(self.heat, self.eta_e)
 
     @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
     def T_ex(self) -> Array:
-        """Temperature of the leaving oil."""
+        """Temperature of the outflowing oil."""
         return 2 * self.T_film - self.T_s
 
     @formula("delta_degC", "temperature rise", symbol=r"\Delta T", source=ISO)
     def rise(self) -> Array:
-        """Difference between outlet and supply."""
+        """Difference between outlet and supply temperature."""
         return self.T_ex - self.T_s
 
     @formula("1/s", "mean shear rate", symbol=r"\dot\gamma",
              latex=r"\frac{1}{T}\int_{T}\frac{D\left|\omega_{J}-\omega_{B}\right|}{"
              r"c\,\sqrt{1-\epsilon^{2}}}d\theta")  # fmt: skip
     def rate(self) -> Array:
-        """Sliding speed over gap, as mean over circle and cycle."""
+        """Sliding speed over gap, averaged over circumference and cycle."""
         return rate_of(self.heat, self.eta_e)
 
     @formula("1", "shear loss", symbol=r"\delta_{\gamma}", source=CROSS)
     def shear_loss(self) -> Array:
         """The relative reduction of the viscosity by shear."""
-        return 1 - self.eta_e / self.eta
+        return shear_loss_of(self.heat, self.eta_e, self.eta)
 
     @formula("W", "power loss", symbol="P",
              latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
              r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle; v is the centre's velocity, seen from axes that turn at the mean speed."""
+        """Mean over the cycle; v is the velocity of the centre in axes that rotate at the mean speed."""
         return loss_of(self.heat, self.eta_e)
 
     @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")
     def Q(self) -> Array:
-        """Flow that the journal's motion displaces; at level supplied all oil that leaves by the ends.
+        """Flow that the journal's motion displaces; at level supplied, all oil that leaves at the ends.
 
-        With a bar it is that of the dimensionless film, as mean over the cycle.
+        The symbol with a bar is the dimensionless flow, averaged over the cycle.
         """
         return side_flow_of(self.heat, self.eta_e)
 
@@ -300,7 +302,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def fed(self) -> FedDuty:
-        """The duty at the effective viscosity."""
+        """Loads, speeds and oil supply at the effective viscosity."""
         return self.bearing.fed(self.eta_e)
 
     @shared
@@ -310,17 +312,17 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def film(self) -> CycleFilm:
-        """Its pressure."""
+        """The pressure of the film."""
         return fed_film(self.level, self.fed, self.orbit)
 
     @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=ORBIT)
     def eps_max(self) -> Array:
-        """Relative; between the angles too."""
+        """Largest relative eccentricity, also between the crank angles."""
         return self.orbit.eps_max
 
     @formula("um", "minimum film thickness", symbol="h_{0}")
     def h_0(self) -> Array:
-        """The smallest of the cycle, between the angles too."""
+        """Smallest film of the cycle, also between the crank angles."""
         return self.c * (1 - self.eps_max) / 2
 
     @formula("deg", "minimum film angle", symbol=r"\theta_{h}")
@@ -330,11 +332,11 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @profile("um", "film thickness", along=CYCLE, symbol="h", latex=r"\frac{c}{2}\left(1-\epsilon\right)")
     def h(self) -> Array:
-        """The smallest around the bearing, at each crank angle."""
+        """Smallest film around the bearing, at each crank angle."""
         return spread(self.c / 2, self.orbit.gap)
 
     @formula("MPa", "maximum pressure", symbol="p_{max}",
              latex=r"\frac{\eta_{e}\,\Omega}{\psi^{2}}\,\max\bar p\left(\theta\right)")  # fmt: skip
     def p_max(self) -> Array:
-        """The largest of the cycle, at its angles; with a bar, of the dimensionless film."""
+        """Largest pressure of the cycle at the given angles; the symbol with a bar is dimensionless."""
         return self.film.P_max * self.eta_e * self.Omega / self.psi**2

@@ -1,7 +1,7 @@
-"""Oil film of a journal bearing under static load whose liner, bore and oil yield to the pressure.
+"""Oil film of a journal bearing under static load; pressure deforms liner and bore and thickens the oil.
 
-The plain, aligned bearing is rigid, or has its liner as columns, its housing as a thick ring, or the bore
-compliance of a drawn housing or rod.
+The plain, aligned bearing is rigid, or its liner deforms as columns, its housing as a thick ring, or its bore
+by the compliance of a designed housing or rod.
 """
 
 from __future__ import annotations
@@ -61,40 +61,44 @@ UNBORNE = (
 
 
 class ElasticFilm(Oil, Journal):
-    """Oil film of a journal bearing under static load whose liner, bore and oil give way to the pressure.
+    """Oil film of a journal bearing under static load; pressure deforms liner and bore and thickens the oil.
 
-    A plain, aligned bearing: rigid; with its liner as columns; with its housing as a thick ring; with its
-    bore by the compliance of a drawn housing or rod.
+    The plain, aligned bearing is rigid, or its liner deforms as columns, its housing as a thick ring, or its
+    bore by the compliance of a designed housing or rod.
 
     Limits
     ------
     Static load, laminar and isothermal film, fed along its widest gap; no grooves, no supply pressure.
-    Level rigid, the default, is level map of oil_film 2 and 3. What elasticity changes is solved on meshes of
-    64 x 8 and 128 x 16 intervals, stiff and soft, and the change is extrapolated and applied to that film.
-    mesh_error is the change of the smallest film between the two meshes, an estimate. No level states an
-    error: rigid leaves out what gives way, and the soft levels were not compared with a finer solution.
-    Level liner: a bonded layer on a rigid back, each column for itself. It holds for a layer that is thin
-    beside the length of the pressed zone; near Poisson's ratio 1/2 a layer is softer than its columns.
-    Level housing: the liner, and behind it a ring in plane strain, free outside. It feels the mean of the
-    pressure across the width. Ribs, caps, bolts and what carries the ring are left out. 40 harmonics count.
-    Level elastic: the liner, and behind it the bore whose compliance is given: the matrix of the analysis
-    bore_compliance of a bearing_housing or connecting_rod, 38 rows and columns. Modes are harmonics 0 to 9
-    around, even along the bore or as Legendre's second polynomial, scaled to a mean square of 1. Harmonics 10
-    to 40 are those of a half plane of housing_modulus and housing_poisson_ratio.
-    The matrix counts its angle from the block or shank in the sense of rotation, and load_angle is from there
-    to the load, which is what the journal pushes with. For the other sense of rotation change the sign of
-    each entry between a cosine and a sine; a bore that mirrors itself has none.
-    The bearing lies in the middle of bore_width and is not wider. Linear and static; nothing that differs
-    from end to end, so no misalignment; the joint neither opens nor slides; no inertia of a moving rod.
-    At both levels the motion of the bore as a whole is left out: eccentricity is that of the journal against
-    the displaced bore, and may exceed 1. The journal is rigid; thermal growth and the fit of the shell are
-    left out.
-    Oil thickens after Roelands with the coefficient given, at the soft levels only: with rigid walls and
-    thickening oil there may be no film at all. Its density does not change.
-    A film is refused where the deformation exceeds a hundred times the smallest film.
-    Criterion elasticity compares what the level leaves out, estimated from the largest pressure, the load and
-    the compliance, with the smallest film; a matrix goes before a ring. With a matrix it takes the rigid
-    film's place and shape of the pressure, and may be a quarter below the solution.
+    Level rigid, the default, is level map of oil_film 2. The effect of elasticity is the difference between a
+    compliant and a rigid solution on meshes of 64 x 8 and 128 x 16 intervals; it is extrapolated and applied
+    to that film. mesh_error is the change of the smallest film between the two meshes, an estimate. No level
+    states an error: rigid neglects the deformation, and the elastic levels were not compared with a finer
+    solution.
+    Level liner: a bonded layer on a rigid backing, each column independent. It applies to a layer that is
+    thin relative to the length of the pressure zone; near Poisson's ratio 1/2 a layer is more compliant than
+    its columns.
+    Level housing: the liner, and behind it a ring in plane strain with a free outer surface. It is loaded by
+    the axial mean of the pressure. Ribs, caps, bolts and the support of the ring are neglected. 40 harmonics
+    are included.
+    Level elastic: the liner, and behind it a bore with a given compliance: the matrix of the analysis
+    bore_compliance of a bearing_housing or connecting_rod, with 38 rows and columns. Modes are
+    circumferential harmonics 0 to 9, axially uniform or as Legendre's second polynomial, scaled to a mean
+    square of 1. Harmonics 10 to 40 are those of a half-plane of housing_modulus and housing_poisson_ratio.
+    The angle in the matrix is measured from the block or shank in the sense of rotation, and load_angle is
+    the angle from there to the load, which is the force of the journal on the bearing. For the other sense of
+    rotation, change the sign of each entry between a cosine and a sine; a symmetric bore has no such entries.
+    The bearing lies in the middle of bore_width and is not wider. Linear and static; axially symmetric, so no
+    misalignment; the joint neither opens nor slides; no inertia of a moving rod.
+    At both levels the rigid-body motion of the bore is excluded: eccentricity is that of the journal relative
+    to the displaced bore, and may exceed 1. The journal is rigid; thermal expansion and the interference fit
+    of the shell are neglected.
+    The viscosity increases with pressure after Roelands, with the given coefficient, at the elastic levels
+    only: with rigid walls and this increase there may be no film at all. The density is constant.
+    A film is refused if the deformation exceeds a hundred times the smallest film.
+    Criterion elasticity compares the deformation that the level neglects, estimated from the largest
+    pressure, the load and the compliance, with the smallest film; a matrix takes precedence over a ring. With
+    a matrix it uses the position and shape of the rigid film's pressure, and may be a quarter below the
+    solution.
     A point takes about 0.06 s of processor time at level liner, 0.1 to 0.4 s at level housing, 0.2 to 1 s at
     level elastic, and some seconds if it is refused; at level rigid some milliseconds.
 
@@ -104,7 +108,7 @@ class ElasticFilm(Oil, Journal):
     de l'élasticité, 1852; Barber: Elasticity, 3rd ed. 2010, for the ring.
     Johnson: Contact Mechanics, 1985, section 4.3, for the layer as columns.
     Roelands: Correlational aspects of the viscosity-temperature-pressure relationship, Delft 1966.
-    Johnson, section 13.2, for the half plane.
+    Johnson, section 13.2, for the half-plane.
     Oh, Goenka: Journal of Tribology 107, 1985, p. 389, for elastic engine bearings.
     DIN 31652:1983, ISO 7902:1998, for the rigid film.
     """
@@ -149,7 +153,7 @@ class ElasticFilm(Oil, Journal):
 
     @derived("mm", "bore width", symbol="W_{b}", gt=0)
     def W_b(self) -> Array:
-        """Along the bore whose compliance is given: that of the bearing, unless given."""
+        """Axial length of the bore whose compliance is given; default: the width of the bearing."""
         return self.W
 
     @require("compliance", remedy="give 38 rows in the order of its columns, one for each mode")
@@ -159,12 +163,12 @@ class ElasticFilm(Oil, Journal):
 
     @require("compliance", remedy="give equal values in row i, column j and in row j, column i")
     def compliance_is_mutual(self) -> Truth:
-        """The compliance is symmetric, because work is mutual (Betti)."""
+        """The compliance matrix is symmetric (Betti's theorem)."""
         return is_mutual(self.C_b)
 
     @require("compliance", remedy="give a matrix without negative eigenvalues, as an elastic bore has")
     def compliance_takes_energy(self) -> Truth:
-        """No pressure moves the bore against itself."""
+        """No pressure does negative work on the bore."""
         return gains_no_energy(self.C_b)
 
     @require("bearing_width", "bore_width", remedy="give the width of the bore that was analysed")
@@ -176,18 +180,18 @@ class ElasticFilm(Oil, Journal):
         "housing_outer_diameter", "bearing_diameter", "liner_thickness", remedy="give that of its outside"
     )
     def housing_is_outside(self) -> Truth:
-        """The housing lies outside of bearing and liner, by a thousandth at least."""
+        """The outer diameter of the housing exceeds that of bearing and liner by a thousandth or more."""
         return (self.D_h >= 1.001 * (self.D + 2 * self.t_l)) | np.isnan(self.D_h)
 
     @require(
         "pressure_viscosity", warning="unused_input", remedy="take a level that is not rigid, or leave it out"
     )
     def thickening_counts(self) -> Truth:
-        """Oil does not thicken under pressure at level rigid."""
+        """The pressure–viscosity coefficient has no effect at level rigid."""
         return (self.level != RIGID) | (self.alpha == 0)
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels whose elastic data are known."""
+        """Return the levels whose elastic data are given."""
         known = {
             RIGID: True, LINER: bool(np.all(self.t_l > 0)), HOUSING: bool(np.all(np.isfinite(self.D_h))),
             ELASTIC: bool(len(self.C_b)),
@@ -215,7 +219,7 @@ class ElasticFilm(Oil, Journal):
         per_level={"housing": limits(1.001)},
     )  # fmt: skip
     def wall(self) -> Array:
-        """Outer over inner diameter of the housing, 1 without one."""
+        """Outer over inner diameter of the housing; 1 without a housing."""
         return wall_ratio(self.D_h, self.D + 2 * self.t_l)
 
     @formula(
@@ -224,7 +228,7 @@ class ElasticFilm(Oil, Journal):
         per_level={"elastic": limits(38)},
     )  # fmt: skip
     def n_m(self) -> Array:
-        """Rows of the bore's compliance, 0 without one."""
+        """Rows of the bore's compliance matrix; 0 without one."""
         return count_modes(self.C_b)
 
     @formula("um/GPa", "liner compliance", symbol="C_{l}", source="Johnson 1985")
@@ -251,7 +255,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def unbounded_film(self) -> ElasticJournalFilm:
-        """The film at this level, wherever it leads."""
+        """The film at this level, before its bounds are checked."""
         return bore_film_at(self.level, self.S_0, self.b, self.elasticity, self.bore)
 
     @formula(
@@ -263,7 +267,7 @@ class ElasticFilm(Oil, Journal):
         remedy=UNBORNE,
     )
     def eps(self) -> Array:
-        """Displacement of the journal against the displaced bore, over the radial clearance."""
+        """Displacement of the journal relative to the displaced bore, over the radial clearance."""
         return self.unbounded_film.eps
 
     @shared
@@ -282,12 +286,12 @@ class ElasticFilm(Oil, Journal):
 
     @formula("deg", "attitude angle", symbol=r"\beta")
     def beta(self) -> Array:
-        """Angle from the load to the displacement."""
+        """Angle from the load to the displacement of the journal."""
         return self.film.attitude
 
     @formula("um", "minimum film thickness", symbol="h_{0}")
     def h_0(self) -> Array:
-        """The least gap of the whole bearing."""
+        """The smallest gap of the whole bearing."""
         return self.c * self.film.least / 2
 
     @formula("1", "mesh error", symbol="e_{h}", absent=RIGID_HAS_NONE)
@@ -306,7 +310,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("um", "largest deformation", symbol="u_{max}", absent=RIGID_HAS_NONE, source=LAME)
     def u_max(self) -> Array:
-        """Deformation of the bore beyond its displacement as a whole."""
+        """Deformation of the bore without its rigid-body displacement."""
         return self.film.deformation * self.c / 2
 
     @formula("um", "neglected deformation", symbol="u_{n}", source=LAME)
@@ -319,7 +323,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("1", "largest thickening", symbol=r"\eta_{max}/\eta", source=ROELANDS)
     def thickening(self) -> Array:
-        """Viscosity at the largest pressure over that without."""
+        """Viscosity at the largest pressure over that at ambient pressure."""
         return self.film.thickening
 
     @formula("N*m", "shear torque", symbol="M_{s}", source=ISO)
@@ -328,7 +332,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula("N*m", "load couple", symbol="M_{F}")
     def M_F(self) -> Array:
-        """Couple of the pressure, in addition to that of shear."""
+        """Moment due to pressure, in addition to that due to shear."""
         return self.film.load_couple * self.eta * self.omega_h * self.W * self.D**2 / (2 * self.psi)
 
     @formula("N*m", "friction torque", symbol="M_{f}")

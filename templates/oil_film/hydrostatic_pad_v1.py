@@ -35,24 +35,24 @@ NEVER_STIFFEST = "a constant flow is the stiffer, the higher the pressure of the
 class HydrostaticPad(Template):
     """Hydrostatic pad: a circular or annular step pad with a recess, fed by a pump (MEC 315).
 
-    The pump lifts the load at any speed, and at rest: the film follows from the load, the lands and the
+    The pump lifts the load at any speed, even at rest: the film follows from the load, the lands and the
     restrictor. Closed forms; laminar, isothermal, incompressible, parallel rigid faces, a deep recess.
 
     Limits
     ------
     Without the two inner diameters the pad is circular with one land; with both it is annular with two.
-    The faces are parallel: the pad does not tilt, and a load off its middle is not borne as calculated here.
-    The recess is so deep that its pressure is even and its friction nothing beside that of the lands.
-    Flow in lands and capillary is laminar; warnings say where it is not. A capillary is long beside its
-    diameter: what the oil loses at its inlet is left out.
-    Neither centrifugal force nor the oil's inertia is counted: the edge may turn at speeds where rho v² is
-    small beside the recess pressure.
+    The faces are parallel: the pad does not tilt, and the calculation does not apply to an eccentric load.
+    The recess is so deep that its pressure is uniform and its friction negligible relative to the lands.
+    Flow in lands and capillary is laminar; warnings report where it is not. A capillary is much longer than
+    its diameter, so the pressure loss at its inlet is neglected.
+    Centrifugal force and the inertia of the oil are neglected: at the edge, rho v² must be small relative to
+    the recess pressure.
     Restrictor constant_flow is a pump of fixed displacement; its supply pressure is that of its relief valve.
-    Of all the power nothing leaves through the walls: the temperature rise is the largest that the oil has.
-    The viscosity is that given, at every temperature. Mineral oil loses half of it in some 15 to 20 K, so
-    give that of the mean temperature on the lands; above a rise of 60 K a warning says so.
-    The film and the viscosity of least power are those for the same load and lands, with a restrictor that is
-    chosen anew for them; they need a speed.
+    No heat leaves through the walls, so the calculated temperature rise is an upper limit.
+    The given viscosity applies at every temperature. Mineral oil loses half of its viscosity in some 15 to
+    20 K, so give the viscosity at the mean temperature on the lands; a rise above 60 K gives a warning.
+    The film and the viscosity of least power apply to the same load and lands, with a restrictor resized for
+    them; they need a speed.
 
     References
     ----------
@@ -140,12 +140,12 @@ class HydrostaticPad(Template):
 
     @require("inner_diameter", "recess_inner_diameter", remedy="the inner land lies between them")
     def inner_land(self) -> Truth:
-        """The recess begins outside of the pad's hole."""
+        """The inner diameter of the recess is larger than that of the pad."""
         return (self.d < self.d_0) | np.isnan(self.d)
 
     @require("recess_inner_diameter", "recess_diameter", remedy="the recess lies between them")
     def recess_is_open(self) -> Truth:
-        """The recess has a width."""
+        """The recess has a positive width."""
         return (self.d_0 < self.D_0) | np.isnan(self.d_0)
 
     @require("restrictor_diameter", missing=True, remedy="give it, or take constant_flow")
@@ -160,12 +160,12 @@ class HydrostaticPad(Template):
 
     @require("pump_flow", missing=True, remedy="give it, or take another restrictor")
     def pump_is_known(self) -> Truth:
-        """A pump of constant flow has one."""
+        """A constant-flow pump has a given flow."""
         return (self.restrictor != CONSTANT_FLOW) | ~np.isnan(self.Q_p)
 
     @require("capillary_length", warning="unused_input", remedy="leave it out, or take capillary")
     def capillary_counts(self) -> Truth:
-        """A capillary has a length; an orifice or a constant flow has none."""
+        """Only a capillary has a length; an orifice or a constant flow has none."""
         return (self.restrictor == CAPILLARY) | np.isnan(self.l_c)
 
     @require("restrictor_diameter", warning="unused_input", remedy="leave it out, or take another restrictor")
@@ -175,7 +175,7 @@ class HydrostaticPad(Template):
 
     @require("pump_flow", warning="unused_input", remedy="leave it out, or take constant_flow")
     def pump_counts(self) -> Truth:
-        """The pump's flow counts where it is constant."""
+        """The pump's flow is used only for constant flow."""
         return (self.restrictor == CONSTANT_FLOW) | np.isnan(self.Q_p)
 
     @formula("cm**2", "effective area", symbol="A_e", gt=0, source=HAMROCK)

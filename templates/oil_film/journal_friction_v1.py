@@ -1,4 +1,4 @@
-"""Friction of a concentric journal, after Petrov (1883). Light load, high speed, high viscosity."""
+"""Friction of a concentric journal, after Petrov (1883), for light load, high speed and high viscosity."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ USE = "the loaded film rubs more by this factor; oil_film 2 calculates it"
 
 
 class JournalFriction(Template):
-    """Friction of a concentric journal, after Petrov (1883). Light load, high speed, high viscosity.
+    """Friction of a concentric journal, after Petrov (1883), for light load, high speed and high viscosity.
 
-    A journal that runs in the middle of its bearing shears the oil evenly: F_f = 2 pi r² b eta omega/c, which
-    the course MEC 315 prints as 4 pi² r² eta N b/(60 c) with N in rpm.
+    A journal that runs concentrically in its bearing shears the oil uniformly: F_f = 2 pi r² b eta omega/c,
+    which the course MEC 315 prints as 4 pi² r² eta N b/(60 c) with N in rpm.
 
     Limits
     ------
-    Petrov's journal carries no load; under load it runs eccentric and rubs more.
-    Give the radial load, and the answer says by how much: the eccentricity and the friction over Petrov's
-    come from the Reynolds solution (full circle, Swift–Stieber rupture), and from 5 % on a warning says so.
-    Measured by `benchmarks/petrov.py` for B/D 0.01 to 100, Petrov is low by 2.0 to 5.5 % at eps 0.2, by 13 to
-    27 % at 0.5, by 56 to 70 % at 0.9 and by 86 to 91 % at 0.99.
+    Petrov's journal carries no load; under load a journal runs eccentrically and its friction is higher.
+    If the radial load is given, the answer states the effect: the eccentricity and the friction over Petrov's
+    come from the Reynolds solution (full circle, Swift–Stieber rupture), and a difference of 5 % or more
+    gives a warning.
+    Measured by `benchmarks/petrov.py` for B/D 0.01 to 100, Petrov's value is too low by 2.0 to 5.5 % at eps
+    0.2, by 13 to 27 % at 0.5, by 56 to 70 % at 0.9 and by 86 to 91 % at 0.99.
     The course's own load of 3 kN gives its worked case So = 32, eps = 0.965 and 5.3 times Petrov's friction:
-    it lies far outside.
-    The film is laminar and isothermal, and fills the whole circle; the load stands still, and the speed is
-    the journal's against the bearing. Above Re = 41.3 √(r/c) (Taylor's vortices) a warning says that the film
-    rubs more; the density matters for that alone.
+    it is far outside the range of Petrov's formula.
+    The film is laminar and isothermal, and fills the whole circle. The load is stationary, and the speed is
+    that of the journal relative to the bearing. Above Re = 41.3 √(r/c) (Taylor vortices) a warning states
+    that friction is higher; the density is used only for this check.
 
     References
     ----------

@@ -1,8 +1,8 @@
-"""Mixed friction of a journal bearing: film and roughness share the load; the Stribeck curve.
+"""Mixed friction of a journal bearing: film and asperities share the load; the Stribeck curve.
 
-The rough faces carry the share of the load that the film does not. At low speed they carry all of it, and the
-contact causes the friction; at high speed they carry nothing, and the oil causes it. In between, the curve
-has its minimum.
+Asperity contact carries the part of the load that the film does not carry. At low speed it carries all of the
+load, and contact causes the friction; at high speed it carries nothing, and the oil causes the friction. In
+between, the curve has its minimum.
 """
 
 from __future__ import annotations
@@ -53,38 +53,39 @@ UNBORNE_ON_CURVE = "at some speed of the curve film and roughness do not bear th
 
 
 class MixedFriction(Oil):
-    """Mixed friction of a journal bearing: film and roughness share the load; friction over speed (Stribeck).
+    """Mixed friction of a journal bearing: film and asperities share the load; the Stribeck curve.
 
-    The roughness of both faces bears what the film does not. At low speed that is all, and friction is that
-    of the contact; at high speed nothing, and friction is the oil's; between them lies the curve's lowest
-    point.
+    Asperity contact carries the part of the load that the film does not carry. At low speed it carries all of
+    the load, and contact causes the friction; at high speed it carries nothing, and the oil causes the
+    friction. In between, the curve has its minimum.
 
     Limits
     ------
-    Static load, aligned rigid bearing without grooves, the journal alone turns, one viscosity: that of the
-    oil temperature, or given. Far from the bearing's own speed the oil is warmer or colder; the curve does
-    not count that.
-    Contact after Greenwood and Tripp: elastic summits in a normal distribution, of one radius. Plastic
-    contact, running-in and boundary layers are not counted; the friction coefficient of the contact is given.
-    Gaps are those between the mean lines of the faces. Where these would meet, the load is refused.
-    Level map takes the film of smooth faces; level averaged that of the average Reynolds equation of Patir
-    and Cheng with isotropic roughness. Measured by `c29dd3ed:benchmarks/mixed_friction.py` at a width of
-    half the diameter and a roughness of 0.02 of the radial clearance: faces of equal roughness bear 1, 5,
-    10 and 42 % more at gaps of 5, 3, 2 and 0.5 times the roughness; a rough journal in a smooth bearing 2
-    to 3 % less at
-    5 to 2, a rough bearing 5 to 23 % more. Between the eccentricities at which it is solved its load errs by
-    0.3 %. The tables end at a gap of half the roughness; below it both levels differ as they do there.
-    The oil's friction is the shear over the full circle at the mean gap; factors of its shear stress are not
+    Static load, aligned rigid bearing without grooves; only the journal rotates. There is one viscosity,
+    given or that of the oil temperature. Far from the operating speed the oil would be warmer or colder; the
+    curve neglects this.
+    Contact after Greenwood and Tripp: elastic summits of one radius with normally distributed heights.
+    Plastic contact, running-in and boundary layers are neglected; the friction coefficient of the contact is
+    given.
+    Gaps are measured between the mean lines of the surfaces. A load at which these would meet is refused.
+    Level map uses the film of smooth surfaces, level averaged that of the average Reynolds equation of Patir
+    and Cheng with isotropic roughness. Measured by `c29dd3ed:benchmarks/mixed_friction.py` at a width of half
+    the diameter and a roughness of 0.02 of the radial clearance: surfaces of equal roughness carry 1, 5, 10
+    and 42 % more at gaps of 5, 3, 2 and 0.5 times the roughness; a rough journal in a smooth bearing carries
+    2 to 3 % less at gaps of 5 to 2 times the roughness, a smooth journal in a rough bearing 5 to 23 % more.
+    Between the eccentricities at which the equation is solved, the load has an error of 0.3 %. The tables end
+    at a gap of half the roughness; below it the two levels keep the difference that they have there.
+    The friction of the oil is the shear over the full circle at the mean gap; shear stress factors are not
     applied.
-    The contact's friction turns the journal against its rotation; the load balance knows that.
-    The transition speed is that at which the smallest gap is the transition film: three times the roughness
-    unless given, as the smallest permissible film of ISO 7902-3.
-    The curve runs over 41 speeds from a thousandth of the speed to a hundred times it.
-    The lubrication regime follows from the share of the load that the contact bears: boundary above half,
-    full_film up to 0.01 %, mixed between. The film parameter alone does not tell it: under heavy load a
-    film of high pressure bears nearly all at a parameter below 1.
-    Wear: contact pressure times sliding speed, summed over the surface and at its largest. What it removes is
-    for the user's own coefficient to say.
+    The friction of the contact moves the journal against its rotation; the load balance includes this.
+    The transition speed is the speed at which the smallest gap equals the transition film: by default three
+    times the roughness, as the smallest permissible film of ISO 7902-3.
+    The curve has 41 speeds from a thousandth of the operating speed to a hundred times it.
+    The lubrication regime follows from the share of the load that the contact carries: boundary above half,
+    full_film up to 0.01 %, mixed in between. The film parameter alone does not determine it: under heavy load
+    the film carries nearly all the load even at a parameter below 1.
+    Wear: the product of contact pressure and sliding speed is returned as its integral over the surface and
+    as its largest value. The user's own wear coefficient gives the wear rate.
 
     References
     ----------
@@ -177,7 +178,7 @@ class MixedFriction(Oil):
     @require("journal_roughness", "bearing_roughness", "diametral_clearance",
              remedy="check the unit of the roughness, in um")  # fmt: skip
     def roughness_within_clearance(self) -> Truth:
-        """The radial clearance is three times the composite roughness at least; else no film is full."""
+        """The radial clearance is at least three times the composite roughness; else no full film forms."""
         return self.c / 2 >= FULL_FILM * self.sigma
 
     @formula("um", "composite roughness", symbol=r"\sigma")
@@ -216,22 +217,22 @@ class MixedFriction(Oil):
 
     @shared
     def balance(self) -> MixedFilm:
-        """The balance of load, film and contact at the speed."""
+        """The equilibrium of load, film and contact at the operating speed."""
         return mixed_film(self.journal, self.omega)
 
     @shared
     def film(self) -> MixedFilm:
-        """Balance of film and contact at the speed, NaN without one."""
+        """The equilibrium at the operating speed, NaN without one."""
         return self.balance.admitted(self.eps)
 
     @shared
     def films(self) -> MixedFilm:
-        """Balances of film and contact at the speeds of the curve."""
+        """The equilibria at the speeds of the curve."""
         return mixed_films(self.journal, spread(self.omega, MULTIPLES))
 
     @shared
     def lowest(self) -> LeastFriction:
-        """The lowest point of the curve."""
+        """The minimum of the curve."""
         return least_friction(self.journal, self.omega, self.films)
 
     @formula("1", "relative eccentricity", symbol=r"\varepsilon", ge=0, remedy=UNBORNE)

@@ -64,71 +64,77 @@ CYCLE = "crank_angle"
 
 
 class OilFilmCycle(FedBearing):
-    """Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at five levels.
+    """Oil film of a journal bearing under a periodic load, fed by grooves and holes, at five levels.
 
-    The orbit of the journal by the mobility method, with or without a groove, or by a film that conserves its
-    oil and is fed as an engine feeds it; the smallest film and where in the cycle it is, pressure, loss and
-    flow. Each answer says by which level.
+    The orbit of the journal is calculated by the mobility method, with or without a groove, or by a
+    mass-conserving film with the real oil supply. Results are the smallest film and its crank angle,
+    pressure, power loss and flow. Each answer states its level.
 
     Limits
     ------
-    Rigid, aligned, laminar, isothermal film at one viscosity; a journal without mass; plain bore.
-    The load is the force of the journal on the sleeve. bearing_load gives the opposite force, of the sleeve
-    on the journal (rod on crank, frame on crank): say load_sense sleeve_on_journal with it. The wrong sense
+    Rigid, aligned bearing with a plain bore; laminar, isothermal film of one viscosity; massless journal.
+    The load is the force of the journal on the sleeve. bearing_load returns the opposite force, of the sleeve
+    on the journal (rod on crank, frame on crank): set load_sense to sleeve_on_journal for it. The wrong sense
     puts grooves and holes on the wrong side.
-    Axes turn with frame_speed; x turns to y with a positive speed. All speeds are those seen from the
-    engine's block. Load and speeds are linear between the angles.
-    At crank angle 0 the axes of frame, sleeve and journal coincide, as in bearing_load: x, the rod's axis
-    and the throw all point to the cylinder head. Angles of a groove or hole in the sleeve count from the
+    Axes rotate at frame_speed; x turns to y with a positive speed. All speeds are relative to the engine
+    block. Load and speeds are linear between the angles.
+    At crank angle 0 the axes of frame, sleeve and journal coincide, as in bearing_load: x, the rod's axis and
+    the throw all point to the cylinder head. Angles of a groove or hole in the sleeve are measured from the
     sleeve's (the rod's) axis, those of a hole in the pin from the throw, all in the sense x to y.
-    The angles rise and cover one cycle of 360° or 720°; equal steps are not needed. Time runs with the crank,
-    whose speed is that of the journal, in the mean, unless crank_speed says otherwise.
-    How oil comes in has to be said: by groove or holes, or by oil_supply flooded_ends, a film that is always
-    full.
-    Groove, holes and slots lie midway across and hold oil at the supply pressure, which is above ambient.
-    Level mobility_short: Booker's closed form, itself a fit: its mobility errs by up to 2.6 % to eps 0.5 and
-    7.5 % to 0.9 against the short bearing's half film, which bears too much where B/D exceeds 1/4.
-    Level mobility: the finite bearing's mobility, B/D 0.02 … 10. Both take the film as always full of oil and
-    know no groove; they overstate the film of a half-grooved bearing about twofold.
-    Level mobility_grooved, the default where a groove is given: where the load passes the groove, two lands
-    bear. The mobility is (1 − s) M(b) + s M(b (1 − g)/2)/(1 − g), where g is the groove's share of the width,
-    and s the share of the 90° about the load's direction that the groove covers.
-    What the supply pressure bears at rest is taken from the load: p_s W D/2 · (1 + g) · sin(extent/2), out of
-    the groove's middle. In the groove the pressure is p_s, and over its lands it falls evenly.
-    Both formulas are this template's own. The first is exact for a groove all around; for other grooves they
-    were compared with level supplied. Always full of oil; holes do not count.
+    The angles ascend and cover one cycle of 360° or 720°; equal steps are not needed. Time follows from the
+    crank speed, which is the mean speed of the journal unless crank_speed is given.
+    The oil supply must be given: by a groove or holes, or by oil_supply flooded_ends, which means a film that
+    is always full.
+    Groove, holes and slots are axially centred and contain oil at the supply pressure, which is above
+    ambient.
+    Level mobility_short: Booker's closed form, which is a fit: its mobility has errors of up to 2.6 % to eps
+    0.5 and 7.5 % to 0.9 relative to the half film of the short bearing, which carries too much load where B/D
+    exceeds 1/4.
+    Level mobility: the mobility of the finite bearing, B/D 0.02 … 10. Both levels treat the film as always
+    full of oil and ignore grooves; they overestimate the film of a half-grooved bearing about twofold.
+    Level mobility_grooved, the default if a groove is given: where the load passes the groove, two lands
+    carry it. The mobility is (1 − s) M(b) + s M(b (1 − g)/2)/(1 − g), where g is the groove's fraction of the
+    width, and s the fraction of the 90° around the load's direction that the groove covers.
+    The load that the supply pressure supports at rest is subtracted: p_s W D/2 · (1 + g) · sin(extent/2),
+    acting from the middle of the groove. In the groove the pressure is p_s, and over its lands it falls
+    linearly.
+    Both formulas are this template's own. The first is exact for a full-circle groove; for other grooves they
+    were compared with level supplied. The film is always full of oil; holes are ignored.
     Level flooded: mass-conserving cavities, oil fed at ambient pressure along the widest gap and nowhere
-    else; groove, holes and supply pressure do not count. Where the load changes side the film starves, and
-    the journal crosses what is empty at once. One point at a time, ten seconds or more; 8 cycles at most, and
-    refused where the last two differ by more than 2 % of the gap, as with light loads.
-    Level supplied: conserves the oil, which enters by groove and holes alone. A second or so a point, one
-    after the other. A film that starves or does not settle is refused by that name.
-    Where every hole is under the load for more than 60 % of the cycle it goes on, on finer meshes: there the
-    film depends on what enters at the edges of the holes.
-    Its verdict is repeating, wandering (by 3 % at most, which numerical_error contains), or starved or
+    else; groove, holes and supply pressure are ignored. Where the load changes side the film starves, and the
+    journal crosses the empty space instantly. It accepts one point at a time and takes ten seconds or more.
+    It marches at most 8 cycles, and refuses a case whose last two cycles differ by more than 2 % of the gap,
+    as with light loads.
+    Level supplied: mass-conserving, with oil entering only through groove and holes. It takes about a second
+    per point. A film that starves or does not converge is refused with that verdict.
+    If every hole is under the load for more than 60 % of the cycle, the march continues on finer meshes: the
+    film then depends on the inflow at the edges of the holes.
+    Its verdict is repeating; wandering (by 3 % at most, included in numerical_error); or starved or
     unsettled, which have no film.
     Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
-    Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
-    shear of the oil by the difference of journal and sleeve speed, and the work of the load on the film. Its
-    formula is that of a full film; levels flooded and supplied take the shear of the oil that is there.
-    Side flow is what the motion of the journal displaces from the ends, and what the supply pressure drives:
-    at level supplied hindered by the film's own pressure; at the mobility levels from a groove over its two
-    lands, with the gap along the orbit, as ISO 7902-1 has it for a steady load.
-    Rigid and isoviscous: criteria with warnings say where the bore gives way by more than half of the
-    smallest film, where the pressure makes the oil 22 000 times as thick, and where the film is below
-    0.05 µm. bore_deflection is an estimate: a mean pressure of 2/3 of the largest across, a cosine squared
-    around, on the bore of an endless body of steel. A real housing gives way by more.
+    Largest pressure, loss and flow are calculated from the film under the load along the orbit. Power loss is
+    the shear of the oil by the difference of journal and sleeve speed plus the work of the load on the film.
+    The shear is that of a full film; levels flooded and supplied use only the oil that is present.
+    Side flow is the oil that the motion of the journal displaces from the ends, plus the oil that the supply
+    pressure drives: at level supplied against the film's own pressure; at the mobility levels from a groove
+    over its two lands, with the gap along the orbit, as in ISO 7902-1 for a steady load.
+    The bearing is rigid and the viscosity independent of pressure. Criteria give warnings if the bore deforms
+    by more than half of the smallest film, if the pressure increases the viscosity 22 000 times, and if the
+    film is below 0.05 µm. bore_deflection is an estimate: an axial mean pressure of 2/3 of the largest and a
+    squared cosine around the circumference, on the bore of an infinite steel body. A real housing deforms
+    more.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl in an orbit of any size.
-    Two errors are stated. numerical_error, an output, bounds the error of the smallest film by the step, from
-    orbits on rings of crank angles. At level supplied it bounds that by mesh, step and cycle: from the change
-    between the last two meshes, and from cycle to cycle. At level flooded it is null.
-    The error in the answer is that against the rigid film of level supplied. Level supplied states its
-    numerical errors. Of the mobility levels it is a one-sided bound from random duties of the same kind of
-    supply, with a sleeve that is fixed or swings, as a power law of the duty. It is null where fewer than 59
-    duties support it, beyond the range of these, where it failed on other duties, where no or several inlets
-    are given, for a hole that is under the load for more than a tenth of the cycle, for pressures, curves and
-    side flow, and at level flooded.
+    Two errors are stated. numerical_error, an output, bounds the error of the smallest film due to the step,
+    from orbits on successively refined rings of crank angles. At level supplied it bounds the error due to
+    mesh, step and cycle, from the change between the last two meshes and from cycle to cycle. At level
+    flooded it is null.
+    The error in the answer is that relative to the rigid film of level supplied. Level supplied states its
+    numerical errors. For the mobility levels it is a one-sided bound from random duties with the same kind of
+    supply and a sleeve that is fixed or swings, as a power law of the duty. It is null if fewer than 59
+    duties support it, outside their range, if it failed on other duties, if no inlet or several are given,
+    for a hole that is under the load for more than a tenth of the cycle, for pressures, curves and side flow,
+    and at level flooded.
 
     References
     ----------
@@ -195,7 +201,7 @@ class OilFilmCycle(FedBearing):
 
     @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
     def groove_counts(self) -> Truth:
-        """A groove counts at levels mobility_grooved and supplied."""
+        """A groove affects the film only at levels mobility_grooved and supplied."""
         return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
 
     @require("sleeve_hole_length", warning="unused_input", remedy=MARCH_IT)
@@ -210,7 +216,7 @@ class OilFilmCycle(FedBearing):
 
     @require("supply_pressure", warning="unused_input", remedy="leave it out, or see the other warnings")
     def pressure_counts(self) -> Truth:
-        """The supply pressure counts at level supplied, and at the mobility levels with a groove."""
+        """The supply pressure affects only level supplied, and with a groove the mobility levels."""
         counts = self.feeding.grooved if self.level.startswith("mobility") else self.level == "supplied"
         return counts | np.isnan(self.p_s)
 
@@ -223,22 +229,22 @@ class OilFilmCycle(FedBearing):
         "permissible_pressure", warning="above_permissible_pressure", remedy="see maximum_pressure_angle"
     )
     def pressure_is_permitted(self) -> Truth:
-        """The largest pressure is not above what the bearing's material permits."""
+        """The largest pressure is at most the permissible pressure of the bearing material."""
         return below(self.p_lim, lambda: self.p_max)
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that know how the bearing is fed; level supplied only where something feeds it."""
+        """Return the levels that model the oil supply; level supplied only if there is a groove or hole."""
         grooved = bool(np.any(np.isfinite(self.W_g)))
         holed = bool(np.any(np.isfinite(self.l_B)) or np.any(np.isfinite(self.l_J)))
         cheap = ("mobility_grooved",) if grooved else ("mobility_short", "mobility")
         return (*cheap, "supplied") if grooved or holed else cheap
 
     def starting_level(self) -> str:
-        """The cheap level that knows the groove, if there is one."""
+        """Return the inexpensive level that models the groove, if there is one."""
         return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
 
     def own_error(self, output: str) -> Array:
-        """The error by mesh, step and cycle that level supplied states of each answer."""
+        """Return the error due to mesh, step and cycle that level supplied states for each answer."""
         if output == "minimum_film_thickness":
             return self.numerical_error
         if output == "maximum_eccentricity":
@@ -246,7 +252,7 @@ class OilFilmCycle(FedBearing):
         return self.orbit.march_error(output)
 
     def measured_case(self) -> str:
-        """The kind of supply and the motion of the sleeve; none beyond the duties that were marched."""
+        """Return the kind of supply and the motion of the sleeve; empty outside the marched duties."""
         kind, motion = supply_kind(self.feeding), sleeve_motion(self.motion)
         marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1)) and motion
         placed = kind.endswith("groove") or np.all(self.under_load <= 0.1)
@@ -254,68 +260,71 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def course(self) -> LoadCourse:
-        """How the load varies over the cycle."""
+        """Measures of how the load varies over the cycle."""
         return load_course(self.theta, self.F_x, self.F_y)
 
     @shared
     def peak(self) -> Array:
-        """Largest over mean load, on which the errors of the mobility levels depend."""
+        """Largest over mean load; the errors of the mobility levels depend on it."""
         return self.course.peak
 
     @shared
     def turns(self) -> Array:
-        """What the load's direction varies by: 0.05 where it is constant, 1.05 at most; likewise."""
+        """Variation of the load's direction, from 0.05 (constant) to 1.05; errors depend on it."""
         return 1.05 - self.course.steadiness
 
     @shared
     def whirls(self) -> Array:
-        """What part of the cycle the load turns at about half the crank's speed, and 0.05; likewise."""
+        """Fraction of the cycle in which the load rotates at about half crank speed, plus 0.05.
+
+        The errors of the mobility levels depend on it.
+        """
         return 0.05 + self.course.at_half_speed
 
     @shared
     def wide(self) -> Array:
-        """B/D over 0.5, or 1 for a narrower bearing; likewise."""
+        """B/D over 0.5, or 1 for a narrower bearing; errors depend on it."""
         return np.maximum(self.b / 0.5, 1.0)
 
     @formula("1/N", "load scale", symbol="s")
     def s(self) -> Array:
-        """The load number over the load."""
+        """The load number divided by the load."""
         return self.psi**2 / (self.D * self.W * self.eta * self.Omega)
 
     @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=OUTSIDE, source=ISO)
     def S_max(self) -> Array:
-        """Load number of the largest load, with the speed of the crank."""
+        """Load number of the largest load, based on the speed of the crank."""
         return self.F_max * self.s
 
     @formula("1", "relative supply pressure", symbol=r"\bar p_{s}", absent="no supply pressure is given")
     def P_s(self) -> Array:
-        """Over the specific load at which the load number is 1."""
+        """Supply pressure over the specific load at which the load number is 1."""
         return self.p_s * self.psi**2 / (self.eta * self.Omega)
 
     @shared
     def duty(self) -> Duty:
-        """Duty of the bearing, if the load number is within its limits."""
+        """Loads and speeds of the bearing, if the load number is within its limits."""
         return replace(self.motion, scale=self.S_max / self.F_max)
 
     @formula("1", "feed under load", symbol=r"\tau_{F}", absent=NO_FEED,
              latex=r"\text{share of the cycle in which all inlets lie within 60° of the load}")  # fmt: skip
     def under_load(self) -> Array:
-        """Share of the whole cycle; a groove or slot longer than 120° is never under the load."""
+        """Fraction of the whole cycle; a groove or slot longer than 120° is never fully under load."""
         return feed_under_load(self.motion, self.feeding)
 
     @shared
     def fed(self) -> FedDuty:
-        """The same with what feeds it, and what its pressure bears in a groove."""
+        """The duty with its oil supply, and the load supported by the pressure in a groove."""
         return fed_duty(self.level, self.duty, self.feeding, self.P_s)
 
     @shared
     def any_orbit(self) -> FedOrbit:
-        """The orbit at this level, wherever it leads."""
+        """The orbit at this level, before its bounds are checked."""
         return fed_orbit(self.level, self.fed)
 
     @shared
     def film_orbit(self) -> FedOrbit:
-        """The orbit where a film repeats; a single point whose film does not is refused."""
+        """The orbit if the film repeats; otherwise a single point is refused."""
         return self.any_orbit.required()
 
     @formula(
@@ -323,7 +332,7 @@ class OilFilmCycle(FedBearing):
         source=ORBIT, assumes=("b", "b_g", "inlets"),
     )  # fmt: skip
     def eps_max(self) -> Array:
-        """Relative; between the angles too."""
+        """Largest relative eccentricity, also between the crank angles."""
         return self.film_orbit.eps_max
 
     @shared
@@ -348,7 +357,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}", absent=STARVED)
     def h_0(self) -> Array:
-        """The smallest of the cycle, between the angles too."""
+        """Smallest film of the cycle, also between the crank angles."""
         return self.c * (1 - self.eps_max) / 2
 
     @formula("deg", "minimum film angle", symbol=r"\theta_{h}", absent=STARVED)
@@ -359,7 +368,7 @@ class OilFilmCycle(FedBearing):
     @profile("um", "film thickness", along=CYCLE, symbol="h", absent=STARVED,
              latex=r"\frac{c}{2}\left(1-\epsilon\right)")  # fmt: skip
     def h(self) -> Array:
-        """The smallest around the bearing, at each crank angle."""
+        """Smallest film around the bearing, at each crank angle."""
         return spread(self.c / 2, self.orbit.gap)
 
     @profile("1", "eccentricity x", along=CYCLE, symbol=r"\epsilon_{x}", source=ORBIT, absent=STARVED)
@@ -369,19 +378,19 @@ class OilFilmCycle(FedBearing):
 
     @profile("1", "eccentricity y", along=CYCLE, symbol=r"\epsilon_{y}", source=ORBIT, absent=STARVED)
     def eps_y(self) -> Array:
-        """Likewise along the axis y."""
+        """Position of the journal's centre over the radial clearance, along the axis y of the frame."""
         return self.orbit.eps_y
 
     @profile("MPa", "peak pressure", along=CYCLE, symbol=r"\hat{p}", absent=STARVED,
              latex=r"\frac{\eta\,\Omega}{\psi^{2}}\,\bar p\left(\theta\right)")  # fmt: skip
     def p(self) -> Array:
-        """The largest in the film at each crank angle; with a bar, of the dimensionless film."""
+        """Largest pressure in the film at each crank angle; the symbol with a bar is dimensionless."""
         return spread(self.eta * self.Omega / self.psi**2, self.film.P)
 
     @formula("MPa", "maximum pressure", symbol=r"p_{max}", absent=STARVED,
              latex=r"\max\hat{p}\left(\theta\right)")  # fmt: skip
     def p_max(self) -> Array:
-        """The largest of the cycle, at its angles."""
+        """Largest pressure of the cycle at the given angles."""
         return self.film.P_max * self.eta * self.Omega / self.psi**2
 
     @formula("um", "bore deflection", symbol="u", absent=STARVED, source="Michell 1899")
@@ -398,13 +407,13 @@ class OilFilmCycle(FedBearing):
              latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
              r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle; v is the centre's velocity, seen from axes that turn at the mean speed."""
+        """Mean over the cycle; v is the velocity of the centre in axes that rotate at the mean speed."""
         return self.film.loss * self.W * self.D**2 * self.eta * self.Omega**2 / (2 * self.psi)
 
     @formula("l/min", "side flow", symbol="Q", absent=STARVED,
              latex=r"\frac{W\,D\,c\,\Omega}{2}\,\left(\bar{q}+\bar{q}_{p}\right)")  # fmt: skip
     def Q(self) -> Array:
-        """Flow from both ends with the supplied oil, mean over the cycle; bars mark dimensionless values."""
+        """Flow out of both ends with the supplied oil, mean over the cycle; bars: dimensionless values."""
         return (self.film.side_flow + self.film.feed_flow) * self.W * self.D * self.c * self.Omega / 2
 
     @formula("l/min", "total oil flow", symbol="Q_{t}", absent=STARVED)
@@ -415,12 +424,12 @@ class OilFilmCycle(FedBearing):
     @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
              latex=r"\text{from rings of angles; supplied: mesh, step and last cycles}")  # fmt: skip
     def numerical_error(self) -> Array:
-        """Relative error of the smallest film, without the error of the model."""
+        """Relative numerical error of the smallest film, without the error of the model."""
         return self.orbit.numerical_error
 
     @text("verdict", absent=SUPPLIED_ONLY)
     def verdict(self) -> str:
-        """End of the march at level supplied."""
+        """How the march of level supplied ended."""
         return self.any_orbit.verdict
 
     @text("verdict reason", absent="a film repeats, or the level does not follow the oil that is fed")
@@ -435,7 +444,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("1", "mass balance", symbol=r"\delta_{m}", absent=SUPPLIED_ONLY)
     def mass_balance(self) -> Array:
-        """Oil fed less oil lost and stored in the last cycle, over the oil lost."""
+        """Oil fed minus oil lost and stored in the last cycle, over the oil lost."""
         return self.any_orbit.mass_balance
 
     @formula("l/min", "supply flow", symbol="Q_{s}", absent=SUPPLIED_ONLY,

@@ -33,10 +33,10 @@ class OilFilm(Template):
     Speed is listed in rpm; the Sommerfeld number needs rad/s, as used here.
     At So = 10 the fit drops from 0.9441 to 0.9436 (h0 jumps up by 0.8 %) and at So = 100 h0 falls by 1 %:
     it is not monotone in load there, as published.
-    h0 = ½ D C (1 − eps) takes the bearing diameter D where the radial clearance is ½ d C: 0.11 % high in the
-    paper's case.
-    The worked case names F = 25 kN, c = 0.055 mm, D = 48 mm and h0 = 3.2449 µm, but neither width, speed nor
-    temperatures; from h0 follow eps = 0.8821 and So = 3.95, and no more than that can be compared.
+    h0 = ½ D C (1 − eps) uses the bearing diameter D, although the radial clearance is ½ d C: h0 is 0.11 % too
+    high in the paper's case.
+    The worked case states F = 25 kN, c = 0.055 mm, D = 48 mm and h0 = 3.2449 µm, but neither width, speed nor
+    temperatures; h0 gives eps = 0.8821 and So = 3.95, and only these can be compared.
     The paper claims ±5 % (elsewhere ±10 %). Against a converged Reynolds solution (Swift–Stieber film,
     W/D = 0.376) h0 is off by −7 % at So = 1, +8 % at 1.9, +22 % at 3.95, +23 % at 5, +7 % at 10, +46 % at 40,
     −17 % at 100 and +12 % at 200: too thick, so unsafe, over most of its range.
@@ -111,7 +111,7 @@ class OilFilm(Template):
 
     @require("kinematic_viscosity_1", "kinematic_viscosity_2", remedy="swap the two viscosities")
     def oil_thins_when_hot(self) -> Truth:
-        """The oil is not thicker at the higher temperature."""
+        """The viscosity is not higher at the higher temperature."""
         return (self.nu_1 - self.nu_2) * (self.T_2 - self.T_1) >= 0
 
     @formula("mm", "journal diameter", source=PAPER)

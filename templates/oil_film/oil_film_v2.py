@@ -71,7 +71,7 @@ MESH_ERRORS = {
     "maximum_pressure": attrgetter("pressure_error"),
     "side_flow": attrgetter("flow_error"),
 }
-"""Outputs whose mesh error a bearing that is not plain states, and where the film holds that error."""
+"""Outputs with a mesh error if the bearing is not plain, and the attribute of the film with that error."""
 TAKE_A_SOLUTION = "lobes, bell mouth and tilt need level reynolds or mass_conserving"
 
 
@@ -79,62 +79,67 @@ class OilFilm(WarmOil, Journal):
     """Oil film of a journal bearing under static load: any bore, aligned or not, at five levels of fidelity.
 
     One bearing and one interface, from Ocvirk's closed form for a plain bore to a mass-conserving solution
-    for lobes, bell mouths and a tilted journal; each answer says by which level, and how far off it may be.
-    Rigid, laminar, isothermal film at an effective viscosity that is given, or follows from temperatures, or
-    from a heat balance.
+    for lobes, bell mouths and a tilted journal; each answer states its level and its error.
+    The film is rigid-walled, laminar and isothermal at an effective viscosity that is given, or follows from
+    temperatures or from a heat balance.
 
     Limits
     ------
-    Clearance and bearing diameter are those of the largest cylinder that fits into the bore: the relative
-    clearance, the Sommerfeld number and the relative eccentricity refer to it, whatever the shape. In a lobed
-    bore the relative eccentricity, of the journal's middle, may exceed 1.
-    Lobes are arcs of one radius, larger than the journal's by the clearance of machining c_p; preload is
-    1 - c/c_p. Shape lemon has two lobes, one middle at lobe_angle from the load; offset has two halves
-    displaced along their split so that the gap narrows in the sense of the hydrodynamic speed to the end of
-    each half; multi_lobe has lobes. lobe_offset says which share of a lobe's arc lies before its least gap.
-    A tilt is the slope of the journal's axis against the bearing's, in the planes along the load and 90°
-    ahead of it; it stands still relative to the load. The couples are what the film exerts against it.
-    A bell mouth is a parabola that begins at its length from each end and is as deep as given at the end.
-    Level short_bearing: Ocvirk's half film, meant for B/D up to 1/4; without the film's end effects it bears
-    too much beyond (18 % at eps 0.99 even at B/D 0.05).
-    Level fit: DIN 31652-2 / ISO 7902-2, refused outside 1/8 ≤ B/D ≤ 1, where it is wrong tenfold; it has no
-    maximum pressure and no stiffness.
-    Levels short_bearing, fit and map are for a plain, aligned bore. Levels map and reynolds: B/D 0.01 … 100.
-    A plain, aligned film without grooves is known up to eps 1 - 1e-7, another down to a gap of 1e-6.
-    Level reynolds knows lobes, bell mouth and tilt; in a plain, aligned bore it knows no grooves. Level
-    mass_conserving knows all; it is taken where grooves or supply pressure are given.
-    Without grooves a lobed bore is fed along the joints of its lobes, another along its widest gap.
-    The error of each level was measured for plain, aligned bearings without grooves. Lobed and grooved ones
-    state that of their meshes for film, eccentricity, attitude, largest pressure and side flow: 1.25 times
-    the last change by refinement, or more where the change before was large. With a tilt, a bell
+    Clearance and bearing diameter are those of the largest cylinder that fits into the bore. The relative
+    clearance, the Sommerfeld number and the relative eccentricity refer to it for any shape. In a lobed bore
+    the relative eccentricity at mid-width may exceed 1.
+    Lobes are arcs of the same radius, which exceeds that of the journal by the machined clearance c_p;
+    preload is 1 - c/c_p. Shape lemon has two lobes, one centred at lobe_angle from the load. Shape offset has
+    two halves displaced along their split so that the gap narrows in the sense of the hydrodynamic speed to
+    the end of each half. Shape multi_lobe has the number of lobes in lobes. lobe_offset is the fraction of a
+    lobe's arc before its least gap.
+    A tilt is the slope of the journal's axis relative to that of the bearing, in the planes along the load
+    and 90° ahead of it; it is stationary relative to the load. The couples are those of the film against the
+    tilt.
+    A bell mouth is a parabola that begins at its length from each end and has the given depth at the end.
+    Level short_bearing: Ocvirk's half film, intended for B/D up to 1/4. It neglects circumferential pressure
+    flow and carries too much load beyond (18 % at eps 0.99 even at B/D 0.05).
+    Level fit: DIN 31652-2 / ISO 7902-2, refused outside 1/8 ≤ B/D ≤ 1, where its error reaches a factor of
+    ten; it has no maximum pressure and no stiffness.
+    Levels short_bearing, fit and map apply to a plain, aligned bore. Levels map and reynolds: B/D 0.01 … 100.
+    Films in plain, aligned bores without grooves are available up to eps 1 - 1e-7, other films down to a
+    relative gap of 1e-6.
+    Level reynolds models lobes, bell mouth and tilt; in a plain, aligned bore it ignores grooves. Level
+    mass_conserving models everything; it is used if grooves or supply pressure are given.
+    Without grooves a lobed bore is fed along the joints of its lobes, any other bore along its widest gap.
+    The error of each level was measured for plain, aligned bearings without grooves. Lobed and grooved
+    bearings state the error of their meshes for film, eccentricity, attitude, largest pressure and side flow:
+    1.25 times the last change by refinement, or more if the previous change was large. With a tilt, a bell
     mouth or supply pressure only mesh_error is stated. The film is extrapolated from 64 x 8 and 128 x 16
-    intervals. Where these differ by over 1 %, 256 x 32 intervals follow; if the changes then do not fall as
-    the square of the mesh, the finest mesh answers. Grooves narrower than 5° or nearer to each other are not
-    resolved.
-    Start line: while the journal is displaced from where it lies, the line of supply at the widest gap stays
-    where it is (fixed, as a hole in the sleeve does), or turns with the journal (moving). At eps 0.1 and B/D
-    1 K_xx is 0.83 W/c with the first and 1.91 with the second.
-    Angles count from the load in the sense of the hydrodynamic speed, those of grooves and lobes too.
-    Laminar flow: a warning says where the film Reynolds number exceeds 41.3 √(D/c).
-    Rigid and isoviscous: pressure deforms the bearing and thickens the oil. Criteria with warnings say where
-    it deforms steel by the clearance, or makes the oil 22 000 times as thick; both matter well below that.
-    A film below 0.05 µm, or below the roughness of the surfaces, is no film: criteria with warnings say so.
-    The heat balance takes power and side flow from level map and a plain, aligned bearing whatever the level
-    and the shape, so that temperature and viscosity do not depend on them; flow driven by the supply pressure
-    is left out, and what lobes let through besides, which errs to the hot side.
-    Vogel's law eta = a exp(b/(t + c)), t in °C, takes two viscosities and its offset c, 95 K after Cameron,
-    or all its constants.
-    A multigrade oil is thinner at a bearing's shear rates than its kinematic viscosity suggests.
-    Whirl: coefficients are those at the speed given; the rotor is rigid and carries the load by its mass,
-    unless rotor_mass says otherwise.
+    intervals. If these differ by over 1 %, 256 x 32 intervals follow; if the changes then do not decrease
+    with the square of the mesh size, the result of the finest mesh is returned. Grooves narrower than 5° or
+    closer to each other are not resolved.
+    Start line: while the journal is displaced from its equilibrium, the supply line at the widest gap either
+    stays in place (fixed, like a hole in the sleeve) or rotates with the journal (moving). At eps 0.1 and B/D
+    1, K_xx is 0.83 W/c with the first and 1.91 W/c with the second.
+    Angles are measured from the load in the sense of the hydrodynamic speed, including those of grooves and
+    lobes.
+    Laminar flow: there is a warning if the film Reynolds number exceeds 41.3 √(D/c).
+    The bearing is rigid and the viscosity independent of pressure. Criteria give warnings if the pressure
+    deforms steel by the clearance, or increases the viscosity 22 000 times; both effects matter well below
+    these limits.
+    A film below 0.05 µm, or below the roughness of the surfaces, is not a full film: criteria give warnings.
+    At every level and for every shape, the heat balance uses power and side flow of level map for a plain,
+    aligned bearing, so that temperature and viscosity do not depend on level and shape. It neglects flow
+    driven by the supply pressure and the additional flow of lobes, so the temperature is overestimated.
+    Vogel's law eta = a exp(b/(t + c)), t in °C, is defined by two viscosities and its offset c, 95 K after
+    Cameron, or by all its constants.
+    At the shear rates of a bearing a multigrade oil is thinner than its kinematic viscosity suggests.
+    Whirl: the coefficients are those at the given speed. The rotor is rigid, and its mass is that whose
+    weight is the load, unless rotor_mass is given.
 
     Errata
     ------
-    Relative clearance is c/D here, as in DIN 31652; version 1 follows its paper with c/d.
-    Half of the clearance times 1 − eps is the smallest film here; version 1 is high by (D − d)/d.
-    Shear goes with the difference of journal and sleeve speed; the couple of the load, F e sin(beta)/2 on
-    each surface, is statics and goes with neither. Both make the torque; DIN 31652 has one speed for
-    both.
+    Relative clearance is c/D here, as in DIN 31652; version 1 uses c/d as in its paper.
+    The smallest film here is half of the clearance times 1 − eps; version 1 is too high by (D − d)/d.
+    Shear is proportional to the difference of journal and sleeve speed; the couple of the load, F e
+    sin(beta)/2 on each surface, is static and independent of both. Together they give the torque; DIN 31652
+    uses one speed for both.
 
     References
     ----------
@@ -188,22 +193,22 @@ class OilFilm(WarmOil, Journal):
 
     @derived("1", "lobe offset", symbol=r"\alpha_{l}", ge=0, le=1)
     def alpha(self) -> Array:
-        """The share of a lobe's arc before its least gap."""
+        """The fraction of a lobe's arc before its least gap."""
         return middle_of_least_gap(self.bore)
 
     @derived("kg", "rotor mass", symbol="m", ge=0)
     def m(self) -> Array:
-        """That whose weight is the load."""
+        """Default: the mass whose weight is the load."""
         return mass_of_weight(self.F)
 
     @require("grooves", remedy="give rows of angle and width")
     def grooves_fit(self) -> Truth:
-        """Seen around the bearing each groove is 0° to 360° wide."""
+        """Each groove extends over 0° to 360° of the circumference."""
         return all(0 <= width <= 2 * np.pi + 1e-9 for _, width in self.grooves)
 
     @require("grooves", "supply_pressure", warning="unused_input", remedy="take level mass_conserving")
     def feed_is_used(self) -> Truth:
-        """In a plain, aligned bearing grooves and supply pressure count at level mass_conserving alone."""
+        """In a plain, aligned bearing grooves and supply pressure affect only level mass_conserving."""
         return self.level == FED or self.is_shaped or not is_fed(self.p_s, self.grooves)
 
     @require("preload", "bore_shape", remedy="take bore_shape lemon, offset or multi_lobe")
@@ -213,12 +218,12 @@ class OilFilm(WarmOil, Journal):
 
     @require("preload", warning="unused_input", remedy="give preload, such as 0.5, or bore_shape plain")
     def lobes_have_a_preload(self) -> Truth:
-        """A bore of lobes without preload is a plain bore."""
+        """A lobed bore has a preload; without one it is a plain bore."""
         return (self.bore == "plain") | (self.preload > 0)
 
     @require("sleeve_speed", "load_speed", "preload", remedy="a lobed sleeve that turns has no static film")
     def lobes_stand_still(self) -> Truth:
-        """The sleeve of a lobed bore turns with the load, or stands still as it does."""
+        """The sleeve of a lobed bore rotates at the speed of the load, or both are stationary."""
         return (self.preload == 0) | (self.omega_B == self.omega_F)
 
     @require("bell_mouth_length", "bearing_width", remedy="count it from each end")
@@ -228,29 +233,29 @@ class OilFilm(WarmOil, Journal):
 
     @require("bell_mouth_depth", "bell_mouth_length", warning="unused_input", remedy="give both, or neither")
     def mouth_is_whole(self) -> Truth:
-        """A bell mouth has depth and length."""
+        """A bell mouth has both depth and length."""
         return (self.s_m > 0) == (self.l_m > 0)
 
     @require("start_line", warning="unused_input", remedy="leave it out: grooves and lobes stand still")
     def start_line_counts(self) -> Truth:
-        """The start line moves only where the film is fed along its widest gap."""
+        """The start line can move only if the film is fed along its widest gap."""
         return self.start_line == "fixed" or not (self.grooves or np.any(self.preload > 0))
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that know the bore, the tilt, and how the bearing is fed; fit is taken by name only."""
+        """Return the levels that model bore, tilt and oil supply; fit only if requested by name."""
         levels = ladder(self.levels, self.p_s, self.grooves)
         return levels[-1:] if self.is_shaped else tuple(level for level in levels if level != "fit")
 
     def is_measured(self) -> bool:
-        """Errors were measured of plain, aligned bearings without grooves and supply pressure."""
+        """Return whether errors were measured: plain, aligned, without grooves and supply pressure."""
         return not (self.is_shaped or (self.level == FED and is_fed(self.p_s, self.grooves)))
 
     def states_own_errors(self) -> bool:
-        """Of plain bearings those of the table hold."""
+        """Return whether the bearing states its own errors; plain bearings use those of the table."""
         return not self.is_measured()
 
     def own_error(self, output: str) -> Array:
-        """The error by its meshes that a lobed or grooved bearing states, of which none was measured."""
+        """Return the error due to the meshes, for a lobed or grooved bearing without measured errors."""
         error_of = MESH_ERRORS.get(output)
         bent = (self.shape.mouth > 0) | (self.shape.tilt_x != 0) | (self.shape.tilt_y != 0)
         stated = np.nan if error_of is None else error_of(self.film)
@@ -284,7 +289,7 @@ class OilFilm(WarmOil, Journal):
         per_level={"short_bearing": limits(0, 0), "fit": limits(0, 0), "map": limits(0, 0)},
     )  # fmt: skip
     def departure(self) -> Array:
-        """The largest of preload, and of bell mouth and tilt at the end over the radial clearance."""
+        """The largest of preload, bell mouth and tilt, the last two at the end over radial clearance."""
         return departure(self.shape.preload, self.shape.mouth, self.shape.tilt_x, self.shape.tilt_y)
 
     @shared
@@ -301,24 +306,24 @@ class OilFilm(WarmOil, Journal):
 
     @formula("1", "Sommerfeld number", symbol=r"S_{0}", ge=0, source=ISO)
     def S_0(self) -> Array:
-        """Sommerfeld number with the clearance of the largest cylinder that fits into the bore."""
+        """Sommerfeld number based on the clearance of the largest cylinder that fits into the bore."""
         return self.F * self.psi**2 / (self.D * self.W * self.eta * self.omega_h)
 
     @formula("1", "relative supply pressure", symbol=r"\bar p_{s}")
     def P_s(self) -> Array:
-        """Supply pressure in the units of the film's pressure."""
+        """Supply pressure in units of the film's dimensionless pressure."""
         return self.p_s * self.psi**2 / (self.eta * self.omega_h)
 
     @shared
     def unbounded_film(self) -> StaticFilm:
-        """The film at this level, wherever it leads."""
+        """The film at this level, before its bounds are checked."""
         return journal_film_at(
             self.level, self.S_0, self.b, self.P_s, self.grooves, self.shape, self.departure
         )
 
     @formula("1", "relative eccentricity", ge=0, lt=1000, assumes=("b", "turbulence"), remedy=UNBORNE)
     def eps(self) -> Array:
-        """Displacement of the journal's middle over the radial clearance."""
+        """Displacement of the journal at mid-width, over the radial clearance."""
         return self.unbounded_film.eps
 
     @shared
@@ -341,12 +346,12 @@ class OilFilm(WarmOil, Journal):
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}")
     def h_0(self) -> Array:
-        """The least gap of the whole bearing."""
+        """The smallest gap of the whole bearing."""
         return self.c * self.film.least / 2
 
     @formula("1", "mesh error", symbol=r"e_{h}", absent=NO_MESH)
     def mesh_error(self) -> Array:
-        """Estimated error of the smallest film due to the meshes from which it is extrapolated."""
+        """Estimated error of the smallest film due to the meshes from which it was extrapolated."""
         return self.film.mesh_error
 
     @formula("MPa", "maximum pressure", absent="level fit has none; take another level")
@@ -365,7 +370,7 @@ class OilFilm(WarmOil, Journal):
 
     @formula("N*m", "load couple", symbol=r"M_{F}")
     def M_F(self) -> Array:
-        """Couple of the pressure, in addition to that of shear; half of F e sin(beta) in a plain bore."""
+        """Moment due to pressure, in addition to that due to shear; half of F e sin(beta) in a plain bore."""
         return self.film.load_couple * self.eta * self.omega_h * self.W * self.D**2 / (2 * self.psi)
 
     @formula("N*m", "friction torque", symbol=r"M_{f}")
@@ -382,12 +387,12 @@ class OilFilm(WarmOil, Journal):
 
     @formula("N*m", "couple along load", symbol=r"M_{x}")
     def M_x(self) -> Array:
-        """Couple of the film against a tilt along the load."""
+        """Moment of the film against a tilt along the load."""
         return self.film.couple_x * self.eta * self.omega_h * self.D * self.W**2 / (2 * self.psi**2)
 
     @formula("N*m", "couple across load", symbol=r"M_{y}")
     def M_y(self) -> Array:
-        """Couple of the film against a tilt across the load."""
+        """Moment of the film against a tilt across the load."""
         return self.film.couple_y * self.eta * self.omega_h * self.D * self.W**2 / (2 * self.psi**2)
 
     @formula("l/min", "side flow", symbol="Q", source=ISO)

@@ -1,7 +1,7 @@
 """Plane slider bearing: a pad with a fixed incline, without side leakage or of finite width (MEC 315).
 
-The pad stands still; the runner beneath slides from its inlet to its outlet and drags the oil into the
-narrowing film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
+The pad is stationary; the runner beneath it slides from inlet to outlet and drags the oil into the converging
+film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
 """
 
 from __future__ import annotations
@@ -43,31 +43,31 @@ SMALL = 0.1  # what "much less than 1" is taken to mean
 class SliderBearing(Template):
     """Plane slider bearing: a pad with a fixed incline, without side leakage or of finite width (MEC 315).
 
-    The pad stands still; the runner beneath slides from its inlet to its outlet and drags the oil into the
-    narrowing film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
+    The pad is stationary; the runner beneath it slides from inlet to outlet and drags the oil into the
+    converging film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
 
     Limits
     ------
-    Level `infinite` neglects side leakage and takes closed forms: at b = l and h_i = 2 h_o it gives 2.3 times
-    the load.
+    Level `infinite` neglects side leakage and uses closed forms: at b = l and h_i = 2 h_o it gives 2.3 times
+    the load of level `finite`.
     Level `finite` solves the Reynolds equation with ambient pressure at all four edges, for b/l from 0.01 to
     100 and h_i/h_o up to 1000.
-    A parallel film bears nothing. A diverging film would pull; it ruptures and bears nothing, and what
-    shears is the part h_i/h that the inlet's oil still fills.
-    The Reynolds equation holds where the reduced Reynolds numbers and the squeeze number are much less than
-    1, here 0.1; with velocities from continuity, v = u b/l and w = u h/l, all three of them are R_x.
-    Both are taken with the outlet film.
-    The squeeze number takes the time in which oil passes the pad, l/U, unless another is given; then it
+    A parallel film carries no load. A diverging film would be in tension; it ruptures and carries no load,
+    and only the part h_i/h that the inlet's oil still fills is sheared.
+    The Reynolds equation applies if the reduced Reynolds numbers and the squeeze number are much less than 1,
+    here below 0.1; with velocities from continuity, v = u b/l and w = u h/l, all three Reynolds numbers equal
+    R_x. Both numbers are based on the outlet film.
+    The squeeze number uses the time in which oil passes the pad, l/U, unless another time is given; it then
     equals R_x.
     The film is laminar up to rho U h/eta of about 1000.
-    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the film's thickness,
-    or makes the oil 22 000 times as thick.
+    The faces are rigid and the viscosity independent of pressure: criteria give warnings if the pressure
+    deforms steel by the film's thickness, or increases the viscosity 22 000 times.
     Pressure and velocity are those at mid-width; the stations of the pressure are equally spaced in x.
 
     Errata
     ------
-    The course's solution for the velocity omits z in its last two terms; the form here meets u = 0 at the pad
-    and u = U at the runner.
+    The course's solution for the velocity omits z in its last two terms; the form here satisfies u = 0 at the
+    pad and u = U at the runner.
     The course prints l² and b² for h² in the squeeze number.
 
     References
@@ -157,7 +157,7 @@ class SliderBearing(Template):
 
     @require("place", "length", remedy="count the place from the inlet")
     def place_under_the_pad(self) -> Truth:
-        """The place lies under the pad."""
+        """The position lies under the pad."""
         return self.x <= self.l
 
     @formula("1", "film ratio", remedy="level infinite has no such limit", gt=0,
@@ -237,7 +237,7 @@ class SliderBearing(Template):
 
     @shared
     def slope(self) -> Array:
-        """The pressure gradient at the place, dimensionless."""
+        """The pressure gradient at the position, dimensionless."""
         return self.film.gradient(self.x / self.l)
 
     @formula("MPa/mm", "pressure gradient", symbol="p'", assumes=VALID)

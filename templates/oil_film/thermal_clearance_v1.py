@@ -11,15 +11,16 @@ EXPANSION = "linear expansion from the reference temperature"
 class ThermalClearance(Template):
     """Clearance of a journal in its housing when both are warm, from the clearance measured at 20 °C (ISO 1).
 
-    Dimensions of a drawing hold at 20 °C. A warm housing opens its bore and a warm journal grows; what is
-    left between them is c = c_0 + D (alpha_h (T_h - T_0) - alpha_j (T_j - T_0)).
+    Dimensions on a drawing apply at 20 °C. When warm, the bore of the housing and the journal expand; the
+    clearance between them is c = c_0 + D (alpha_h (T_h - T_0) - alpha_j (T_j - T_0)).
 
     Limits
     ------
-    Each part has one temperature and one coefficient, the mean one from the reference temperature to its own.
-    It expands freely: nothing holds the housing together, and no shell of another material sits in it.
-    Loads, press fits and the film's pressure change the clearance too; they are not counted.
-    The growth is small beside the diameter: D is that of the bore or of the journal.
+    Each part has one temperature and one mean coefficient of expansion between the reference temperature and
+    its own.
+    It expands freely: nothing restrains the housing, and it contains no shell of another material.
+    Loads, press fits and the film's pressure change the clearance too; they are neglected.
+    The expansion is small relative to the diameter, so D may be that of the bore or of the journal.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Oil film of a journal bearing under static load, with a varying temperature in the film.
+"""Oil film of a journal bearing under static load, with a temperature field in the film.
 
 Dowson's generalised Reynolds equation is solved with the energy equation; a solution with one temperature is
 given for comparison.
@@ -36,35 +36,39 @@ UNBORNE = (
 
 
 class ThermalFilm(Oil, Template):
-    """Oil film of a journal bearing under static load, with a temperature at every place.
+    """Oil film of a journal bearing under static load, with a temperature field in the film.
 
-    Dowson's generalised Reynolds equation with the energy equation, and beside it what one temperature gives.
-    A plain bore with one axial groove, in which fresh oil mixes with what comes around.
+    Dowson's generalised Reynolds equation is solved with the energy equation; a solution with one temperature
+    is given for comparison. The bore is plain, with one axial groove, in which fresh and recirculating oil
+    mix.
 
     Limits
     ------
-    Steady: load, bush and groove at rest. Rigid, aligned, laminar; the oil does not thin by shear, and its
-    density and heat capacity do not change. One temperature across the width: measured ones differ by little
-    there; the energy equation is solved for its mean, so that heat and power balance.
+    Steady: load, bush and groove are stationary. Rigid, aligned, laminar; no shear thinning, constant density
+    and heat capacity. The temperature is constant across the width, where measured temperatures differ
+    little; the energy equation is solved for its mean, so that heat and power balance.
     Level one_temperature, the default, is the heat balance of ISO 7902-1 with the film of oil_film's level
-    map, fed along its widest gap: groove, supply pressure, carry_over, oil_conductivity and held temperatures
-    do not count. Its greatest temperatures are those of the outlet.
-    Levels field and fine_field have 48 x 8 x 12 and 96 x 16 x 24 intervals (around, half the width, across
+    map, fed along its widest gap: groove, supply pressure, carry_over, oil_conductivity and given wall
+    temperatures are ignored. Its largest temperatures are those of the outlet.
+    Levels field and fine_field have 48 x 8 x 12 and 96 x 16 x 24 intervals (circumference, half width, across
     the film); on 15 bearings they differed by at most 0.34 % of the film and 0.3 K. mesh_error and
-    mesh_change compare with half as many intervals, an estimate. What follows is for these levels.
-    The film ruptures and re-forms as mass conservation demands. In a cavity the oil stands in streamers, and
-    everything counts by their share: shear, heat, contact with the walls. The groove is full at the supply's
-    pressure, which falls evenly over the lands at its ends; what leaks there, and shear in the groove, are
-    left out. Oil that arrives mixes wholly with the fresh one; carry_over says which share of it goes on.
-    The bush is adiabatic, or cooled from behind (heat_transfer_coefficient), or held at a temperature. Heat
-    does not flow around in it. The journal has one temperature: that without net heat, or as given.
-    Thermal growth of journal and bush is left out: give the clearance as it is when warm (thermal_clearance).
-    Beside it stands one temperature: mean of supply and outlet by the balance of ISO 7902-1, with the groove
-    and the film of the same mesh; air behind the bush counts, a bush held at a temperature does not.
-    A film thinner than 1 % of the clearance is refused. So is one without balance below 500 degC: at
-    light load hardly any oil leaves, and an adiabatic bearing grows hot.
+    mesh_change compare with half as many intervals, an estimate. The following points apply to these levels.
+    The film ruptures and re-forms as mass conservation requires. In a cavity the oil flows in streamers;
+    shear, heat and contact with the walls are reduced to their share of the width. The groove is full at the
+    supply pressure, which falls linearly over the lands at its ends; leakage there and shear in the groove
+    are neglected. Arriving oil mixes completely with fresh oil; carry_over is the fraction of arriving oil
+    that flows on.
+    The bush is adiabatic, or cooled from behind (heat_transfer_coefficient), or at a given temperature. There
+    is no circumferential conduction in it. The journal has one temperature: that without net heat flow, or a
+    given one.
+    Thermal expansion of journal and bush is neglected: give the clearance when warm (thermal_clearance).
+    For comparison, a film with one temperature is calculated: the mean of supply and outlet from the balance
+    of ISO 7902-1, with the groove and the film of the same mesh; cooling by air behind the bush is included,
+    a given bush temperature is not.
+    A film thinner than 1 % of the clearance is refused. So is one without a heat balance below 500 degC: at
+    light load hardly any oil leaves, and an adiabatic bearing becomes hot.
     A point takes about 0.5 s of processor time at level field and 0.9 s at fine_field, 1.2 s at most.
-    No error of the model is stated: no measured case with all its inputs was at hand.
+    No error of the model is stated: no measured case with all its inputs was available.
 
     References
     ----------
@@ -159,12 +163,12 @@ class ThermalFilm(Oil, Template):
 
     @require("heat_transfer_coefficient", "ambient_temperature", missing=True, remedy="give both, or neither")
     def cooling_is_whole(self) -> Truth:
-        """A bush that is cooled from behind has a heat transfer coefficient and a temperature there."""
+        """A bush that is cooled from behind has a heat transfer coefficient and a coolant temperature."""
         return np.isnan(self.h_b) == np.isnan(self.T_amb)
 
     @require("held_bush_temperature", "heat_transfer_coefficient", remedy="leave one of them out")
     def one_bush(self) -> Truth:
-        """The bush is held at a temperature or cooled from behind."""
+        """The bush is either at a given temperature or cooled from behind."""
         return np.isnan(self.T_b) | np.isnan(self.h_b)
 
     @formula("1", "relative clearance", symbol=r"\psi", source=ISO)
@@ -181,7 +185,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "Sommerfeld number", symbol="S_{0}", source=ISO)
     def S_0(self) -> Array:
-        """Sommerfeld number with the viscosity of the supply."""
+        """Sommerfeld number based on the viscosity of the supply."""
         return self.F * self.psi**2 / (self.D * self.W * self.eta * self.omega)
 
     @formula("MPa", "pressure scale", symbol="p_{0}")
@@ -191,12 +195,12 @@ class ThermalFilm(Oil, Template):
 
     @formula("l/min", "flow scale", symbol="q_{0}")
     def q_0(self) -> Array:
-        """Flow that the journal would carry around if the whole clearance moved with it."""
+        """Flow that the journal would transport if the whole clearance moved with it."""
         return self.omega * self.psi * self.D**2 * self.W / 4
 
     @formula("W/K", "heat scale", symbol="C_{0}")
     def C_0(self) -> Array:
-        """The heat that this flow carries off for each kelvin."""
+        """Heat that this flow transports per kelvin."""
         return self.rho_c * self.q_0
 
     @shared
@@ -217,7 +221,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def anywhere(self) -> WarmFilm:
-        """The film, however thin."""
+        """The film, before its thickness is checked."""
         return warm_film(self.level, self.case)
 
     @formula("1", "relative eccentricity", ge=0, le=0.99, assumes=("b", "eta"), source=DOWSON, remedy=UNBORNE)
@@ -226,7 +230,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def film(self) -> WarmFilm:
-        """The film, where there is one."""
+        """The film, if there is one."""
         return self.anywhere.admitted(self.eps)
 
     @formula("um", "minimum film thickness", symbol="h_{0}")
@@ -235,7 +239,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "mesh error", symbol="e_{h}", absent=ONE_HAS_NONE)
     def mesh_error(self) -> Array:
-        """Change of the smallest film from half the mesh."""
+        """Change of the smallest film relative to half the mesh."""
         return self.film.mesh_error
 
     @formula("deg", "attitude angle", symbol=r"\beta")
@@ -249,12 +253,12 @@ class ThermalFilm(Oil, Template):
 
     @formula("degC", "greatest film temperature", symbol="T_{max}")
     def T_max(self) -> Array:
-        """Anywhere in the oil or at the bush's surface."""
+        """Largest temperature in the oil or at the surface of the bush."""
         return in_kelvin(self.film.T_max)
 
     @formula("delta_degC", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
     def mesh_change(self) -> Array:
-        """Change of the largest temperature from half the mesh."""
+        """Change of the largest temperature relative to half the mesh."""
         return in_kelvin(self.film.mesh_change)
 
     @profile("deg", "bush angle", along=AROUND, symbol=r"\theta", latex=r"k\,5°")
@@ -266,7 +270,7 @@ class ThermalFilm(Oil, Template):
         "degC", "bush temperature", along=AROUND, symbol=r"T_{b}\left(\theta\right)", absent=ONE_HAS_NONE
     )
     def T_bush(self) -> Array:
-        """Temperature of the bush's surface; in the groove that of the oil there."""
+        """Temperature of the bush's surface; in the groove, that of the oil there."""
         return in_kelvin(self.film.bush)
 
     @formula("degC", "greatest bush temperature", symbol="T_{b,max}")
@@ -275,7 +279,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("degC", "journal temperature", symbol="T_{J}", absent=ONE_HAS_NONE)
     def T_J(self) -> Array:
-        """That without net heat, or as given."""
+        """Temperature of the journal without net heat flow, or as given."""
         return in_kelvin(self.film.T_journal)
 
     @formula("degC", "groove temperature", symbol="T_{g}", absent=ONE_HAS_NONE)
@@ -285,12 +289,12 @@ class ThermalFilm(Oil, Template):
 
     @formula("degC", "outlet temperature", symbol="T_{e}")
     def T_e(self) -> Array:
-        """Mean of the oil that leaves at the ends."""
+        """Mean temperature of the oil that leaves at the ends."""
         return in_kelvin(self.film.T_side)
 
     @formula("N*m", "friction torque", symbol="M_{f}")
     def M_f(self) -> Array:
-        """Torque on the journal, without the groove."""
+        """Friction torque on the journal, without the groove."""
         return self.film.torque * self.eta * self.omega * self.W * self.D**2 / (4 * self.psi)
 
     @formula("1", "friction coefficient", symbol="f")
@@ -312,12 +316,12 @@ class ThermalFilm(Oil, Template):
 
     @formula("W", "heat generated", symbol=r"\Phi")
     def Phi(self) -> Array:
-        """Power loss, and the work of the supply's pressure."""
+        """Power loss plus the work of the supply pressure."""
         return in_kelvin(self.film.dissipated) * self.C_0
 
     @formula("W", "heat by oil", symbol=r"\Phi_{o}")
     def Phi_o(self) -> Array:
-        """Heat that the leaving oil carries off, above the supply's temperature."""
+        """Heat that the outflowing oil removes, above the supply temperature."""
         return in_kelvin(self.film.by_oil) * self.C_0
 
     @formula("W", "heat by bush", symbol=r"\Phi_{b}")
@@ -330,12 +334,12 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "heat residual", symbol="r", absent=ONE_HAS_NONE)
     def residual(self) -> Array:
-        """Heat that is not accounted for, over that generated; 0 where it is less than 1e-9."""
+        """Heat that the balance does not account for, over the heat generated; 0 below 1e-9."""
         return self.film.residual
 
     @formula("degC", "effective temperature", symbol=r"T_\mathrm{eff}", source=ISO)
     def T_one(self) -> Array:
-        """The one temperature of a heat balance: the mean of supply and outlet."""
+        """The effective temperature of a heat balance: the mean of supply and outlet."""
         return in_kelvin(self.film.one_T)
 
     @formula("mPa*s", "effective viscosity", symbol=r"\eta_\mathrm{eff}")
@@ -345,32 +349,32 @@ class ThermalFilm(Oil, Template):
 
     @formula("um", "film of one temperature", symbol="h_{1}", source=ISO, absent=ONE_HAS_NONE)
     def h_one(self) -> Array:
-        """The smallest film that the effective temperature gives."""
+        """Smallest film at the effective temperature."""
         return self.c * (1 - self.film.one_eps) / 2
 
     @formula("W", "loss of one temperature", symbol="P_{1}", source=ISO, absent=ONE_HAS_NONE)
     def P_one(self) -> Array:
-        """The power loss that the effective temperature gives."""
+        """Power loss at the effective temperature."""
         return self.film.one_torque * self.eta * self.omega**2 * self.W * self.D**2 / (4 * self.psi)
 
     @formula("1", "film ratio", symbol="h_{1}/h_{0}", absent=ONE_HAS_NONE)
     def film_ratio(self) -> Array:
-        """Film of one temperature over that of all: above 1 it is unsafe."""
+        """Film at one temperature over that with a temperature field; a ratio above 1 is unsafe."""
         return self.h_one / self.h_0
 
     @formula("1", "loss ratio", symbol="P_{1}/P", absent=ONE_HAS_NONE)
     def loss_ratio(self) -> Array:
-        """Loss of one temperature over that of all."""
+        """Power loss at one temperature over that with a temperature field."""
         return self.P_one / self.P
 
     @formula("delta_degC", "unseen rise", symbol=r"\Delta T_{1}")
     def unseen(self) -> Array:
-        """Return by how much the film is hotter somewhere than the one temperature."""
+        """Largest excess of the film temperature over the effective temperature."""
         return self.T_max - self.T_one
 
     @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=ISO)
     def Re(self) -> Array:
-        """At the effective temperature."""
+        """Reynolds number at the effective temperature."""
         return self.rho * self.omega * self.D * self.c / (4 * self.eta_one)
 
     @formula("1", "laminar limit", symbol=r"\mathrm{Re}_{cr}", source=ISO)

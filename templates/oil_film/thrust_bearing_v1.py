@@ -17,31 +17,35 @@ from templates.physics.journals.oil import by_law, viscosity_at
 from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_collar
 
 NO_SUPPLY = "needs supply_temperature"
-UNBORNE = "no film ratio from 1.000001 to 100 bears this load: change taper, speed, viscosity or pads"
+UNBORNE = (
+    "no film ratio from 1.000001 to 100 bears this load with a film below 500 °C: change taper, speed, "
+    "viscosity or pads, or cool more"
+)
 MEC = "MEC 315"
 
 
 class ThrustBearing(Oil):
     """Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
 
-    The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
-    Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+    The film follows from the load, and its temperature from the friction heat that the oil removes. The film
+    is isothermal with an effective viscosity, incompressible and laminar; faces are rigid, and the pressure
+    around the pads is ambient.
 
     Limits
     ------
-    Each pad slopes over its whole angle: the film falls in proportion to the angle, by the taper, and is the
-    same at all radii. Pads with a flat part, and pads that tilt, have other films.
-    Each pad is solved as a sector, on 16 × 4 and 32 × 8 intervals, which are extrapolated. Against finer
-    meshes its load errs by 0.1 %, its flows by 0.06 % of the inlet's for film ratios to 5, b/l 0.3 to 3 and
-    diameters to 3; at the worst corner of what is taken (film ratio 100, b/l 10, diameters 5) by 0.7 % and
-    7 %. A rectangle of the pad's mean length, which slider_bearing 1 calculates, has 8 to 10 % less torque at
-    outer over inner diameter 2 (`c29dd3ed:benchmarks/thrust_bearing.py`).
-    The load is spread evenly over all pads: the collar runs true.
-    Heat: the oil of a pad leaves at its outlet with the outlet's temperature, and at its sides with the mean
-    of inlet and outlet, which is the film's. Of the outlet's oil the share that is carried over goes on under
-    the next pad. That share is a matter of the grooves, and no source for its default of one half is claimed;
-    0 is the coolest, 1 the hottest. No heat leaves through pads and collar.
-    Without a supply temperature give the viscosity; there is no heat balance then.
+    Each pad slopes over its whole angle: the film thickness decreases linearly with the angle, by the taper,
+    and is the same at all radii. Pads with a flat part and tilting pads have other films.
+    Each pad is solved as a sector, on 16 × 4 and 32 × 8 intervals, which are extrapolated. Relative to finer
+    meshes its load has an error of 0.1 %, its flows of 0.06 % of the inlet flow for film ratios to 5, b/l 0.3
+    to 3 and diameter ratios to 3; at the worst corner of the accepted range (film ratio 100, b/l 10, diameter
+    ratio 5) 0.7 % and 7 %. A rectangle of the pad's mean length, which slider_bearing 1 calculates, has 8 to
+    10 % less torque at a diameter ratio of 2 (`c29dd3ed:benchmarks/thrust_bearing.py`).
+    The load is distributed evenly over all pads, without runout of the collar.
+    Heat: the oil of a pad leaves at its outlet with the outlet temperature, and at its sides with the mean of
+    inlet and outlet, which is the film temperature. The carried-over share of the outlet's oil flows under
+    the next pad. This share depends on the grooves; its default of one half has no source; 0 gives the
+    lowest, 1 the highest temperature. No heat is lost through pads and collar.
+    Without a supply temperature there is no heat balance; give the viscosity.
     The film Reynolds number is that of the inlet film at the mean radius; the film is laminar up to about
     1000.
 
@@ -162,7 +166,7 @@ class ThrustBearing(Oil):
 
     @shared
     def collar(self) -> Collar:
-        """The collar at its operating point."""
+        """The collar in operation."""
         return Collar(
             load=self.p, taper=self.t, omega=self.omega, radius=self.D_m / 2, angle=self.phi,
             reach=self.reach + 0 * self.ratio, heat_capacity=self.rho_c, T_supply=self.T_s, carried=self.k,
@@ -170,13 +174,13 @@ class ThrustBearing(Oil):
 
     @shared
     def film(self) -> CollarFilm:
-        """The film that bears the load, with the heat balance, dimensionless."""
+        """The film that carries the load, with the heat balance, dimensionless."""
         return working_collar(
             self.collar, viscosity_at, self.A, self.B, by_law(self.law, np.nan, self.a_V),
             self.b_V, self.c_V, self.as_given("eta"), self.rho_ref, self.T_ref,
         )  # fmt: skip
 
-    @formula("1", "film ratio", symbol="a", gt=1, remedy=UNBORNE)
+    @formula("1", "film ratio", symbol="a", gt=1, le=100, remedy=UNBORNE)
     def a(self) -> Array:
         return self.film.a
 
@@ -220,8 +224,7 @@ class ThrustBearing(Oil):
     def T_e(self) -> Array:
         return self.T_i + self.gain
 
-    @formula("degC", "film temperature", symbol="T", absent=NO_SUPPLY, le=500,
-             remedy="the heat balance finds none below 500 °C: cool more, or less load or speed")  # fmt: skip
+    @formula("degC", "film temperature", symbol="T", absent=NO_SUPPLY)
     def T_film(self) -> Array:
         return (self.T_i + self.T_e) / 2
 

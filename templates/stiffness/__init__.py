@@ -1,1 +1,1 @@
-"""Stiffness of cranks: torsion, vibration, fatigue."""
+"""Stiffness, vibration and fatigue strength of cranks and shafts."""

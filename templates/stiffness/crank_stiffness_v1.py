@@ -1,6 +1,6 @@
-"""Torsional stiffness of a crank throw from its drawn dimensions, after Carter and after Ker Wilson.
+"""Torsional stiffness of a crank throw from its dimensions, after Carter and after Ker Wilson.
 
-The stiffness is from mid-journal to mid-journal, for a first layout and as a check of finite elements. Both
+The stiffness is from mid-journal to mid-journal, for a first layout and to check finite elements. Both
 formulas are fitted to tests of common proportions; they ignore fillets, oil holes, counterweights and the
 shape of the web.
 """
@@ -30,27 +30,28 @@ NOT_COMPARED = "give reference_stiffness, such as a measured one or one by finit
 
 
 class CrankStiffness(Template):
-    """Torsional stiffness of a crank throw from its drawing's dimensions, after Carter and after Ker Wilson.
+    """Torsional stiffness of a crank throw from its dimensions, after Carter and after Ker Wilson.
 
-    From mid-journal to mid-journal, for a first layout and as a check of finite elements. Fits to tests of
-    common proportions; fillets, oil holes, counterweights and the shape of the web are not in them.
+    The stiffness is from mid-journal to mid-journal, for a first layout and to check finite elements. Both
+    formulas are fitted to tests of common proportions; they ignore fillets, oil holes, counterweights and the
+    shape of the web.
 
     Limits
     ------
-    Carter is for flexible webs without overlap of journal and pin, Ker Wilson for stiff webs with overlap;
-    the overlap recommends one of them, both are returned.
-    Where the overlap is within ±0.1 (journal diameter + pin diameter) the recommended stiffness passes from
-    one to the other without a jump: their flexibilities are joined in shares. The literature names the sign
-    of the overlap and no width; the width is ours.
-    With a throw below 0.2 (journal diameter + pin diameter) Ker Wilson's web term is negative: a warning.
-    Where it outweighs journal and pin the formula gives no stiffness: a refusal, of this formula alone.
-    Sensitivities are d ln K/d ln x, all other dimensions kept: a value of 2 means that 1 % more of the
-    dimension gives 2 % more stiffness.
+    Carter's formula is for flexible webs without overlap of journal and pin, Ker Wilson's for stiff webs with
+    overlap; the overlap decides which is recommended, and both are returned.
+    If the overlap is within ±0.1 (journal diameter + pin diameter), the recommended stiffness changes from
+    one to the other continuously: it is blended from both flexibilities. The literature states only the sign
+    of the overlap; the width of the transition is our choice.
+    With a throw below 0.2 (journal diameter + pin diameter) Ker Wilson's web term is negative, which gives a
+    warning. If it outweighs journal and pin, the formula gives no stiffness, and its result is refused.
+    Sensitivities are d ln K/d ln x with all other dimensions constant: a value of 2 means that 1 % more of
+    the dimension gives 2 % more stiffness.
 
     Errata
     ------
-    The paper gives percent differences on mixed bases (15.711 % is of Carter's value; of the finite
-    elements' value it is 18.64 %). Here every difference names its base.
+    The paper states percentage differences on different bases (15.711 % is relative to Carter's value;
+    relative to the finite-element value it is 18.64 %). Here every difference names its base.
 
     References
     ----------

@@ -22,18 +22,21 @@ SMALLEST = "the rule grows without limit towards a radius of 0: take 2 mm, or a 
 class CrankshaftStrength(Template):
     """Fatigue strength of a crankshaft at its fillets and oil bores, by IACS UR M53.
 
-    For the endurance limit of a life under the cycle, where a factor for a plain specimen does not do: the
-    rule holds the size of the shaft, how it is made, and the support that a small fillet gives itself.
+    It gives the endurance limit for a life under the engine cycle, where a factor for a plain specimen is not
+    sufficient: the rule includes the size of the shaft, its manufacture, and the support effect of a small
+    fillet.
 
     Limits
     ------
-    Alternating von Mises stress that the highest stressed point bears permanently. Forged shafts, or cast
-    steel with fillets rolled by an approved process, without further surface treatment.
-    The ultimate strength is the least one of the material. The answer is that of the rule for local
-    stresses, notch and size included: where it is an endurance_limit, leave stress_concentration_factor and
-    Marin's factors out. The rule asks that it be 1.15 times the equivalent alternating stress.
-    Radii below 2 mm are refused, a bound of this template.
-    Stress concentration factors of the rule are not here; finite elements of the throw give local stresses.
+    The result is the alternating von Mises stress that the most highly stressed point withstands permanently.
+    The rule applies to forged shafts, or cast steel with fillets rolled by an approved process, without
+    further surface treatment.
+    The ultimate strength is the minimum of the material. The result applies to local stresses and includes
+    notch and size: if it is used as endurance_limit, omit stress_concentration_factor and Marin factors. The
+    rule requires it to be 1.15 times the equivalent alternating stress.
+    Radii below 2 mm are refused; this bound is the template's own.
+    The rule's stress concentration factors are not included; finite elements of the throw give local
+    stresses.
 
     References
     ----------

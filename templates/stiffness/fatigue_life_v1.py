@@ -1,4 +1,4 @@
-"""Life under the engine cycle: superposed tensors of unit loads, counted cycles, summed damage.
+"""Life under the engine cycle: superposed tensors of unit loads, counted cycles, accumulated damage.
 
 For the fillets of a crank, and for any part whose stresses under unit loads are known from finite elements or
 measurements. All stresses are elastic.
@@ -71,34 +71,39 @@ LOADS = "one load, or its curve over the cycle, for each table of stresses"
 
 
 class FatigueLife(SteelEndurance):
-    """Life under the engine's cycle: tensors of unit loads superposed, cycles counted, damage summed.
+    """Life under the engine cycle: superposed tensors of unit loads, counted cycles, accumulated damage.
 
-    For the fillets of a crank, and for any part whose stresses under unit loads are known: by finite
-    elements, or measured. Elastic throughout.
+    For the fillets of a crank, and for any part whose stresses under unit loads are known from finite
+    elements or measurements. All stresses are elastic.
 
     Limits
     ------
     A table of stresses has a row for each point: the tensor xx, yy, zz, xy, yz, xz under a unit of its load,
-    in axes that turn with the part. All tables have the same points in the same order. Loads are curves over
-    one cycle, at the same angles, in the directions of the unit loads, or constant.
-    Tensors are added, never equivalent stresses. Stresses of inertia need a load of their own.
-    Findley: on the plane where the radius of the smallest circle about the shear stress plus k times the
-    greatest normal stress is largest. All planes are searched. Cycles are those of the shear along its
-    longest way, each with the greatest normal stress of the whole cycle. mean_stress_correction is not used.
-    Signed von Mises: refused unless one tensor carries 95 % of the squares of the stress at every point. The
+    in axes that rotate with the part. All tables have the same points in the same order. Loads are constant,
+    or curves over one cycle at the same angles, in the directions of the unit loads.
+    Tensors are added, never equivalent stresses. Stresses due to inertia need a load of their own.
+    Findley: the critical plane is the one with the largest sum of the radius of the smallest circle around
+    the shear stress and k times the greatest normal stress. All planes are searched. Cycles are those of the
+    shear along the direction of its largest range, each with the greatest normal stress of the whole cycle.
+    mean_stress_correction is not used.
+    Signed von Mises: refused unless one tensor accounts for 95 % of the squared stress at every point. The
     sign is that of the larger principal stress; pure shear counts as tension.
-    A compressive mean counts as zero by every method unless compression_credit is yes; then yield_strength is
-    needed, and a lowest stress below minus the yield strength is refused.
-    Rainflow begins and ends at the highest stress of the cycle, so no half cycle stays open; cycles below 1 %
-    of the largest are not counted. Level extremes takes one cycle between the extremes: constant amplitude.
-    Strength: a line from 1000 cycles to the endurance limit at the knee. Below it damage goes on by Haibach
-    once any cycle exceeds the limit, by the elementary rule always, by the original one never.
-    Marin's factors are of the 10th edition; none is above 1. A temperature, a coating and corrosion belong in
-    other_factors. Residual stress is not in it.
-    A local stress counts by K_f/K_t if stress_concentration_factor is given with its notch_radius, by
-    Neuber's constant for bending; otherwise in full.
-    Safety factor: all loads, constant ones too, may grow so many times up to the endurance limit.
-    Life below 1000 cycles is plastic: a warning. Scatter of life by a factor of three and more is common.
+    A compressive mean stress counts as zero in every method unless compression_credit is yes; then
+    yield_strength is needed, and a lowest stress below minus the yield strength is refused.
+    Rainflow counting begins and ends at the highest stress of the cycle, so no half cycle is left; cycles
+    below 1 % of the largest are ignored. Level extremes uses one cycle between the extremes (constant
+    amplitude).
+    Strength: a line from 1000 cycles to the endurance limit at the knee. Below the limit the line continues
+    after Haibach once any cycle exceeds the limit, with Miner's elementary rule always, with the original
+    rule never.
+    Marin factors are those of the 10th edition; none is above 1. Temperature, coating and corrosion belong in
+    other_factors. Residual stress is not included.
+    A local stress is multiplied by K_f/K_t if stress_concentration_factor and notch_radius are given, with
+    Neuber's constant for bending; otherwise it is used in full.
+    Safety factor: the factor by which all loads, including constant ones, may increase until the endurance
+    limit is reached.
+    A life below 1000 cycles is plastic and gives a warning. Scatter of life by a factor of three and more is
+    common.
 
     References
     ----------
@@ -188,7 +193,7 @@ class FatigueLife(SteelEndurance):
 
     @require("stress_of_force_1", missing=True, remedy="give at least one table of stresses, with its load")
     def is_stressed(self) -> Truth:
-        """There are stresses of a unit load."""
+        """At least one load has stresses per unit load."""
         return has_any(self.stresses)
 
     @require("stress_of_force_1", "stress_of_force_2", "stress_of_moment_1", "stress_of_moment_2",
@@ -199,28 +204,28 @@ class FatigueLife(SteelEndurance):
 
     @require("force_1", "moment_1", missing=True, remedy="give a load over the crank angle")
     def something_changes(self) -> Truth:
-        """At least one load is a curve of two values or more."""
+        """At least one load is a curve of two or more values."""
         return changes(self.loads)
 
     @require("force_1", "force_2", "moment_1", "moment_2", "moment_3", "stress_of_force_1",
              remedy="take fewer points, wider steps of the crank angle or fewer curves at once")  # fmt: skip
     def not_too_much(self) -> Truth:
-        """Points, angles and curves make at most 200 000 stress tensors."""
+        """Points, angles and curves give at most 200 000 stress tensors."""
         return is_manageable(self.loads, self.stresses)
 
     @require("multiaxial_criterion", remedy="take findley, which needs no sign")
     def one_tensor_leads(self) -> Truth:
-        """Signed von Mises needs one tensor that carries 95 % of the squares of the stress at every point."""
+        """With signed von Mises one tensor accounts for 95 % of the squared stress at every point."""
         return one_tensor_leads(self.criterion, self.history)
 
     @require("yield_strength", "compression_credit", missing=True, remedy="give it, or leave the credit out")
     def credit_needs_yield(self) -> Truth:
-        """Credit for compression needs the yield strength."""
+        """Credit for compressive mean stress needs the yield strength."""
         return (self.credit == NO) | (self.sigma_y > 0)
 
     @require("compression_credit", "mean_stress_correction", remedy="take goodman or morrow")
     def credit_needs_a_line(self) -> Truth:
-        """Gerber's parabola says nothing of compression."""
+        """Gerber's parabola does not apply to compressive mean stress."""
         return (self.credit == NO) | (self.correction != GERBER)
 
     @shared

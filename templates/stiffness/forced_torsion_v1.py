@@ -1,4 +1,4 @@
-"""Forced torsional vibration of an engine's train: torque, twist and stress of every shaft over the speeds.
+"""Forced torsional vibration of an engine's train: torque, twist and stress of each shaft over the speeds.
 
 Inertias, shafts, branches, gears, dampers and a propeller, excited by gas and inertia torque of cylinders.
 """
@@ -71,31 +71,32 @@ NO_SECTION = "no section modulus is given"
 
 
 class ForcedTorsion(TorsionTrain):
-    """Forced torsional vibration of an engine's train: torque, twist, stress of every shaft over the speeds.
+    """Forced torsional vibration of an engine's train: torque, twist and stress of each shaft over speed.
 
-    Inertias, shafts, branches, gears, dampers and a propeller, excited by gas and inertia torque of
-    cylinders.
+    The train has inertias, shafts, branches, gears, dampers and a propeller, and is excited by gas and
+    inertia torque of cylinders.
 
     Limits
     ------
     Linear, steady: inertias do not depend on the crank angle, and the mean speed is constant.
-    Inertias are numbered from 1. Shaft s joins shaft_from[s] to shaft_to[s]; 0 is the ground. A gear makes
-    the angle of gear_to its ratio times that of gear_from, negative for an outer mesh; teeth are rigid,
+    Inertias are numbered from 1. Shaft s connects shaft_from[s] to shaft_to[s]; 0 is ground. A gear makes the
+    angle of gear_to its ratio times that of gear_from, negative for an external mesh; teeth are rigid,
     without backlash. Torques of a shaft are at its own speed.
-    Damping of a shaft is viscous, shaft_damping, and of its material, loss_factors: k (1 + i eta).
-    A viscous damper is an inertia on a shaft without stiffness and with damping, a tuned one has both; a
-    rubber one has a loss factor.
-    A propeller's torque goes with the square of its speed; its damping is propeller_factor times its mean
-    torque over its mean speed: 2 along its own law.
-    Torques are those of the first cylinder over one cycle, at the crank angle at which it has them; the
-    others have the same, later by their firing angle less that of the first. Gas torque does not depend on
-    speed; inertia torque is that at inertia_speed, and grows with its square. A gas factor of 0 is a misfire.
-    A last point that repeats the first is left out. The mean torque twists no shaft here.
-    Vibratory torque, twist, stress and angle are half the swing of the sum of all orders up to highest_order.
-    Adding amplitudes would give more. Rows are shafts or inertias, columns speeds. A power_balance_error
-    below 1e-12 is rounding, and shown as 0.
-    A section modulus of 0 stands for a shaft whose stress is not asked for. No factor for notches.
-    Critical speeds are those without damping, rows are orders, columns modes; those of modes at 0 Hz are 0.
+    Damping of a shaft is viscous, shaft_damping, and hysteretic, loss_factors: k (1 + i eta).
+    A viscous damper is an inertia on a shaft without stiffness but with damping, a tuned damper has both; a
+    rubber damper has a loss factor.
+    The torque of a propeller is proportional to the square of its speed; its damping is propeller_factor
+    times mean torque over mean speed: 2 on its own propeller curve.
+    Torques are those of the first cylinder over one cycle, at its own crank angle; the others have the same
+    torque, delayed by their firing angle minus that of the first. Gas torque does not depend on speed;
+    inertia torque is given at inertia_speed and is proportional to the square of speed. A gas factor of 0 is
+    a misfire. A last point that repeats the first is omitted. The mean torque does not twist the shafts here.
+    Vibratory torque, twist, stress and angle are half the range of the sum of all orders up to highest_order.
+    Adding amplitudes would give more. Rows are shafts or inertias, columns are speeds. A power_balance_error
+    below 1e-12 is rounding error, and shown as 0.
+    A section modulus of 0 means that no stress is wanted for the shaft. There is no factor for notches.
+    Critical speeds are those without damping; rows are orders, columns are modes. Those of modes at 0 Hz are
+    0.
     At most 100 inertias, 300 shafts, 100 cylinders and 2000 speeds.
 
     References
@@ -180,12 +181,12 @@ class ForcedTorsion(TorsionTrain):
 
     @require("excited_inertias", "inertias", remedy=NUMBERS)
     def excited_exist(self) -> Truth:
-        """The excited inertias are one list of inertias that exist."""
+        """The excited inertias are a list of existing inertias."""
         return exist(self.J, self.E)
 
     @require("excited_inertias", missing=True, remedy="speeds are those of one crankshaft; reduce the other")
     def excited_alike(self) -> Truth:
-        """The excited inertias turn at one speed."""
+        """The excited inertias have the same mean speed."""
         return turn_alike(self.layout, self.E)
 
     @require("firing_angles", "excited_inertias", remedy="give two lists of one value for each cylinder")
@@ -200,27 +201,27 @@ class ForcedTorsion(TorsionTrain):
 
     @require("crank_angle", remedy="8 to 20 000 angles over 360 deg in two strokes or 720 deg in four")
     def one_cycle(self) -> Truth:
-        """The crank angles are one list that rises in equal steps over one cycle."""
+        """The crank angles are a list that ascends in equal steps over one cycle."""
         return is_one_cycle(self.theta)
 
     @require("gas_torque", "inertia_torque", missing=True, remedy="give one of them or both, in N*m")
     def excited(self) -> Truth:
-        """There is a torque of gas or of inertia."""
+        """A gas torque or an inertia torque is given."""
         return are_excited(self.T_g, self.T_m)
 
     @require("inertia_speed", "inertia_torque", missing=True, remedy="give both, or none")
     def speed_of_inertia(self) -> Truth:
-        """A torque of inertia has the speed at which it is that."""
+        """An inertia torque is given together with its speed."""
         return has_its_speed(self.T_m, self.n_m)
 
     @require("gas_torque", "crank_angle", missing=True, remedy="leave the last point out")
     def gas_closes(self) -> Truth:
-        """A last point of the gas torque that repeats the first angle has its torque."""
+        """A last point of the gas torque that repeats the first angle repeats its torque."""
         return closes(self.theta, self.T_g)
 
     @require("inertia_torque", "crank_angle", missing=True, remedy="leave the last point out")
     def inertia_closes(self) -> Truth:
-        """A last point of the inertia torque that repeats the first angle has its torque."""
+        """A last point of the inertia torque that repeats the first angle repeats its torque."""
         return closes(self.theta, self.T_m)
 
     @require("highest_order", "crank_angle", remedy="take a lower order, or smaller steps of the crank angle")
@@ -230,7 +231,7 @@ class ForcedTorsion(TorsionTrain):
 
     @require("speeds", "inertias", "highest_order", remedy="take fewer speeds, orders or points at once")
     def manageable(self) -> Truth:
-        """There are at most 2000 speeds, and a size that is calculated in seconds."""
+        """There are at most 2000 speeds, and the calculation takes only seconds."""
         return is_manageable(self.shape_of_points(), self.J, self.omega, self.theta, self.h_max)
 
     @shared

@@ -58,27 +58,28 @@ NO_LIMIT = "needs endurance_limit or design_life, and some stress"
 class StressLife(Template):
     """Fatigue life by stress: Basquin's line with mean stress by Goodman, Gerber or Morrow.
 
-    For parts under a constant amplitude, elastic throughout. The stress is given as it acts locally (by
-    finite elements, or measured), or as a nominal one with its stress concentration.
+    For parts under constant amplitude with elastic stresses. The stress is given as the local stress (from
+    finite elements or measurements), or as a nominal stress with its stress concentration.
 
     Limits
     ------
-    A stress from finite elements is taken as it is: in a design, `stress_amplitude` may be the relation
+    A stress from finite elements is used without change: in a design, `stress_amplitude` may be the relation
     `= throw.torsion.maximum_stress`, scaled to the alternating torque.
-    A nominal stress is raised by the fatigue notch factor, amplitude and mean alike, which holds while the
-    notch does not yield; in torsion it is a shear stress, and its von Mises stress counts.
-    Where both are given the local stress is taken.
-    Life is endless up to the endurance limit, if there is one; otherwise Basquin's line goes on, which few
+    A nominal stress, amplitude and mean alike, is multiplied by the fatigue notch factor, which is valid if
+    the notch does not yield; in torsion it is a shear stress, and its von Mises stress is used.
+    If both are given, the local stress is used.
+    Life is infinite up to the endurance limit, if there is one; otherwise Basquin's line continues, which few
     tests confirm beyond 1e8 cycles.
-    Goodman and Gerber take a compressive mean stress as zero, with a warning; Morrow lets it lengthen life.
-    `safety_factor` is that of the load: amplitude and mean grow together, up to the line that holds for ever
-    or for `design_life`. `amplitude_safety_factor` lets the amplitude alone grow.
-    A largest stress at or above the ultimate strength is refused, one above the yield strength warned of.
-    A compressive mean stress is not refused however large it is, and Morrow's life then has no bound: the
-    criterion on strength holds |mean| + amplitude against the ultimate strength, and warns.
-    There is no safety factor where amplitude and mean may grow together without end: without stress, or where
+    Goodman and Gerber treat a compressive mean stress as zero, with a warning; with Morrow it increases life.
+    `safety_factor` is that of the load: amplitude and mean increase together, up to the line for infinite
+    life or for `design_life`. For `amplitude_safety_factor` only the amplitude increases.
+    A largest stress at or above the ultimate strength is refused; one above the yield strength gives a
+    warning. A compressive mean stress is not refused however large it is, and Morrow's life is then
+    unbounded: the criterion on strength compares |mean| + amplitude with the ultimate strength, and gives a
+    warning.
+    There is no safety factor if amplitude and mean may increase together without limit: without stress, or if
     compression outweighs the amplitude (Morrow).
-    Below 1000 cycles strains are plastic and Basquin's line no longer holds: a warning.
+    Below 1000 cycles strains are plastic and Basquin's line no longer applies, which gives a warning.
 
     References
     ----------
@@ -177,12 +178,12 @@ class StressLife(Template):
 
     @require("stress_amplitude", "nominal_stress_amplitude", missing=True, remedy="give one of them")
     def amplitude_is_known(self) -> Truth:
-        """The stress amplitude is given, as a local or a nominal one."""
+        """The stress amplitude is given as a local or a nominal stress."""
         return either_is_given(self.as_given_amplitude, self.S_a)
 
     @require("mean_stress", "nominal_mean_stress", missing=True, remedy="0 MPa if the stress is reversed")
     def mean_is_known(self) -> Truth:
-        """The mean stress is given, as a local or a nominal one."""
+        """The mean stress is given as a local or a nominal stress."""
         return either_is_given(self.as_given_mean, self.S_m)
 
     @require("stress_concentration_factor", "fillet_radius", missing=True,
@@ -211,12 +212,12 @@ class StressLife(Template):
 
     @require("fillet_radius", warning="outside_published_range", remedy="beyond, it is extrapolated")
     def is_in_the_chart(self) -> Truth:
-        """The chart holds for a shoulder over its fillet of 0.25 to 4 in torsion, 0.1 to 20 in bending."""
+        """Shoulder height over fillet is within the chart: 0.25 to 4 in torsion, 0.1 to 20 in bending."""
         return is_charted(self.loading, self.h_r, self.as_given_factor)
 
     @require("mean_stress", warning="compressive_mean", remedy="morrow lets it lengthen life")
     def mean_is_tensile(self) -> Truth:
-        """A compressive mean stress is taken as zero by Goodman and Gerber."""
+        """The mean stress is tensile; Goodman and Gerber treat a compressive one as zero."""
         return mean_is_used(self.correction, self.sigma_m)
 
     @shared

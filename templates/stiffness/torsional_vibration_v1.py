@@ -1,7 +1,7 @@
 """Torsional vibration of a chain of inertias: natural frequencies, mode shapes, critical speeds.
 
-The free, undamped vibration of a crankshaft or drive line is that of a row of inertias joined by massless
-shafts. It shows where resonances are, not how high.
+The model is the free, undamped vibration of a crankshaft or driveline as a chain of inertias joined by
+massless shafts. It shows at which speeds resonances occur, not their amplitudes.
 """
 
 from __future__ import annotations
@@ -32,19 +32,20 @@ OUT_OF_SCALE = "inertias or stiffnesses are so far apart that frequencies make n
 class TorsionalVibration(Template):
     """Torsional vibration of a chain of inertias: natural frequencies, mode shapes, critical speeds.
 
-    For the free, undamped vibration of a crankshaft or drive line as a row of inertias joined by massless
-    shafts. It shows where resonances lie, not how high they are.
+    The model is the free, undamped vibration of a crankshaft or driveline as a chain of inertias joined by
+    massless shafts. It shows at which speeds resonances occur, not their amplitudes.
 
     Limits
     ------
-    One row, without branches and gears; a gear stage is reduced to one speed first.
+    One chain, without branches and gears; refer both sides of a gear stage to one speed first.
     With free ends n inertias have n - 1 stiffnesses, in order; a single inertia has none.
-    With a fixed end n inertias have n stiffnesses, the first of them from the ground to the first inertia.
-    A zero inertia or stiffness is refused: join the two shafts in series, or treat two trains.
-    Modes ascend; with free ends mode 0 turns the train as a whole, and its frequency is exactly 0.
+    With a fixed end n inertias have n stiffnesses, the first of them from ground to the first inertia.
+    A zero inertia or stiffness is refused: combine the two shafts in series, or calculate two trains.
+    Modes are in ascending order; with free ends mode 0 is the rigid-body rotation, with a frequency of
+    exactly 0.
     Mode shapes are [mode, inertia], each with 1 as its largest entry; critical speeds are [order, mode].
     A critical speed of 0 belongs to mode 0, which no order excites.
-    Several trains at once are the rows of a table of inertias; their frequencies then are rows too.
+    Several trains at once are the rows of a table of inertias; their frequencies are rows too.
     At most 500 inertias or orders, and 1 000 000 entries in the mode shapes of all trains.
 
     References
@@ -90,7 +91,7 @@ class TorsionalVibration(Template):
 
     @require("inertias", "stiffnesses", "ends", missing=True, remedy="count the shafts, or check the ends")
     def a_chain(self) -> Truth:
-        """A free train of n inertias has n - 1 stiffnesses, a fixed one n."""
+        """A free train of n inertias has n - 1 stiffnesses, a train with a fixed end has n."""
         return fits(self.J, self.k, self.ends)
 
     @require("inertias", "engine_orders", missing=True, remedy="take fewer, or fewer trains at once")
@@ -100,7 +101,7 @@ class TorsionalVibration(Template):
 
     @require("speed_range", remedy="write it as [600, 3000] rpm")
     def two_speeds(self) -> Truth:
-        """The speed range is two speeds, the lower one first."""
+        """The speed range consists of two speeds in ascending order."""
         return ascending(self.n)
 
     @profile("rad/s", "natural angular frequencies", along="natural_angular_frequencies", symbol=r"\omega",

@@ -1,4 +1,4 @@
-"""People who approve, and what they do."""
+"""Principals for tests of approval, and their actions."""
 
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A service with an object of every kind, and everybody who attacks it: for `test_attack.py`."""
+"""A service with an object of every kind, and its attackers: for `test_attack.py`."""
 
 import re
 from contextlib import ExitStack, contextmanager

@@ -1,4 +1,4 @@
-"""A collector of traces for tests, and the spans that it got."""
+"""A collector of traces for tests, and the spans that it received."""
 
 import gzip
 import threading

@@ -1,4 +1,4 @@
-"""A migrated database in a folder of its own, and one server for all tests of the interface."""
+"""A migrated database in a separate folder, and one server for all tests of the interface."""
 
 import os
 import shutil

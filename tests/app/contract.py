@@ -1,4 +1,4 @@
-"""How files of STEP, XLSX and Mathcad are sent, which schemathesis cannot know; see `schemathesis.toml`."""
+"""How schemathesis must send STEP, XLSX and Mathcad files; see `schemathesis.toml`."""
 
 import schemathesis
 

@@ -1,4 +1,4 @@
-"""The app as it describes itself, made once for all tests that go through its routes: it takes a second."""
+"""The OpenAPI document of the app, created once for all tests that use its routes: it takes a second."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Requests of tests of designs to a service."""
+"""Requests to a service for tests of designs."""
 
 from serving import API, moody, paper, revision
 

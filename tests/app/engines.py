@@ -1,4 +1,4 @@
-"""The gallery's engines for tests that ask for a part of them."""
+"""The gallery's engines, for tests that use a part of them."""
 
 from app.web.gallery.engine import FOUR
 

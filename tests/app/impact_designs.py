@@ -1,4 +1,4 @@
-"""Designs of mixed structure that use oil_film, and what makes them a batch."""
+"""Designs of different structure that use oil_film, and those that form a batch."""
 
 from copy import deepcopy
 

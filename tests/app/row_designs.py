@@ -1,4 +1,4 @@
-"""Designs of which places vary, and each of their rows as a design of its own."""
+"""Designs with varied values, and each of their rows as a separate design."""
 
 from collections.abc import Mapping
 

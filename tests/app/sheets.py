@@ -1,4 +1,4 @@
-"""Worksheets for tests, and their way to the release over HTTP."""
+"""Worksheets for tests, and the steps to their release over HTTP."""
 
 import itertools
 

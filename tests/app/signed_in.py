@@ -1,4 +1,4 @@
-"""A service that asks for keys, with a principal of each role; and a helper that speaks as one of them."""
+"""A service that requires keys, with a principal of each role; and a helper that acts as one of them."""
 
 from contextlib import contextmanager
 from dataclasses import dataclass

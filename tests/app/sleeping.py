@@ -1,4 +1,4 @@
-"""A template that misbehaves, expensive by its table, and the server for it."""
+"""A slow template that its table declares as expensive, and a server for it."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A module that a forkserver preloads for a minute, as the geometry kernel seems to on a busy machine."""
+"""A module whose import takes a minute, like the geometry kernel on a busy machine, for a fork server."""
 
 import time
 

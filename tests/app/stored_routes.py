@@ -1,4 +1,4 @@
-"""What every route that sends a stored file has in common, whatever store it comes from."""
+"""Checks for every route that sends a stored file, from any store."""
 
 from mathcad_files import define, math, prime, scale
 from patience import patient, until

@@ -1,4 +1,4 @@
-"""Streams of events as a client reads them, with the numbers by which it resumes."""
+"""Streams of events as a client reads them, with the numbers for resuming."""
 
 import json
 from contextlib import closing

@@ -1,4 +1,4 @@
-"""Analyses in designs: relations use what finite elements find on the solid, and nothing else is found."""
+"""Relations in designs use finite-element results; only used results are computed."""
 
 import csv
 import io

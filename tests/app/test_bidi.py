@@ -1,4 +1,4 @@
-"""Names with signs that turn the direction of reading: isolated on pages, bare in titles and on paper."""
+"""Names with direction controls are isolated on pages and cleaned in titles and reports."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""The throw star: which pins stand together, where they are drawn, and that both calculations show it."""
+"""The throw star: pins at equal angles, their positions, and its use by both calculations."""
 
 from types import SimpleNamespace
 from xml.etree import ElementTree

@@ -1,4 +1,4 @@
-"""The physical sense of a film over HTTP: what cannot exist is named and not met; limits by a row."""
+"""Physical plausibility of a film over HTTP: impossible values are named; limits from the library."""
 
 import pytest
 from serving import API, problem

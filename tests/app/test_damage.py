@@ -1,4 +1,4 @@
-"""Lost and damaged artifacts are never served, and made again."""
+"""Lost and damaged artifacts are never served, and are rebuilt."""
 
 import hashlib
 import os

@@ -1,4 +1,4 @@
-"""Criteria of designs, calculated without a server: names, units, waivers, errors carried downstream."""
+"""Criteria of designs without a server: names, units, waivers, propagated errors."""
 
 import pytest
 

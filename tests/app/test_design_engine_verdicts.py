@@ -1,4 +1,4 @@
-"""Criteria judged row by row: the verdicts and numbers of each row as a design of its own."""
+"""Criteria of rows have the verdicts and numbers of separate designs."""
 
 import copy
 from collections import Counter

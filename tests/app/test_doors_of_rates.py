@@ -1,4 +1,4 @@
-"""Turns, radians and hertz in designs: relations, criteria, parameters and inputs."""
+"""Turns, radians and hertz in designs: in relations, criteria, parameters and inputs."""
 
 import math
 

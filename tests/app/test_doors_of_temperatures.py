@@ -15,6 +15,11 @@ FILM = {
     "radial_load": "25 kN", "bearing_diameter": "48 mm", "bearing_width": "18 mm", "speed": "7000 rpm",
     "diametral_clearance": "0.05 mm", "supply_temperature": "80 degC",
 }  # fmt: skip
+CASE = {
+    **FILM, "speed": "5000 rpm", "diametral_clearance": "0.055 mm", "supply_temperature": "60 degC",
+    "kinematic_viscosity_1": "100 mm**2/s", "kinematic_viscosity_2": "11 mm**2/s",
+}  # fmt: skip
+"""The film of shared/cases: 56.697 K, and 40 K at a clearance of 0.08098 mm."""
 RISE = "film.temperature_rise"
 CARRIED = ["temperature_rise", "power_loss", "side_flow", "outlet_temperature", "film_temperature"]
 
@@ -115,6 +120,28 @@ class TestCriteria:
         (one,) = (one for one in answer["criteria"] if one["name"] == "temperature_rise")
         assert (one["verdict"], one["limit"]) == ("met", {"value": pytest.approx(30), "unit": "delta_degC"})
         assert one["value"]["value"] == pytest.approx(29.034017, rel=1e-6)  # criteria_of_pads
+
+
+class TestCase:
+    def test_the_rise_is_a_difference_in_the_criterion_and_on_the_page(self, http):
+        own = created(http, document(inputs=CASE))
+        (one,) = (one for one in revision(http, own)["criteria"] if one["name"] == "cool")
+        assert one["verdict"] == "not_met"
+        assert one["value"] == {"value": pytest.approx(56.697, abs=5e-4), "unit": "delta_degC"}
+        assert one["limit"] == {"value": pytest.approx(30), "unit": "delta_degC"}
+        page = http.get(f"/designs/{own['id']}", headers={"Cookie": "units=us", "Accept": "text/html"}).text
+        assert "102.06 Δ°F" in page
+        assert "56.697" not in page
+
+    @pytest.mark.parametrize("target", ["40 delta_degC", "40 K"])
+    def test_the_clearance_of_a_rise_of_40_K(self, http, target):
+        body = {
+            "inputs": {name: value for name, value in CASE.items() if name != "diametral_clearance"},
+            "unknown": "diametral_clearance", "bounds": ["0.02 mm", "0.2 mm"],
+            "target": {"temperature_rise": target},
+        }  # fmt: skip
+        (root,) = http.post(f"{OIL}/solve", json=body).json()["roots"]
+        assert root == {**root, "value": pytest.approx(0.08098, abs=5e-6), "unit": "mm"}
 
 
 class TestUnits:

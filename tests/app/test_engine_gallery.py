@@ -1,4 +1,4 @@
-"""Engines of the gallery, whole: from the bore of their cylinders to verdicts on film, torsion and life."""
+"""Engines of the gallery from the bore to verdicts on film, torsion and life."""
 
 import json
 import os

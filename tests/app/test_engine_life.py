@@ -1,4 +1,4 @@
-"""From the loads of an engine to the life of its crank: relations turn the loads into the throw's axes."""
+"""From engine loads to the life of the crank: relations rotate the loads into the throw's axes."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A whole engine as one design, by the live interface: its loads drive a film in each bearing, by items."""
+"""An engine as one design over HTTP: its loads drive a film in each bearing, by items of arrays."""
 
 import numpy as np
 import pytest

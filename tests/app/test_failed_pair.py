@@ -1,4 +1,4 @@
-"""A revision of two solids of which the second cannot be built: the first is built, and yet not served."""
+"""If the second of two solids of a revision fails, the first is built but not served."""
 
 from serving import API, created, patched, revision
 

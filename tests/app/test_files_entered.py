@@ -1,4 +1,4 @@
-"""A change enters few files of `app`, and is read, ordered and calculated once."""
+"""A change enters few files of `app`, and is parsed, ordered and calculated once."""
 
 import sys
 import threading

@@ -1,4 +1,4 @@
-"""Sections of a design's page are written once for what they show; formulas once for their values."""
+"""Sections of a design's page are rendered once for equal content, formulas once for equal values."""
 
 import re
 

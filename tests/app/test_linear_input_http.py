@@ -1,4 +1,4 @@
-"""The request that froze the service for ever, and its relatives: each is answered, and by a refusal."""
+"""The request that froze the service, and similar ones, are answered by a refusal."""
 
 import http.client
 import socket

@@ -1,4 +1,4 @@
-"""The schema that the migrations make is the one that the tables declare."""
+"""The migrations create the schema that the tables declare."""
 
 import pytest
 from alembic.autogenerate import compare_metadata

@@ -1,4 +1,4 @@
-"""A model with two versions: which is the latest, what a withdrawn one says, designs of either, impact."""
+"""A model with two versions: which is the latest, a withdrawn version, designs of both, impact."""
 
 import io
 from textwrap import dedent

@@ -1,4 +1,4 @@
-"""Designs made up at random: never a 5xx; test_interface_at_length.py tries the whole interface."""
+"""Random designs never give a 5xx; test_interface_at_length.py tests the whole interface."""
 
 import json
 

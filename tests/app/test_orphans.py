@@ -1,4 +1,4 @@
-"""No process outlives its server, whatever it is doing when the server is killed; closing never waits."""
+"""No process outlives its server, even if the server is killed; closing never waits."""
 
 import os
 import signal

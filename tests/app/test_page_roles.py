@@ -1,4 +1,4 @@
-"""A page shows and does what the interface lets the same principal see and do; its errors are pages."""
+"""A page shows and does what the interface allows the same principal; its errors are pages."""
 
 import pytest
 from serving import API, created, paper

@@ -1,4 +1,4 @@
-"""The README's ten minutes: the example of the first page is sized by its width, drawn again, and met."""
+"""The ten-minute guide of the README: size the bearing by its width, rebuild it, meet the criterion."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The calculation report on screen and on paper: complete, the same each time, safe from what users write."""
+"""The report on screen and on paper: complete, reproducible, safe from user text."""
 
 import hashlib
 import io

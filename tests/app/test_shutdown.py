@@ -1,4 +1,4 @@
-"""A signal to stop acts at once, then does what the server does; afterwards it is the server's again."""
+"""A stop signal acts at once and then as the server handles it; later signals are the server's again."""
 
 import asyncio
 import signal

@@ -1,4 +1,4 @@
-"""A stored step shows its formulas from its record; without one it is calculated again as before."""
+"""A stored step shows its formulas from its record; without a record it is calculated again."""
 
 import json
 

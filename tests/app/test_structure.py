@@ -1,4 +1,4 @@
-"""The structure of `app`, as the script counts it."""
+"""The structure of `app`, as `benchmarks.structure` counts it."""
 
 from pathlib import Path
 

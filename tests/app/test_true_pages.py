@@ -1,4 +1,4 @@
-"""No sentence of page or report of a random design contradicts its own numbers, nor does a refusal."""
+"""No sentence on a page, in a report or in a refusal contradicts its own numbers, on random designs."""
 
 import random
 from html.parser import HTMLParser

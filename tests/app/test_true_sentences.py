@@ -18,7 +18,7 @@ from app.presentation.criteria import line
 from app.schemas.criteria import Criterion
 from templates.core.criteria.judgement import sentence
 from templates.core.criteria.summary import summarised
-from templates.core.language.spec import Given
+from templates.core.language.spec import Given, Profile, Text
 from templates.core.units.quantity import read
 from templates.core.units.units import unit_symbol
 from templates.door import built_in
@@ -54,12 +54,30 @@ def wobbled(cls, rng):
             scale, si = declared.meaning.scale, read(raw, declared.meaning.unit).si
             if not np.ndim(si) and not declared.meaning.integer and declared.meaning.unit != "degC":
                 value = float(scale.from_si(si)) * rng.uniform(0.7, 1.4)
-                inputs[name] = {"value": value, "unit": declared.meaning.unit}
+                several = rng.random() < 0.1 and not declared.single
+                values = [value, value * rng.uniform(0.7, 1.4)] if several else value
+                inputs[name] = {"value": values, "unit": declared.meaning.unit}
     return inputs
 
 
+def own_criteria(cls, step, rng):
+    """Criteria of the design about results of a step, each with a limit somewhere in six decades."""
+    numbers = [
+        (name, formula.meaning.unit)
+        for name, formula in cls.formulas.items()
+        if not isinstance(formula, (Text, Profile))
+    ]
+    return {
+        f"{step}_{k}": {
+            "require": f"{step}.{name} {sign} {10 ** rng.uniform(-3, 3):.6g} {unit}".removesuffix(" 1")
+        }
+        for k, (name, unit) in enumerate(rng.sample(numbers, min(2, len(numbers))))
+        for sign in [rng.choice(["<=", ">="])]
+    }
+
+
 def random_design(classes, rng, number):
-    steps = {}
+    steps, criteria = {}, {}
     for step in range(rng.choice([1, 1, 2])):
         cls = rng.choice(classes)
         limits = {
@@ -71,7 +89,9 @@ def random_design(classes, rng, number):
         steps[f"s{step}"] = {"template": cls.id, "version": cls.version, "inputs": wobbled(cls, rng)}
         if limits:
             steps[f"s{step}"]["limits"] = limits
-    return {"name": f"random {number}", "steps": steps}
+        if rng.random() < 0.5:
+            criteria |= own_criteria(cls, f"s{step}", rng)
+    return {"name": f"random {number}", "steps": steps, "criteria": criteria}
 
 
 def assert_true(judgement):

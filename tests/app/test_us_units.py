@@ -1,4 +1,4 @@
-"""US display converts whatever is measured: no viscosity stays metric beside inches and pounds."""
+"""The US display converts every quantity: no metric viscosity next to inches and pounds."""
 
 import pytest
 

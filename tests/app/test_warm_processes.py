@@ -1,4 +1,4 @@
-"""A process that ended a request by itself takes another; whatever ended otherwise ends its process only."""
+"""A process that finished a request normally is reused; any other end ends only that process."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""A job runs in a process of its own; whatever becomes of it, the server and its neighbours go on."""
+"""A job runs in its own process; whatever happens to it, the server and other jobs continue."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Modules that a service with the usual settings loads; tests look at it in a fork of the command line."""
+"""The modules that a service with default settings loads, examined in a fork of the command line."""
 
 import sys
 from pathlib import Path

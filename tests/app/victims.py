@@ -1,4 +1,4 @@
-"""Job functions that behave badly, each in its own way; found by name from the job processes."""
+"""Job functions that misbehave, each in its own way; job processes find them by name."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""A server of jobs and of nothing else, in a process that tests stop; they call it in a fork."""
+"""A server that only runs jobs, in a process that tests stop; they call it in a fork."""
 
 import sys
 from contextlib import asynccontextmanager

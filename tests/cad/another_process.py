@@ -1,4 +1,4 @@
-"""Builds in a process with other hashes and addresses: a fork of one that imported the kernel by itself."""
+"""Builds in a process with other hash seeds and addresses: a fork of one that imported the kernel itself."""
 
 import hashlib
 import json

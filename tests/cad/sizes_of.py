@@ -1,4 +1,4 @@
-"""The sizes that faces of a solid carry, before it is written."""
+"""The sizes of a solid with their faces, before it is written."""
 
 from cad.surfaces import Size, look
 

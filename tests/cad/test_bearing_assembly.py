@@ -1,4 +1,4 @@
-"""The assembly: its clearance is the film template's, and an interference has the names of the parts."""
+"""The assembly has the clearance of the film template, and an interference names the parts."""
 
 from dataclasses import replace
 

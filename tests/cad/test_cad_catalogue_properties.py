@@ -1,4 +1,4 @@
-"""Properties that every CAD model has, found by its file alone: see conftest."""
+"""Properties that every CAD model must have; models are found by file, see conftest."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""A wrong solid that calls itself valid does not pass: each check, where something else is drawn."""
+"""Wrong solids that the kernel calls valid are refused: each check, with a wrong shape."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What holds for one model: standard sizes, limits that are known in closed form, and rules."""
+"""Tests of single models: standard sizes, limits known in closed form, and rules."""
 
 from math import isclose
 from typing import Any

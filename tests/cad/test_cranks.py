@@ -1,4 +1,4 @@
-"""Crank models: closed forms, symmetry, what is refused, and the measures that a change would move."""
+"""Crank models: closed forms, symmetry, refusals, and measurements that a change would alter."""
 
 from math import isclose, pi, radians, tan
 from typing import Any

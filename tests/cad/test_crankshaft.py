@@ -1,4 +1,4 @@
-"""`crankshaft` 1, undivided: closed forms, what is measured, throws apart, lists as parameters, refusals."""
+"""`crankshaft` 1 with undivided pins: closed forms, measurements, separate throws, lists, refusals."""
 
 import json
 from cmath import exp

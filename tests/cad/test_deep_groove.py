@@ -1,4 +1,4 @@
-"""Ball bearings by designation: sizes of the standard, capacities of makers, cages that clear the balls."""
+"""Ball bearings by designation: standard sizes, makers' capacities, cages that clear the balls."""
 
 import numpy as np
 import pytest

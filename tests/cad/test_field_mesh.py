@@ -1,4 +1,4 @@
-"""Fields on the surface of a crankshaft: where they stand, what colours they have in a GLB file."""
+"""Fields on the surface of a crankshaft: their positions and colours in a GLB file."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""Where a throw's pin and fillets are, from its model."""
+"""Positions of a throw's pin and fillets, from its model."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Free spread of half shells: what nothing holds, against measurements that share no code with it."""
+"""Free spread of half shells: the free state, against measurements that share no code with it."""
 
 import numpy as np
 import pytest
@@ -121,7 +121,7 @@ def test_the_default_tang_keeps_off_the_sides_of_the_groove() -> None:
     """A tang of 0.12 of the width has a side in the plane of the groove's, and is refused."""
     given = {"inner_diameter": 0.02205, "width": 0.005806, "oil_hole_diameter": 0.001787}
     assert float(CLS.from_si(given).w_t) == pytest.approx(0.09 * 0.005806)
-    with pytest.raises(InvalidInputs, match="plane of a groove"):
+    with pytest.raises(InvalidInputs, match="planes of the groove"):
         CLS.from_si({**given, "tang_width": 0.12 * given["width"]}).inputs_si()
 
 

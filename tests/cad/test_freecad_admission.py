@@ -1,4 +1,4 @@
-"""Files of FreeCAD before they are opened: what is taken, what is left out, what is refused."""
+"""FreeCAD files before they are opened: what is accepted, removed and refused."""
 
 import io
 import time

@@ -1,4 +1,4 @@
-"""What the process of FreeCAD gives up before a file is opened; tried without FreeCAD."""
+"""The rights that the FreeCAD process gives up before it opens a file, tested without FreeCAD."""
 
 import json
 import os

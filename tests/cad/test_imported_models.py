@@ -1,4 +1,4 @@
-"""Descriptions of imported models as classes, and how a parameter shows on a solid."""
+"""Descriptions of imported models as classes, and parameters read back from a solid."""
 
 import io
 import pickle

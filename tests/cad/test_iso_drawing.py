@@ -1,4 +1,4 @@
-"""The rules of a technical drawing, as a checklist on the entities of its DXF; and no words that overlap."""
+"""The rules of a technical drawing as a checklist on its DXF entities; texts do not overlap."""
 
 import io
 from collections.abc import Sequence

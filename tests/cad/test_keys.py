@@ -1,4 +1,4 @@
-"""Keys: whatever changes the bytes or the answer is part of the key under which they are kept."""
+"""Keys: whatever changes bytes or results is part of the key under which they are stored."""
 
 from importlib.metadata import version
 

@@ -1,4 +1,4 @@
-"""STL and GLB: closed, no degenerate triangles, as close to the surface as asked for, with named nodes."""
+"""STL and GLB: closed, no degenerate triangles, within the requested deflection, with named nodes."""
 
 import json
 import struct

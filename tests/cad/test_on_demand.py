@@ -1,4 +1,4 @@
-"""A process that draws nothing does without the kernel; one that draws all the same gets it."""
+"""A process that builds no shape does not load the kernel; one that does gets it."""
 
 import hashlib
 import subprocess

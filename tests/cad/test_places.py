@@ -1,4 +1,4 @@
-"""A dimension stands on the same faces in the STEP file and on paper, whatever sizes are equal."""
+"""A dimension belongs to the same faces in the STEP file and on the drawing, even if sizes are equal."""
 
 import io
 import itertools

@@ -1,4 +1,4 @@
-"""Plain bearings in closed form: rings, grooves, holes. Refusals by name. Tolerances of wall and groove."""
+"""Plain bearings in closed form: rings, grooves, holes; refusals; tolerances of wall and groove."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""PMI and properties in STEP files: what three readers find there, against the limits that were typed."""
+"""PMI and properties in STEP files, read by three readers and compared with the typed limits."""
 
 import hashlib
 import io

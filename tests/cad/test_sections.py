@@ -1,4 +1,4 @@
-"""Where drawings of parts put together are cut, what is cut, and how their tolerances are shown."""
+"""Section planes of assembly drawings, the parts that they cut, and the display of tolerances."""
 
 import re
 from xml.etree import ElementTree

@@ -1,4 +1,4 @@
-"""What a client sends as a STEP file is read in a time that is linear in its length, and in little memory."""
+"""STEP files from clients are read in linear time and little memory."""
 
 import time
 import tracemalloc

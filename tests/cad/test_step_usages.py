@@ -1,4 +1,4 @@
-"""The counter of assembly usages never restarts in a process: the file does not depend on where it stands."""
+"""A STEP file does not depend on the counter of assembly usages, which never restarts in a process."""
 
 import re
 

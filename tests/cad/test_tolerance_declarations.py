@@ -1,4 +1,4 @@
-"""Tolerances of dimensions: declared on faces, part of a build, written in the header of its STEP file."""
+"""Tolerances of dimensions: declared on faces, part of a build, written in the STEP header."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Validation properties on request: a second reader finds them, solids stay as they are."""
+"""Validation properties on request: a second reader finds them, and solids stay unchanged."""
 
 import re
 

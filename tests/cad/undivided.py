@@ -1,4 +1,4 @@
-"""Parameters of a `crankshaft` of two throws whose pins are not split, with all that it may have."""
+"""Parameters of a `crankshaft` with two throws, undivided pins and all optional features."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What stands behind the errors of `thrust_bearing`, `mixed_friction` and `thermal_film`: random bearings."""
+"""The random bearings behind the errors of `thrust_bearing`, `mixed_friction` and `thermal_film`."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Newton's matrix on one pattern, and a start from a film nearby: the same numbers with less work."""
+"""Newton's matrix on one pattern, and a start from a similar film: equal results with less work."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Machine code that numba keeps on disk: a calculation does without a folder, a disk or a whole file."""
+"""Compiled code that numba stores on disk: calculations also work without folder, disk or intact file."""
 
 import importlib.util
 import shutil

@@ -1,4 +1,4 @@
-"""Bearings that give way: ring and liner by other methods, the soft film against limits and balances."""
+"""Elastic bearings: ring and liner by other methods, the elastic film against limits and balances."""
 
 from dataclasses import replace
 

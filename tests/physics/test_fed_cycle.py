@@ -1,4 +1,4 @@
-"""Films fed as in an engine: turning of sleeve and journal, what lies under the load, level supplied.
+"""Films with the supply of an engine: motion of sleeve and journal, holes under the load, level supplied.
 
 Analytic: closed angles and shares; the static film of oil_film 2 with the same groove.
 """

@@ -1,7 +1,8 @@
-"""What stands behind the bounds of `oil_film_cycle` 1: order statistics, samples that have every supply."""
+"""The basis of the bounds of `oil_film_cycle` 1: order statistics, samples with every supply."""
 
 import json
 from collections import Counter
+from itertools import product
 
 import numpy as np
 import pytest
@@ -9,22 +10,27 @@ import pytest
 from benchmarks.film_cycle_duties import KEPT, LOADS, MARCH, WIDTHS, band, drawn, kept, wanted
 from benchmarks.film_cycle_engines import KEPT as ENGINE_LINES
 from benchmarks.film_cycle_ensemble import (
+    BOUNDED,
     FILE,
     HOLDS,
+    NULL,
     SMALLEST,
     Law,
+    Widening,
     admitted,
+    band_name,
     bound,
     by_output,
     case_of,
+    cells,
     coverage,
     error_of,
     first_duties,
     fresh_engines,
+    judged_engines,
     law_of,
-    laws,
     rounded_up,
-    trials,
+    settled,
 )
 from benchmarks.supplied_duties import SUPPLIES
 from benchmarks.supplied_orbits import DUTIES, sampled
@@ -100,10 +106,48 @@ class TestLaws:
         assert case_of(line(P=1.1)) is None
 
     def test_example_a_bound_that_holds_too_seldom_on_other_duties_is_withdrawn(self):
-        laws = {name: Law(1.0, {}, {}) for name in ("film", "loss", "flow")}
-        held = {"half_groove, fixed": {"mobility": {"film": [93, 100], "loss": [92, 100]}}}
-        left = admitted({"half_groove, fixed": {"mobility": laws}}, held)["half_groove, fixed"]["mobility"]
-        assert [left[name].factor for name in ("film", "loss", "flow")] == [1.0, None, 1.0]
+        one = Law(cells(lambda i, j: 1.0), {}, {})
+        laws = dict.fromkeys(("film", "loss", "flow"), one)
+        held = {"half_groove, fixed": {"mobility": {"film": [95, 100], "loss": [94, 100]}}}
+        stated = {"half_groove, fixed": {"mobility": laws}}
+        left = admitted(stated, held, {})["half_groove, fixed"]["mobility"]
+        assert [left[name].factors for name in laws] == [one.factors, NULL, one.factors]
+
+    def test_example_a_bound_that_fails_at_one_supply_pressure_is_withdrawn_in_its_band(self):
+        one = Law(cells(lambda i, j: 1.0), {}, {})
+        low = band_name(line(S=2.0, b=0.5, P=0.1))
+        counts = {low: {"mobility": {"film": [94, 100]}}}
+        left = admitted({"pin_hole, fixed": {"mobility": {"film": one}}}, {}, counts)
+        assert left["pin_hole, fixed"]["mobility"]["film"].factors == ((1.0, None), (1.0, 1.0))
+
+    def test_property_a_band_in_which_bounds_are_too_small_is_widened(self):
+        """Errors five times as large in one band of 100 duties: its factor alone grows by as much."""
+        one = Law(cells(lambda i, j: 1.0), {}, {})
+        rng = np.random.default_rng(5)
+        lines = []
+        for S, b, P in product((2.0, 20.0), (0.3, 0.5), (0.1, 0.5)):
+            size = 5 if (S, b, P) == (20.0, 0.3, 0.5) else 1
+            found = (size * rng.random(100)).tolist()
+            lines += [line(S=S, b=b, P=P, load="fourier", errors={"mobility": [e] * 7}) for e in found]
+        stated = {"pin_hole, fixed": {"mobility": {SMALLEST: one}}}
+        tried = [(stated, lines)]
+        wide = Widening(tried).of(stated)
+        (low, other), (large, last) = wide["pin_hole, fixed"]["mobility"][SMALLEST].factors
+        assert 4 < large < 5
+        assert max(low, other, last) <= 1
+        held = coverage([(wide, lines)], band_name)
+        assert len(held) == 8
+        assert all(
+            good >= HOLDS * of for levels in held.values() for good, of in [levels["mobility"][SMALLEST]]
+        )
+
+    def test_example_a_band_with_fewer_than_59_duties_has_no_bound(self):
+        stated = {"pin_hole, fixed": {"mobility": {SMALLEST: Law(cells(lambda i, j: 1.0), {}, {})}}}
+        lines = [line(P=P, load="fourier") for P in (0.1, 0.5) for _ in range(59)]
+        factors = Widening([(stated, lines)]).of(stated)["pin_hole, fixed"]["mobility"][SMALLEST].factors
+        assert factors == ((None, 0.1), (None, None))
+        fewer = Widening([(stated, lines[:-1])]).of(stated)["pin_hole, fixed"]["mobility"][SMALLEST].factors
+        assert fewer == NULL
 
 
 def bounds_over_errors(lines):
@@ -113,11 +157,11 @@ def bounds_over_errors(lines):
     for one in lines:
         case = case_of(one) or ""
         level = "mobility_grooved" if "groove" in case else "mobility"
-        ((factor,),) = content["cases"].get(case, {}).get(level, {}).get(SMALLEST, [[None]])
-        if factor is not None:
-            law = Law(factor, content["powers"][case][level][SMALLEST], content["within"][case])
-            if (limit := law.of(one)) is not None:
-                ratios.append(limit / error_of(one, level, SMALLEST))
+        factors = content["cases"].get(case, {}).get(level, {}).get(SMALLEST, NULL)
+        powers = content["powers"].get(case, {}).get(level, {}).get(SMALLEST, {})
+        law = Law(factors, powers, content["within"].get(case, {}))
+        if (limit := law.of(one)) is not None:
+            ratios.append(limit / error_of(one, level, SMALLEST))
     return np.array(ratios)
 
 
@@ -126,17 +170,18 @@ class TestFile:
 
     @pytest.mark.slow
     def test_golden_bounds_and_counts_follow_from_the_kept_lines(self):
-        first, stated = first_duties(), json.loads(FILE.read_text(encoding="utf-8"))
-        measured = laws(first)
-        held = coverage(trials(first, fresh_engines(), measured))
-        assert stated["held_on_other_duties"] == held
-        assert stated["cases"] == by_output(admitted(measured, held), lambda law: [[law.factor]])
+        stated = json.loads(FILE.read_text(encoding="utf-8"))
+        found = settled(first_duties(), fresh_engines())
+        assert stated["held_on_other_duties"] == found.held
+        assert stated["held_in_bands"] == found.banded
+        factors = by_output(found.stated, lambda law: law.factors)
+        assert stated["cases"] == json.loads(json.dumps(factors))
 
-    def test_property_the_bounds_of_the_file_hold_for_fresh_engines(self):
-        """For 95 % of those of seed 303 that have one, as is stated."""
-        ratios = bounds_over_errors(fresh_engines())
-        assert len(ratios) > 20
-        assert np.mean(ratios >= 1) >= 0.95
+    def test_property_the_bounds_of_the_file_hold_for_engines_that_changed_nothing(self):
+        """For 97 % of those of seed 404 that have one, as is stated."""
+        ratios = bounds_over_errors(judged_engines())
+        assert len(ratios) >= 200
+        assert np.mean(ratios >= 1) >= 0.97
 
     def test_property_bounds_of_engines_are_not_far_from_their_errors(self):
         """In the median 6 times the error, 5 times of big ends; before 7.5 to 13 times."""
@@ -147,13 +192,18 @@ class TestFile:
         assert np.median(bounds_over_errors(engines)) < 6
         assert np.median(bounds_over_errors(big_ends)) < 5
 
-    def test_property_every_stated_bound_holds_on_93_of_100_other_duties(self):
+    def test_property_every_stated_bound_holds_on_95_of_100_other_duties_of_its_case_and_band(self):
         stated = json.loads(FILE.read_text(encoding="utf-8"))
-        checked = 0
+        places, checked = stated["held_in_bands"], 0
+        assert len(places) == 8
+        for place, level, output in product(places, ("mobility", "mobility_grooved"), BOUNDED):
+            good, of = places[place][level][output]
+            assert of >= 59, (place, level, output)
+            assert good >= HOLDS * of, (place, level, output)
         for case, levels in stated["cases"].items():
             for level, outputs in levels.items():
-                for output, cell in outputs.items():
-                    if cell != [[None]]:
+                for output, factors in outputs.items():
+                    if any(factor is not None for row in factors for factor in row):
                         good, of = stated["held_on_other_duties"][case][level][output]
                         assert good >= HOLDS * of, (case, level, output)
                         assert stated["duties"][case] >= 59, case

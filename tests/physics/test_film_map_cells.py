@@ -1,4 +1,4 @@
-"""The error that a map states at a point is that measured in the point's cell."""
+"""The error that a map states at a point is the measured error of the point's cell."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: what is read off a solved film, its shear and its rupture, by quadrature and by its nodes."""
+"""Analytic: quantities derived from a solved film, its shear and rupture, by quadrature and at nodes."""
 
 from types import SimpleNamespace
 

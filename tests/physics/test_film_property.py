@@ -1,4 +1,4 @@
-"""Property: random extremes of physics.md 5 answer finitely and in order, or are refused by name."""
+"""Property: random extremes of physics.md 5 give finite, ordered results, or are refused by name."""
 
 import numpy as np
 import pytest

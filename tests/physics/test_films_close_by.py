@@ -1,4 +1,4 @@
-"""Analytic: films by differences, by a finer mesh and by a search of every place, where errors hide."""
+"""Analytic: films by differences, by a finer mesh and by an exhaustive search, where errors hide."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: how far the energy of a flywheel swings under a torque that is known in closed form."""
+"""Analytic: the energy fluctuation of a flywheel under a torque known in closed form."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Gas cycles: ideal efficiencies, tables, events, and what is refused by name."""
+"""Gas cycles: ideal efficiencies, tables, events, and refusals by name."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: the values that `encode` makes of a fresh solution are those that the maps keep.
+"""Analytic: `encode` of a new solution gives the values that the maps store.
 
 The maps are read without it, so only this holds the functions to the data that was made with them.
 """

@@ -1,4 +1,4 @@
-"""Structure: physics that no template, model or benchmark uses stands in `tests/references`."""
+"""Structure: physics that no template, model or benchmark uses belongs in `tests/references`."""
 
 import ast
 import re

@@ -1,4 +1,4 @@
-"""A film's matrix factorised from where the film differs: the same as factorised whole."""
+"""Factorising a film's matrix only where it changed gives the same factors as factorising all of it."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The film around a whole bearing: balances at every node, and ends that meet."""
+"""The film around a whole bearing: balances at every node, and periodic ends."""
 
 import numpy as np
 import pytest

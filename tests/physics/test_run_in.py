@@ -1,4 +1,4 @@
-"""Analytic: how an orbit runs in, on a made-up film whose every cycle is known."""
+"""Analytic: convergence of an orbit, on an artificial film whose every cycle is known."""
 
 from types import SimpleNamespace
 

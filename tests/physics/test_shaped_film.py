@@ -1,4 +1,4 @@
-"""Films of lobed, belled and tilted bearings: limits, symmetry, a second method, and published tables."""
+"""Films of lobed, bell-mouthed and tilted bearings: limits, symmetry, a second method, published tables."""
 
 from pathlib import Path
 

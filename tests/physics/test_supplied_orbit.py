@@ -1,4 +1,4 @@
-"""Orbits of supplied films: the static film, two short bearings, invariances, convergence, how they end."""
+"""Orbits of supplied films: the static film, two short bearings, invariances, convergence, verdicts."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The film in time with cavities that conserve mass: static limit, conservation of oil, and its own mesh."""
+"""The transient film with mass conservation: static limit, conservation of oil, and its own mesh."""
 
 import numpy as np
 import pytest

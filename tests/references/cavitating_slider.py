@@ -1,4 +1,4 @@
-"""Slider with a pocket that cavitates, in one dimension: closed form, and the discrete film it checks.
+"""Slider with a cavitating pocket, in one dimension: closed form and discrete film.
 
 The gap falls linearly from the inlet to the outlet, and is deeper by a constant over a pocket in
 between; the film ruptures at the pocket's start and re-forms inside it, mass being conserved.

@@ -1,4 +1,4 @@
-"""Problems whose optimum is a closed form or is published, for the optimisers."""
+"""Optimisation problems with a closed form or a published optimum."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

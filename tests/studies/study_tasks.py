@@ -1,4 +1,4 @@
-"""Studies as a calculation process gets them, without a service."""
+"""Studies as calculation processes get them, without a service."""
 
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.discovery import find_templates

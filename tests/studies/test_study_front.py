@@ -1,4 +1,4 @@
-"""Analytic: Pareto fronts that are closed forms, and a coarse level's front, confirmed."""
+"""Analytic: Pareto fronts in closed form, and the front of a coarse level, confirmed."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A study finds the least power of a bearing whose film keeps a limit, explored at a cheap level."""
+"""A study minimises the power of a bearing with a film limit, explored at a cheap level."""
 
 import numpy as np
 import pytest

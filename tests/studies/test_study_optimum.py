@@ -1,4 +1,4 @@
-"""Analytic: closed forms; a coarse level, corrected, against the optimum of the fine one."""
+"""Analytic: closed forms; a corrected coarse level against the optimum of the fine level."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Rows of studies: the same in any chunks, within their bounds, spread as their definition says."""
+"""Rows of studies are equal in any chunks, within bounds, and distributed as defined."""
 
 import numpy as np
 import pytest

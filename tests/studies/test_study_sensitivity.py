@@ -1,4 +1,4 @@
-"""Analytic: slopes, Morris' effects and Sobol' indices of functions whose own are closed forms."""
+"""Analytic: slopes, Morris effects and Sobol' indices of functions with closed forms."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A front that is interrupted goes on where it was, without repeating a finished generation."""
+"""An interrupted Pareto search continues without repeating a finished generation."""
 
 import random
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Fixtures of a team beside those of tests/components.py: Dask with two workers, and all parts together."""
+"""Fixtures of a team in addition to tests/components.py: Dask with two workers, and all parts together."""
 
 import sys
 from pathlib import Path

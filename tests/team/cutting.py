@@ -1,4 +1,4 @@
-"""A server between a client and an S3 server, which breaks connections off or falls silent for a test."""
+"""A proxy between a client and an S3 server that breaks connections or stops answering for a test."""
 
 import socket
 import threading

@@ -1,4 +1,4 @@
-"""What a server does with events on a database that several share, without the rest of the server."""
+"""The event handling of a server on a shared database, without the rest of the server."""
 
 import asyncio
 from contextlib import contextmanager, suppress

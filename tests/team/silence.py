@@ -1,4 +1,4 @@
-"""A server that accepts connections and falls silent, on a port that another may have afterwards."""
+"""A server that accepts connections and does not answer, on a port that another server may use later."""
 
 import socket
 import threading

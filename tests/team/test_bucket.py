@@ -1,4 +1,4 @@
-"""Artifacts in a bucket: whatever is flipped, deleted or cut off, the right bytes are served, or none."""
+"""Artifacts in a bucket: whatever is changed, deleted or cut off, the right bytes are served, or none."""
 
 import logging
 import os

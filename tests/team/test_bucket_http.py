@@ -1,4 +1,4 @@
-"""Servers whose files are in a bucket: what it loses is made again, copies are served when it is silent."""
+"""Servers with files in a bucket: lost files are rebuilt, local copies are served if it does not answer."""
 
 import hashlib
 from contextlib import ExitStack

@@ -1,4 +1,4 @@
-"""The compose file's commands do their work in containers' conditions: read-only root, only its variables."""
+"""The compose file's commands work under the conditions of containers: read-only root, only its variables."""
 
 import hashlib
 

@@ -1,4 +1,4 @@
-"""The components of a trial start, answer, and end with the process that started them, however it ends."""
+"""Components of a test start, answer, and end with the process that started them, however it ends."""
 
 import signal
 import subprocess

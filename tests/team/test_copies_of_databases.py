@@ -1,4 +1,4 @@
-"""A restored backup or a clone that uses the store of its original: both keep all files, and say why."""
+"""A restored backup or clone that uses the store of its original: both keep all files and report it."""
 
 import json
 import logging
@@ -150,8 +150,11 @@ def test_a_note_that_nobody_can_read_stops_the_collection(original, store, text)
 def test_servers_of_one_database_are_no_copies(original, store):
     others = [Database(original.url) for _ in range(2)]
     with ThreadPoolExecutor(3) as pool:
-        for _ in range(4):
+        deleted = [
             list(pool.map(lambda database: Sweep(database, store).run(), [original, *others]))
+            for _ in range(4)
+        ]
+    assert deleted == [[0, 0, 0]] * 4
     for database in others:
         database.close()
 

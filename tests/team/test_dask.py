@@ -1,4 +1,4 @@
-"""Functions on the machines of a Dask scheduler: as in local processes, whatever they do."""
+"""Functions on the machines of a Dask scheduler behave as in local processes."""
 
 import threading
 from concurrent.futures import ThreadPoolExecutor

@@ -1,4 +1,4 @@
-"""Jobs on machines that die: workers, the scheduler, the server. Each job ends once, and no process stays."""
+"""Jobs on machines that die (workers, scheduler, server): each job ends once, and no process remains."""
 
 import signal
 import subprocess

@@ -1,4 +1,4 @@
-"""Functions for machines that have gone before they came there: none is waited for without end."""
+"""Functions for machines that left before they arrived: the server does not wait for them for ever."""
 
 import threading
 from concurrent.futures import ThreadPoolExecutor

@@ -1,4 +1,4 @@
-"""Who may connect to a scheduler over TLS: who has a certificate of the same authority, and nobody else."""
+"""Only clients with a certificate of the same authority may connect to a scheduler over TLS."""
 
 import datetime
 import ipaddress

@@ -1,4 +1,4 @@
-"""The examples of a team's deployment: units that systemd accepts, services whose settings there are."""
+"""The examples of a team's deployment: systemd accepts the units, and all settings exist."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""Streams of two servers on one PostgreSQL: a change at one is heard at the other, and a client may move."""
+"""Streams of two servers on one PostgreSQL: both send every change, and a client may switch servers."""
 
 from contextlib import closing
 

@@ -1,4 +1,4 @@
-"""Events between servers of one PostgreSQL: all of them, in order, whatever connections are lost."""
+"""Events between servers of one PostgreSQL: all of them, in order, even if connections are lost."""
 
 import asyncio
 import json

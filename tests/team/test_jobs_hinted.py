@@ -1,4 +1,4 @@
-"""Jobs of servers on one PostgreSQL: whoever waits, asks or cancels need not be where the job runs."""
+"""Jobs of servers on one PostgreSQL: a client may wait, ask or cancel at any server."""
 
 import asyncio
 import threading

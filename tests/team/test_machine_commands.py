@@ -1,4 +1,4 @@
-"""`crankwright worker` and `crankwright scheduler` start at once: after a death others wait for them."""
+"""`crankwright worker` and `crankwright scheduler` start fast, because others wait for a replacement."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""The settings say where files are; what cannot be used is refused at the start, with the remedy."""
+"""Settings of the file store: what cannot be used is refused at the start, with a remedy."""
 
 import sys
 

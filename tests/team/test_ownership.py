@@ -59,6 +59,8 @@ def databases(tmp_path):
 def test_servers_of_one_database_share_a_store(stores, databases):
     for name in ("one", "two", "three"):
         claim(databases("same"), stores(name))
+    one, other = (stores(name).read_note(OWNER) for name in ("four", "five"))
+    assert one == other is not None
 
 
 @pytest.mark.sampled(1)

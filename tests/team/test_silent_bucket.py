@@ -1,4 +1,4 @@
-"""A bucket that takes connections and does not answer: every request ends, and says so."""
+"""A bucket that accepts connections and does not answer: every request ends with that reason."""
 
 import pytest
 from patience import patient

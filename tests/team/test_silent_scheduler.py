@@ -1,4 +1,4 @@
-"""A scheduler that accepts connections and does not answer, as on a busy machine: no wait is without end."""
+"""A scheduler that accepts connections and does not answer: no wait is endless."""
 
 import asyncio
 import threading

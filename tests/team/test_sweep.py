@@ -1,4 +1,4 @@
-"""Several servers sweep one store: one at a time, by the age of files, and nothing that a row will name."""
+"""Several servers sweep one store: one at a time, by the age of files, and no file still needed."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""Traces of a team: a change on one server, its job on another, and its run through Dask are one trace."""
+"""A change on one server, its job on another and its run on Dask form one trace."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""Servers that share a PostgreSQL: a revision has one author, a key one change, a job one end."""
+"""Servers that share a PostgreSQL: one author per revision, one change per key, one end per job."""
 
 import json
 import threading

@@ -1,4 +1,4 @@
-"""Inputs far from common sense: decades, bounds, options, tables, and curves of other shapes and lengths."""
+"""Extreme inputs: decades, bounds, options, tables, and curves of other shapes and lengths."""
 
 from time import process_time
 

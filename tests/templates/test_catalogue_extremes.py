@@ -115,8 +115,23 @@ def tried(cls, level, si):
     return None, {name for fault in faults for name in fault.names}
 
 
-def checked(cls, evaluation, where):
-    """Every value is finite or has a reason, none is of the wrong sign, and each error stated is a number."""
+NEEDS = re.compile(r"needs ([a-z_0-9]+(?:(?:, | and | or )[a-z_0-9]+)*)")
+
+
+def asked_for(cls, reasons):
+    """The inputs that each reason of the form `needs this and that` asks for."""
+    for reason in {str(one) for one in np.ravel(reasons) if one}:
+        if match := NEEDS.fullmatch(reason):
+            names = set(re.split(r", | and | or ", match[1]))
+            if names <= cls.inputs.keys():
+                yield names
+
+
+def checked(cls, evaluation, where, given=()):
+    """Every value is finite or has a reason, none is of the wrong sign, and each error stated is a number.
+
+    A reason asks for no input that is given.
+    """
     warned = {name for notice in evaluation.warnings for name in (notice.name, *getattr(notice, "also", ()))}
     for name, one in evaluation.outputs.items():
         formula = cls.formulas[name]
@@ -128,6 +143,8 @@ def checked(cls, evaluation, where):
         if isinstance(formula, Profile) and missing.ndim >= formula.axes:
             missing = missing.any(axis=tuple(range(-formula.axes, 0)))
         reasons = np.asarray(one.reason if one.reasons is None else one.reasons, dtype=object)
+        for names in asked_for(cls, reasons):
+            assert not names <= set(given), (name, names, where)
         told = np.broadcast_to(reasons != None, np.broadcast_shapes(missing.shape, reasons.shape))  # noqa: E711
         assert (told | ~missing).all(), (name, where)
         if NEVER_NEGATIVE.search(name) and (cls.id, name) not in SIGNED and (value < 0).any():
@@ -151,13 +168,14 @@ def sweep(cls, level, changes, rng):
         {name for name, declared in cls.inputs.items() if declared.required},
     )
     for change in as_time_allows(changes, rng):
-        evaluation, names = tried(cls, level, {**start, **change})
+        given = {**start, **change}
+        evaluation, names = tried(cls, level, given)
         others = {name for name in names & start.keys() if name not in required | change.keys()}
         if evaluation is None and others:
-            left = {name: value for name, value in start.items() if name not in others}
-            evaluation, _ = tried(cls, level, {**left, **change})
+            given = {name: value for name, value in given.items() if name not in others}
+            evaluation, _ = tried(cls, level, given)
         if evaluation is not None:
-            checked(cls, evaluation, {name: shown(value) for name, value in change.items()})
+            checked(cls, evaluation, {name: shown(value) for name, value in change.items()}, given)
 
 
 def shown(value):

@@ -1,4 +1,4 @@
-"""Property tests over the whole catalogue: a template or model is covered by its file being there."""
+"""Property tests over the whole catalogue: every template and model file is covered automatically."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Property tests over the criteria of all templates: a new criterion is covered by standing in its class.
+"""Property tests over the criteria of all templates: a new criterion is covered automatically.
 
 Inputs and limits are removed one by one: no criterion is met without its value and its limit.
 """

@@ -1,4 +1,4 @@
-"""The way in from Python: the numbers are those of `evaluate`, in quantities."""
+"""Templates from Python return the numbers of `evaluate`, as quantities."""
 
 import numpy as np
 import pint

@@ -1,4 +1,4 @@
-"""Inputs on which templates failed, or answered by rounding: each is refused by name, or has its reason."""
+"""Inputs on which templates failed or returned rounding noise: each is refused by name, or has a reason."""
 
 import numpy as np
 import pytest

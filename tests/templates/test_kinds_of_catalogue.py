@@ -1,4 +1,4 @@
-"""Temperatures and speeds of every template and model: what each takes, over many units."""
+"""Temperatures and speeds of every template and model: the units that each accepts."""
 
 import itertools
 

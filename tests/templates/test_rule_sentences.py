@@ -1,4 +1,4 @@
-"""Warnings about violated rules and criteria: each sentence states what is the case, by its own numbers."""
+"""Warnings about violated rules and criteria: each sentence agrees with its own numbers."""
 
 import re
 

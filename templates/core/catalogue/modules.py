@@ -16,13 +16,13 @@ from pathlib import Path
 from types import ModuleType
 
 OUTSIDE = "_outside"
-"""The package to which files belong that are in none."""
+"""The package name for files that belong to no package."""
 
 WORKSHEETS = "worksheets"
-"""The package that classes made from worksheets name; there is no such package."""
+"""The package name for classes created from worksheets; no such package exists."""
 
 IMPORTED = "imported"
-"""The package that classes of models name which a team has brought; there is no such package either."""
+"""The package name for classes of models that a team has imported; no such package exists."""
 
 _CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
 

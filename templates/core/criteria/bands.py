@@ -21,14 +21,15 @@ from templates.core.units.relation import Relation
 from templates.core.units.units import Value
 
 CONVENTION = "|answer - truth| <= error * |truth|"
-"""What every stated error says: of a curve with the largest |truth| along it, of others with what the table
-names under `relative_to`, such as 90° of an angle."""
+"""The reference of every stated error: for a curve its largest |truth|, for others what the table names under
+`relative_to`, such as 90° for an angle.
+"""
 
 Bounds = tuple[Value, Value]
-"""The least and the largest truth."""
+"""The smallest and the largest possible true value."""
 
 Shift = tuple[Mapping[str, Value], Mapping[str, Value]]
-"""The values of all names [SI], with something from which they follow shifted to either end of its band."""
+"""The values of all names [SI], with an upstream value moved to either end of its band."""
 
 
 @dataclass(slots=True)  # a frozen instance would take four times as long to create

@@ -27,7 +27,8 @@ NOT_MET, UNDECIDED, NOT_CHECKED, MET_ERROR_UNKNOWN, MET = range(5)
 VERDICTS: tuple[Verdict, ...] = (*WORST_FIRST, "met")
 """The verdict of each code."""
 Codes = int | NDArray[np.int8]
-"""Verdicts as places in `VERDICTS`: the least is the worst. Met counts apart where an error is not known."""
+"""Verdicts as indices in `VERDICTS`: the smallest is the worst. Met with an unknown error has its own code.
+"""
 
 
 def is_met(codes: NDArray[Any]) -> Mask:

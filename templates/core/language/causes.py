@@ -18,7 +18,7 @@ from templates.core.language.comparisons import Operand, Outcome, outcome
 from templates.core.language.spec import Choice, Requirement
 
 BROKEN = "inconsistent"
-"""The code of a fault that a broken rule is."""
+"""The code of the fault of a broken rule."""
 
 
 def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:

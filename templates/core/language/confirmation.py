@@ -38,7 +38,7 @@ class Root:
     error: float | None
     confirmed: bool
     miss: float
-    """Output less target, over the target."""
+    """Output minus target, relative to the target."""
 
 
 def confirmed(

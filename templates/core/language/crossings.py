@@ -46,7 +46,7 @@ class Crossings:
     touching: list[Place] = field(default_factory=list)
     leaps: list[Leap] = field(default_factory=list)
     more: int = 0
-    """Crossings that were not closed in."""
+    """Number of crossings that were not located."""
 
 
 def meetings(curve: SampledCurve, samples: Samples) -> Crossings:

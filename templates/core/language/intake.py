@@ -87,6 +87,8 @@ def factor_of(name: str) -> float:
     return 2.0 if name.startswith("diametral") else 0.5
 
 
+WIDEST_ROW = 9
+"""Values of a row that a refusal prints one by one."""
 _DIAMETRAL = re.compile(r"\A(?:diametral|radial)(?=_clearance)")
 
 
@@ -451,6 +453,8 @@ def _shown(self: Calculation, declared: Declaration) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):
+        if value and len(value[0]) > WIDEST_ROW:
+            return f"{len(value)} × {len(value[0])} values"
         shown = [[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value[:2]]
         return str(shown) if len(value) <= 2 else f"{len(value)} rows from {shown[0]}"
     if np.ndim(value):

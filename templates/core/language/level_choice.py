@@ -23,7 +23,7 @@ from templates.core.language.spec import Profile, Text
 from templates.core.language.template import Template
 
 BUDGET = 10.0
-"""Stated cost of a level [s] up to which it answers without a known error."""
+"""Largest stated cost [s] of a level that may be chosen without a known error."""
 
 
 @dataclass(frozen=True)

@@ -180,18 +180,18 @@ class Keywords(TypedDict, total=False):
     """The keywords that every declaration accepts, those of `meaning`, for editors and type checkers."""
 
     name: str | None
-    """API name, where the words would make another."""
+    """API name, if the words would give another."""
     symbol: str | None
-    """LaTeX on paper, where the attribute would make another."""
+    """Printed symbol in LaTeX, if the attribute would give another."""
     source: str | None
-    """Who published it."""
+    """Source of the formula or value."""
     gt: float | None
     ge: float | None
     lt: float | None
     le: float | None
     """The domain, in the declared unit; a value outside is refused."""
     published: tuple[float | None, float | None]
-    """The range that the source claims; outside it an answer carries a warning."""
+    """The range that the source states; outside it an answer carries a warning."""
     remedy: str | None
     """What to do outside the domain."""
     also: tuple[str, ...]
@@ -199,11 +199,11 @@ class Keywords(TypedDict, total=False):
     integer: bool
     """Whether the value is a whole number."""
     assumes: tuple[str, ...]
-    """Attributes whose published range bounds this formula too, though it does not use them."""
+    """Attributes whose published range also limits this formula, although it does not use them."""
     absent: str | None
     """Why a result may be missing without being a fault."""
     assumed: str | None
-    """What the default of an input takes for granted, where that makes a part look safer."""
+    """The unsafe assumption behind an input's default, if there is one."""
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None
     """Domain and published range at single levels of fidelity."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from templates.core.language.template import Template
 
 Recorded = float | str | list[None] | None
-"""A single value [SI] or a word; null where there is none; an empty list in place of an array."""
+"""A single value [SI] or a word; null for a missing value; an empty list in place of an array."""
 
 
 @dataclass(frozen=True)

@@ -221,7 +221,7 @@ class Shared(Generic[T]):
 
 
 Input = Given | Choice | Derived[Any]
-"""What a user gives, or what stands for it."""
+"""An input in any form of declaration."""
 
 
 class Requirement:

@@ -23,7 +23,7 @@ from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.units.units import Unit, unit, unit_symbol
 
 UNUSED = "unused_input"
-"""The code of a warning about an input that changes nothing."""
+"""The code of a warning about an input that has no effect."""
 _ATTRIBUTE = re.compile(r"\bself\.(\w+)")
 
 

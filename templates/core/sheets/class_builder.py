@@ -45,7 +45,7 @@ _ORDER = (
     ("require", "check"),
     ("test",),
 )
-"""Functions are known to all others, rules know all quantities, tests know everything."""
+"""The order in which statements are read: functions first, then quantities, rules and tests."""
 
 
 class Builder:

@@ -14,7 +14,7 @@ from templates.core.sheets.worksheet_tests import SheetTest
 
 Part = Declaration | Requirement
 RULE = "line"
-"""A rule stands in the class under its line, `line 14`: a name that no user can write."""
+"""The attribute of a rule is its line, such as `line 14`, a name that no user can write."""
 
 
 @dataclass(frozen=True)

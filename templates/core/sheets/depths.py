@@ -17,7 +17,7 @@ from templates.core.sheets.faults import SheetFault
 from templates.core.units.operations import Apply
 
 MOST_NESTED = 150
-"""Calls within calls, from one formula that is asked first to the next."""
+"""Most nested calls, from the formula that is evaluated first."""
 _CALLS = 3  # nested calls per formula, in addition to those within its expression
 
 

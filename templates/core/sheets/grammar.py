@@ -18,7 +18,7 @@ from templates.core.sheets.lines import Chunk
 from templates.core.units.expressions import GRAMMAR, height
 
 LANGUAGE = 1
-"""The version of the language; a change of what a statement means makes another."""
+"""The version of the language; a change of the meaning of a statement increases it."""
 
 MOST_PARTS, MOST_DEPTH = 400, 100
 REMEMBERED = 512  # trees of up to 100 kB

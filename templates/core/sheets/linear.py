@@ -24,14 +24,16 @@ from templates.core.units.operations import OPERATORS, Apply, Constant, Kind, Na
 
 MOST_UNKNOWNS = 10
 WORST_CONDITION = 1e12
-"""Beyond it, with rows and columns of one size, fewer than four digits of a solution are left."""
+"""Largest condition number, with equilibrated rows and columns; above it fewer than four digits are
+significant.
+"""
 
 _ADD, _SUBTRACT, _MULTIPLY = (OPERATORS[name] for name in ("add", "subtract", "multiply"))
 _DIVIDE, _NEGATIVE = OPERATORS["divide"], OPERATORS["negative"]
 _ONE = Constant(1.0, Kind(), "1")
 
 Terms = dict[str, Any]
-"""The tree of the coefficient of each unknown, and under the empty name what stands without one."""
+"""The tree of the coefficient of each unknown, and under the empty name the constant term."""
 
 
 class NotLinear(Exception):

@@ -12,7 +12,7 @@ MOST_BYTES = 64 * 1024
 MOST_STATEMENTS = 400
 LONGEST_STATEMENT = 2000
 _CONTROLS = frozenset("\x7f\x85\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-"""Signs that end a line, or turn the direction of reading."""
+"""Characters that end a line, or change the direction of the text."""
 
 
 @dataclass(frozen=True)

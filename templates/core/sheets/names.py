@@ -14,7 +14,7 @@ from templates.core.units.operations import CONSTANTS, FUNCTIONS, Name
 from templates.core.units.sorts import Part, Sort
 
 FUEL = 10_000
-"""Operations of a worksheet, its functions written out."""
+"""Most operations of a worksheet, with its functions expanded."""
 
 LONGEST_NAME = 60
 _WORDS = frozenset({

@@ -13,7 +13,7 @@ from templates.core.units.nodes import Apply, Constant, Item, Name, Operation
 from templates.core.units.units import Value
 
 LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
-"""The operations that make lists or take them as a whole; all others go place by place."""
+"""The operations that create or reduce lists; all others act item by item."""
 
 
 def value_of(node: Any, values: Mapping[str, Value]) -> Value:

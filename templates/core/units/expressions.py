@@ -39,13 +39,13 @@ from templates.core.units.units import Unit, is_rate, unit
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
 
 GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
-"""The grammar; its rule `expression` is the one to use in statements."""
+"""The grammar; statements use its rule `expression`."""
 
 MAX_INDEX = 10**9
 MAX_TWICE = 1000
-"""Nodes of what stands between two signs of a chained comparison."""
+"""Most nodes of an expression between two signs of a chained comparison."""
 RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
-"""Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
+"""Reserved words of the grammar; only `if` and `not` cannot be names in front of a value."""
 
 _COMPARED = frozenset(COMPARISONS.values())
 _OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}

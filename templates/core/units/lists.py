@@ -58,7 +58,7 @@ def _trailing(value: Value) -> Value:
 LIST = Operation("list", _stacked, same)
 ITEM = Operation("item", _item, _indexed, 2)
 TRAILING = Operation("trailing", _trailing, keep, 1)
-"""A single value beside a list: an axis behind those of its points."""
+"""An operation that adds a list axis after the axes of the points to a single value."""
 OVER_LISTS = {
     operation.sign: operation
     for operation in (

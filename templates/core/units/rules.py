@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache, reduce
 from itertools import product as pairs_of
 from typing import Any
 
-from templates.core.errors import FaultyText
+from templates.core.errors import FaultyText, listed
 from templates.core.units.nodes import DIFFERENCE, EITHER, Apply, Constant, Kind, Operation, Temperatures
 from templates.core.units.units import (
     base_text,
@@ -35,11 +35,37 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     if one.temperatures is None or other.temperatures is None:
         return _kind(counted, None, is_literal=one.literal or other.literal)
     if not (both := one.temperatures & other.temperatures):
-        text = next(map(literal, filter(literal, nodes)), "")
-        remedy = f"; write {as_difference(text)} for a difference" if text else ""
         what = "a temperature and a difference of temperatures"
-        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}{remedy}")
+        remedy = _remedy(one.temperatures, other.temperatures, nodes)
+        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}; {remedy}")
     return _kind(counted, both, is_literal=one.literal or other.literal)
+
+
+def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, ...]) -> str:
+    """Return how a temperature and a difference become values of one kind.
+
+    A number typed in degC or degF as a summand of either may be meant as a difference.
+    """
+    sides = ((one, other), (other, one)) if len(nodes) == 2 else ()
+    for (own, beside), node in zip(sides, nodes, strict=False):
+        for texts, sign in _summands(node):
+            if {count - sign for count in own} & beside:
+                meant = "a difference" if len(texts) == 1 else "differences"
+                return f"write {listed([as_difference(text) for text in texts])} for {meant}"
+    return "subtract a temperature from the temperature, or add one to the difference"
+
+
+def _summands(node: Any, sign: int = 1) -> Iterator[tuple[tuple[str, ...], int]]:
+    """Yield numbers typed in degC or degF that a sum adds or subtracts; those of min and max together."""
+    match node:
+        case Constant() if text := literal(node):
+            yield (text,), sign
+        case Apply(Operation("min" | "max"), arguments) if all(map(literal, arguments)):
+            yield tuple(map(literal, arguments)), sign
+        case Apply(Operation("+" | "-" as operator), (*firsts, last)):
+            for first in firsts:
+                yield from _summands(first, sign)
+            yield from _summands(last, -sign if operator == "-" else sign)
 
 
 def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:

@@ -43,7 +43,7 @@ class Sort:
 
 
 Part = tuple[Any, Sort]
-"""A node and its result."""
+"""A node and its sort."""
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:

@@ -21,7 +21,7 @@ Distribution = Literal["normal", "uniform", "triangular"]
 DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
 FORMS = "55 ± 5 um, 55 +10/-5 um or 48 mm H7"
 KEYS = ("plus", "minus", "upper", "lower", "zone", "distribution")
-"""What may stand beside `value` and `unit` in an object."""
+"""The keys that an object may have in addition to `value` and `unit`."""
 
 LONGEST_TEXT = 200
 NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"

@@ -43,7 +43,7 @@ _PRINTED = {
 }
 
 _PARSED = f"units-{pint.__version__}-{flexparser.__version__}-{flexcache.__version__}"
-"""The folder that keeps Pint's definitions parsed; Pint names its files by what they were made from."""
+"""The folder of Pint's parsed definitions; Pint names its files by their source."""
 
 
 def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
@@ -60,7 +60,7 @@ _PRODUCT = rf"{_FACTOR}(?:[*·]{_FACTOR})*"
 _UNIT = rf"(?:1|{_PRODUCT})(?:[*·/](?:{_FACTOR}|\({_PRODUCT}\)))*"
 _PATTERN = re.compile(_UNIT)
 _REVOLUTION = re.compile(r"(?<![A-Za-z_])r(?=/(?:min|s|h)(?![A-Za-z]))")
-"""The revolution as ISO 80000-3 writes it: r/min."""
+"""The printed form of a revolution per minute in ISO 80000-3: r/min."""
 _AMBIGUOUS = {
     re.compile(rf"(?<![A-Za-z_])(?:{names})(?![A-Za-z_])"): remedy
     for names, remedy in {
@@ -69,7 +69,7 @@ _AMBIGUOUS = {
         "[GM](?:rad|deg)": "write mrad or deg for an angle",
     }.items()
 }
-"""Words that mean one unit to a reader and another to Pint: `Grad` is German for degrees, here 1e9 rad."""
+"""Words that a reader and Pint interpret differently: `Grad` is German for degrees, here 1e9 rad."""
 LONGEST_UNIT = 60
 
 

@@ -22,7 +22,9 @@ from templates.physics.films.film_equations import midpoints
 from templates.physics.films.film_mesh import gap
 
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)
@@ -30,11 +32,11 @@ class LinearFilm:
     """The force of a film and its derivatives, along and ahead of the line of centres, in units of So."""
 
     force: Array
-    """(2,)"""
+    """Force, (2,)."""
     K: Array
-    """(2, 2) by displacement over the radial clearance."""
+    """Stiffness, (2, 2), per displacement over the radial clearance."""
     B: Array
-    """(2, 2) by velocity over omega_h times the radial clearance."""
+    """Damping, (2, 2), per velocity over omega_h times the radial clearance."""
 
     def turned(self, attitude: float) -> "LinearFilm":
         """Return the same values in axes x, y; the line of centres is ahead of x by the attitude [rad]."""

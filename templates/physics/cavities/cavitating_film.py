@@ -27,9 +27,9 @@ class RingSolution:
     """A solved film with the values at its nodes."""
 
     ring: Ring
-    """Where the nodes are."""
+    """The positions of the nodes."""
     network: Network
-    """Their balances of flow."""
+    """The flow balances of the nodes."""
     solution: Cavitation
     """Pressure and void."""
     fed: Mask
@@ -47,13 +47,13 @@ class CavitatingFilm:
     P_max: float
     """Largest pressure above that of the cavity."""
     friction: float
-    """Friction on the journal F_f psi/(B D eta omega), shear by the oil there is."""
+    """Friction on the journal F_f psi/(B D eta omega), with shear of the existing oil only."""
     side_flow: float
-    """Oil that leaves at both ends, less what enters, Q/(R³ psi omega_h)."""
+    """Net oil flow out of both ends, Q/(R³ psi omega_h)."""
     supply_flow: float
     """Oil that the grooves feed, Q/(R³ psi omega_h)."""
     imbalance: float
-    """Supply less side flow, over the flow that the journal carries round."""
+    """Supply minus side flow, over the flow that the journal transports."""
     phi: Array
     """(n + 1,) angles of the nodes from the narrowest gap; the last is the first [rad]."""
     zeta: Array
@@ -61,7 +61,7 @@ class CavitatingFilm:
     P: Array
     """(n + 1, m + 1) pressure above that of the cavity."""
     void: Array
-    """(n + 1, m + 1) share of the gap without oil."""
+    """(n + 1, m + 1) fraction of the gap without oil."""
 
 
 def solved_ring(

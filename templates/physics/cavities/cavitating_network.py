@@ -24,11 +24,11 @@ class Groove:
     """An axial groove or pocket, full at its own pressure; a width of 0 makes it a line."""
 
     centre: float
-    """From the narrowest gap in the sense of rotation [rad]."""
+    """Angle from the narrowest gap in the sense of rotation [rad]."""
     width: float
-    """Extent around [rad]."""
+    """Circumferential extent [rad]."""
     length: float = 1.0
-    """Extent across over the bearing's width, 0 … 1 [-]."""
+    """Axial extent over the bearing's width, 0 … 1 [-]."""
     P: float = 0.0
     """Supply pressure above that of the cavity [-]."""
 
@@ -126,13 +126,13 @@ class _Pattern:
     """The sparsity pattern of matrices on a ring of nodes, and the position of each entry in it."""
 
     row: NDArray[np.int32]
-    """(places,) the row of each."""
+    """(places,) the row of each position."""
     starts: NDArray[np.int32]
-    """(N + 1,) where columns start."""
+    """(N + 1,) start of each column."""
     pressure: Numbers
-    """(entries,) the place of each entry by pressure: see `_flows`."""
+    """(entries,) the position of each pressure entry: see `_flows`."""
     shear: Numbers
-    """(entries,) likewise by shear."""
+    """(entries,) the position of each shear entry."""
 
     def filled(self, places: Numbers, values: list[Array]) -> csc_array:
         """Return the matrix of entries; entries at the same position are added."""

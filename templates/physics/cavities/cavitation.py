@@ -29,7 +29,9 @@ from templates.physics.cavities.scaled_sum import ColumnScaledSum
 _MOST_STEPS = 200
 _ACCURACY = 1e-11
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)
@@ -37,13 +39,13 @@ class Network:
     """The flow balance at nodes: A P + T fill = 0 where the pressure is unknown."""
 
     A: csc_array
-    """(N, N) what a node loses by pressure, per pressure."""
+    """(N, N) outflow of a node due to pressure, per unit of pressure."""
     T: csc_array
-    """(N, N) what a node loses by shear, per fill of the node from which it comes."""
+    """(N, N) outflow of a node due to shear, per fill of the upstream node."""
     fixed: Mask
     """(N,) nodes at a given pressure, which are full."""
     P_fixed: Array
-    """(N,) that pressure; of no account elsewhere."""
+    """(N,) the given pressures; ignored at the other nodes."""
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
@@ -71,11 +73,11 @@ class Cavitation:
     P: Array
     """(N,) pressure above that of the cavity."""
     void: Array
-    """(N,) share of the gap without oil."""
+    """(N,) fraction of the gap without oil."""
     steps: int
     """Newton steps."""
     imbalance: float
-    """Largest loss at a node whose balance should hold, over the largest flow between nodes."""
+    """Largest residual of a node's flow balance, over the largest flow between nodes."""
 
 
 def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Cavitation:

@@ -21,16 +21,18 @@ from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 _COARSE, _FINE = (64, 8), (128, 16)
 _ACCURACY = 1e-3
-"""Share of the load at which the search ends; the rest is linear."""
+"""Residual over the load at which the search ends; the rest is corrected linearly."""
 _SHORTEST = 1e-4
-"""Step of y, over its size if below 1, at which it ends likewise: where pressure outweighs the load [-]."""
+"""Step of y, relative to |y| if this is below 1, at which the search also ends: if pressure outweighs the
+load [-].
+"""
 _HUNTED = 0.03
-"""The same where the force has a step [-]."""
+"""The same limit if the force has a discontinuity [-]."""
 _STEPS = 20
 _SMALLEST = 1e-3
-"""Eccentricity below which a film without supply pressure is taken in proportion [-]."""
+"""Eccentricity below which a film without supply pressure is scaled linearly [-]."""
 _LONGEST = 1.0
-"""Longest step of atanh(eps); halved whenever the search turns back [-]."""
+"""Longest step of atanh(eps); halved whenever the search reverses [-]."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Feed:
     pressure: float = 0.0
     """Supply pressure above ambient P = p psi²/(eta omega_h) [-]."""
     grooves: tuple[tuple[float, float], ...] = ()
-    """Angle of the centre from the load in the sense of rotation, and width around, of each [rad]."""
+    """Angle of each centre from the load in the sense of rotation, and circumferential width [rad]."""
 
     def placed(self, attitude: float) -> list[Groove]:
         """Return the grooves with angles measured from the narrowest gap."""
@@ -54,11 +56,11 @@ class FedFilm:
     """A film that carries almost exactly the required load; dimensionless as in `cavitating_film`."""
 
     eps: float
-    """Eccentricity at the load wanted."""
+    """Eccentricity at the required load."""
     solved_eps: float
-    """Eccentricity of the film whose measures follow."""
+    """Eccentricity of the film that was solved for the other results."""
     attitude: float
-    """At the load wanted [rad]."""
+    """Attitude at the required load [rad]."""
     P_max: float
     peak: float
     shear: float
@@ -97,9 +99,9 @@ class Lack:
     """The difference between a film's force and the load."""
 
     share: float
-    """Over the load; infinite without one [-]."""
+    """Missing force over the load; infinite without a film [-]."""
     step: Array
-    """Change of y that would make up for it, as far as it is linear."""
+    """Change of y that corrects it linearly."""
 
 
 def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
@@ -160,7 +162,7 @@ class Search:
     ratio: float
     """Width over diameter B/D [-]."""
     feed: Feed
-    """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
+    """Stationary grooves, or none: the supply line then rotates with the journal."""
 
     def balance(self) -> tuple[Place, RingSolution] | None:
         """Return the position and its film on the coarse mesh, by Newton's method.

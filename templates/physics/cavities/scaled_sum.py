@@ -15,10 +15,10 @@ from scipy.sparse.linalg import splu
 from templates.core.arrays import Array
 
 _WIDEST = 40
-"""Bandwidth up to which a banded LU is quicker than a sparse one: four times at 8 and at 16."""
+"""Bandwidth up to which a banded LU is faster than a sparse one: four times at 8 and at 16."""
 
 _SYMMETRIC = {"SymmetricMode": True}
-"""The pattern nearly is: its own ordering is cheaper and fills less than that of its square."""
+"""Options for a nearly symmetric pattern, for which its own ordering is cheaper and has less fill-in."""
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class ColumnScaledSum:
     """
 
     pattern: csc_array
-    """(N, N) the union; its values are those of the last sum."""
+    """(N, N) the union of both patterns; its values are those of the last sum."""
     column: NDArray[np.intp]
-    """(non-zeros,) the column of each."""
+    """(non-zeros,) the column of each entry."""
     first: Array
     """(non-zeros,) values of the first matrix."""
     second: Array
     """(non-zeros,) values of the second."""
     diagonal: NDArray[np.intp]
-    """(N,) where the diagonal is among them."""
+    """(N,) indices of the diagonal entries."""
 
     @classmethod
     def of(cls, first: csc_array, second: csc_array) -> ColumnScaledSum:

@@ -36,32 +36,34 @@ from templates.physics.films.film_shape import Bore, Lie, narrowest
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 MESHES: Sequence[tuple[int, int]] = ((32, 6), (64, 8), (128, 16))
-"""Intervals around, and across half the width."""
+"""Numbers of intervals around the circumference and over half the width."""
 FINER = 256, 32
-"""Those of the mesh that follows where the others have not settled."""
+"""The mesh that follows if the others have not converged."""
 SETTLED = 0.01
-"""Change of displacement and of the least gap, relative, that a step of refinement may leave [-]."""
+"""Largest relative change of displacement and least gap by the last refinement if converged [-]."""
 SAFETY = 1.25
-"""What a stated error is over the change by refinement, after Roache 1994 [-]."""
+"""Safety factor of a stated error over the change by refinement, after Roache 1994 [-]."""
 EXTRAPOLATED = 1.5
-"""What is stated more of film, place and pressure where they are extrapolated [-]."""
+"""Factor on the error of film, position and pressure if they are extrapolated [-]."""
 OFF_ORDER = 0.5
-"""Largest distance of a step from a quarter of the one before, over its size, in the asymptote."""
+"""Largest deviation of a change from a quarter of the previous one, over its size, in the asymptotic range.
+"""
 LEAST_GAP = 1e-6
-"""Smallest gap at which a film is looked for [-]."""
+"""Smallest gap at which a film is sought [-]."""
 SMALLEST = 1e-3
-"""Eccentricity of the plain film below which a load is taken as this one's, in proportion [-]."""
+"""Eccentricity of the plain film below which the result is scaled linearly with the load [-]."""
 _SUDDEN = 6
-"""Limit on what the step before adds to the last: a mesh that misses a lobe tells nothing of finer ones."""
+"""Limit on the contribution of the previous change: a mesh that misses a lobe says nothing about finer ones.
+"""
 _STEPS = 40
 _TURNS = 8
-"""Limit on how often the mesh is graded again before the place is taken as it is."""
+"""Largest number of regradings of the mesh."""
 _ACCURACY = 1e-7
 """Step over the least gap at which a search on one mesh ends."""
 _AGREED = 1e-5
-"""Turn of the line of supply at which place and mesh agree [rad]."""
+"""Rotation of the supply line at which position and mesh agree [rad]."""
 _NEAR_ENOUGH = 1e-2
-"""Change of the least gap, relative, at which they agree; the grading asks for no more."""
+"""Relative change of the least gap at which position and mesh agree."""
 
 
 class NoBalance(ArithmeticError):
@@ -78,7 +80,8 @@ class BearingCase:
     """Width over diameter B/D [-]."""
     bore: Bore
     tilt: Array
-    """(2,) what the journal's end zeta = 1 is displaced beyond its middle, over the radial clearance [-]."""
+    """(2,) displacement of the journal's end zeta = 1 relative to its middle, over the radial clearance [-].
+    """
     feed: Feed
     conserving: bool
     """Whether cavities conserve mass."""
@@ -116,7 +119,7 @@ class Balance:
     """The films that carry a load on the last meshes, from coarse to fine."""
 
     before: MeshEquilibrium | None
-    """None where only two meshes bear it."""
+    """The coarsest of three meshes; None if only two have a solution."""
     coarse: MeshEquilibrium
     fine: MeshEquilibrium
 

@@ -31,7 +31,9 @@ from templates.physics.films.film_shape import Bore, Lie, directions
 
 _MOST_STEPS = 200
 _DAMPING = 1e-10
-"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+"""Fraction of the diagonal that is added; otherwise a ring of cavities alone would leave its void
+undetermined.
+"""
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ class Pocket:
     """An axial groove over the whole width, full at its own pressure; a width of 0 makes it a line."""
 
     centre: float
-    """From the load in the sense of rotation [rad]."""
+    """Angle from the load in the sense of rotation [rad]."""
     width: float
-    """Extent around [rad]."""
+    """Circumferential extent [rad]."""
     P: float
     """Supply pressure above that of the cavity [-]."""
 
@@ -85,9 +85,9 @@ class Gaps:
     nodes: Array
     """(n, m + 1) at the nodes."""
     around: Array
-    """(n, m + 1) midway between neighbours around."""
+    """(n, m + 1) midway between circumferential neighbours."""
     across: Array
-    """(n, m) midway between neighbours across."""
+    """(n, m) midway between axial neighbours."""
 
 
 def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: int, m: int) -> Nodes:

@@ -45,13 +45,15 @@ class Balance:
     """Flows between the nodes at one position of the journal: loss = A P + T fill + before."""
 
     round: Array
-    """(n,) H³/dphi towards the next node around, per unit zeta."""
+    """(n,) H³/dphi towards the next circumferential node, per unit zeta."""
     across: Array
-    """(n, m) conductance towards the next node across."""
+    """(n, m) conductance towards the next axial node."""
     carried: Array
-    """(n,) shear flow to the next node around from the one before if positive, else from that, 12 w H."""
+    """(n,) shear flow 12 w H to the next circumferential node; upwind from this node if positive, else from
+    the next.
+    """
     stored: Array
-    """(n,) what a full node stores in a step, per unit zeta."""
+    """(n,) oil that a full node stores in a step, per unit zeta."""
     width: Array
     """(m,) axial widths of the cells."""
 

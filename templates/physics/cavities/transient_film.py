@@ -29,9 +29,9 @@ from templates.physics.films.film_equations import dual_widths
 _MOST_STEPS = 60
 _ACCURACY = 1e-8
 _THINNER = 0.3
-"""A Newton step leaves this share of the gap."""
+"""Fraction of the gap that a Newton step must leave."""
 _NUDGE = 1e-7
-"""Change of the eccentricity, over the gap, by which its influence is measured."""
+"""Change of the eccentricity, relative to the gap, for the difference quotient."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class State:
     P: Array
     """(n, m) pressure."""
     void: Array
-    """(n, m) share of the gap without oil."""
+    """(n, m) fraction of the gap without oil."""
     content: Array
     """(n, m) oil in the gap, fill times H."""
 

@@ -1,4 +1,14 @@
-"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs, pins; six freedoms per node."""
+"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs, pins; six freedoms per node.
+
+The frame was compared with finite elements of a whole four-throw shaft (journal 55, pin 48, throw 42, web 18
+× 80 mm) on rigid mains. The reactions to a unit load on a pin differ by up to 0.014 of the load in the radial
+direction. In the tangential direction they differ by 0.37 with St Venant torsion of the webs, and by 0.045
+with eight times that torsional stiffness, for that throw.
+
+References
+----------
+Timoshenko, Young, Weaver: Vibration Problems in Engineering, for the beam with shear.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,15 @@
-"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance."""
+"""Main bearings with clearance: an elastic crankshaft touches elastic supports beyond a clearance.
+
+A support reacts with R = k (|u| − c) along the displacement u of the shaft from the centre of its bore if |u|
+exceeds the clearance c, otherwise with no force. The centre of the bore may be offset from the line of the
+others.
+
+By the force method of `crank_supports`, the reactions are R = R₀ + B x, with self-balanced sets B. The
+displacements of the shaft d(R), of the supports R/k + c R/|R|, and the offsets o of the bores are compatible:
+Bᵀ(d + R/k + c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all
+crank angles at once. |R| is replaced by √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without
+contact then carries only that much.
+"""
 
 from __future__ import annotations
 

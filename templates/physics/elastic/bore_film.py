@@ -35,13 +35,13 @@ from templates.physics.elastic.soft_equations import SoftFilm, Softness
 from templates.physics.films.film_equations import dual_widths
 
 _TURNS = 25
-"""Balances at most in the search of a turn."""
+"""Most equilibria in the search for the turn."""
 _TURNED = 1e-9
 """Accuracy of the turn [rad]."""
 _LARGEST_TURN = 0.3
-"""Of one step [rad]."""
+"""Largest step of the turn [rad]."""
 _SHORTER = 3
-"""Limit on how often such a step may be divided by three."""
+"""Largest number of times that a step may be divided by three."""
 _GRADED = 1.25
 """Change of the least gap beyond which the mesh is graded again."""
 
@@ -53,9 +53,9 @@ class BoreSoftness(Softness):
     matrix: Array = field(default_factory=lambda: np.zeros((len(MODES), len(MODES))))
     """(38, 38) deformation in each mode per mode of P [-]."""
     share: float = 1.0
-    """Width of the film over that of the bore [-]."""
+    """Width of the film relative to that of the bore [-]."""
     turn: float = 0.0
-    """From the block to the journal's displacement in the sense of rotation [rad]."""
+    """Angle from the block to the journal's displacement in the sense of rotation [rad]."""
 
     def times(self, share: float) -> BoreSoftness:
         """Return the compliances multiplied by a factor."""

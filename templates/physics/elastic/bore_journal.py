@@ -47,7 +47,7 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 _DIFFERENCES = ("eps", "attitude", "peak")
 _OWN = ("deformation", "thickening")
 _PLACES = 72
-"""Around the bore, at which an estimated deformation is sought."""
+"""Number of circumferential places at which the deformation is estimated."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,11 @@ class Bore:
     """A bore as a matrix of modes, in SI; arrays that broadcast with those of the film."""
 
     rows: Rows
-    """The matrix, one for all points; none leaves the bore stiff [m/Pa]."""
+    """The matrix, one for all points; empty for a rigid bore [m/Pa]."""
     share: Array
     """Width of the film over that of the bore [-]."""
     to_load: Array
-    """From the block or shank to the load in the sense of rotation [rad]."""
+    """Angle from the block or shank to the load in the sense of rotation [rad]."""
 
 
 @on_paper(

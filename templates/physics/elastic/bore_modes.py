@@ -31,7 +31,7 @@ _AROUND = ("m", *(f"{part}{n}" for n in range(1, HIGHEST + 1) for part in "cs"))
 MODES = (*_AROUND, *(f"{name}z" for name in _AROUND))
 """Names of the modes: mean, cosines and sines; `z` marks Legendre's polynomial along the bore."""
 BENDING = np.array([name not in ("c1", "s1") for name in MODES])
-"""The modes that are no motion of the bore as a whole."""
+"""The modes that are not a rigid-body motion of the bore."""
 _EQUAL = 1e-6
 """Difference of C_ij and C_ji, over the root of C_ii C_jj, up to which the matrix is symmetric [-]."""
 

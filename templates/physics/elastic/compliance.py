@@ -24,11 +24,11 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 HARMONICS = 40
-"""Highest n of the ring's deformation that counts."""
+"""Highest harmonic n of the ring's deformation."""
 THINNEST = 1.0005
-"""Outer over inner radius at which a ring begins to be one [-]."""
+"""Outer over inner radius above which a ring counts as one [-]."""
 _ENDLESS = 1e-6
-"""Inner over outer radius of a ring that deforms as an endless body does, to rounding [-]."""
+"""Inner over outer radius below which a ring deforms as an infinite body, to rounding error [-]."""
 
 
 @units("m", "Pa", "1", returns="m/Pa", latex=r"\frac{{{0}\,(1+{2})(1-2\,{2})}}{{{1}\,(1-{2})}}")

@@ -30,13 +30,13 @@ from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 _FAR = 1e3
-"""Outer over inner radius of a ring that deforms as an endless body does [-]."""
+"""Outer over inner radius at which a ring deforms as an infinite body [-]."""
 RIGID, LINER, HOUSING = "rigid", "liner", "housing"
 LEVELS = (RIGID, LINER, HOUSING)
 ROELANDS_PRESSURE = 5.1e-9
-"""Over a pressure in Pa, in Roelands' law [1/Pa]."""
+"""Constant that multiplies a pressure in Pa in Roelands' law [1/Pa]."""
 ROELANDS_SIZE = 9.67
-"""Less the logarithm of his pole's viscosity in Pa s [-]."""
+"""Minus the logarithm of the pole viscosity in Pa s in Roelands' law [-]."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,11 @@ class Elasticity:
     modulus: Array
     """Young's modulus of the housing [Pa]."""
     poisson: Array
-    """Its Poisson's ratio [-]."""
+    """Poisson's ratio of the housing [-]."""
     exponent: Array
-    """Roelands' exponent; 0 leaves the viscosity alone [-]."""
+    """Roelands' exponent; 0 for constant viscosity [-]."""
     eta: Array
-    """Viscosity without pressure [Pa s]."""
+    """Viscosity at ambient pressure [Pa s]."""
     pressure: Array
     """The unit of P, eta omega_h/psi² [Pa]."""
     clearance: Array
@@ -71,21 +71,21 @@ class ElasticJournalFilm:
     """The results of the film; dimensionless, NaN where no film carries the load."""
 
     eps: Array
-    """Displacement of the journal against the displaced bore; infinite where none bears the load."""
+    """Displacement of the journal relative to the displaced bore; infinite if no film carries the load."""
     attitude: Array
-    """From the load to that displacement in the sense of rotation [rad]."""
+    """Angle from the load to that displacement in the sense of rotation [rad]."""
     least: Array
     """Smallest gap over the radial clearance."""
     P_max: Array
     peak: Array
-    """Its place, from the load [rad]."""
+    """Angle of the largest pressure from the load [rad]."""
     shear: Array
     load_couple: Array
     side_flow: Array
     deformation: Array
     """Largest deformation over the radial clearance; NaN at level rigid."""
     thickening: Array
-    """Viscosity at the largest pressure over that without."""
+    """Viscosity at the largest pressure over that at ambient pressure."""
     mesh_error: Array
     """Change of the smallest gap between the two meshes, relative; NaN at level rigid."""
 

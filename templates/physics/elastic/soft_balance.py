@@ -20,14 +20,14 @@ from templates.physics.films.film_mesh import ring_mesh
 from templates.physics.films.reynolds import journal_equations
 
 MESHES = ((64, 8), (128, 16))
-"""Intervals around, and across half the width."""
+"""Numbers of intervals around the circumference and over half the width."""
 _STEPS = 30
 MOST_DEFORMED = 100.0
-"""Deformation over the least gap beyond which no film is looked for [-]."""
+"""Deformation over the least gap beyond which no film is sought [-]."""
 _LEAST_STEP = 0.02
-"""A further share of the softness, over that reached, below which the search is given up."""
+"""Smallest increment of the compliance, relative to that reached, before the search stops."""
 _FIRST = 1.0
-"""Deformation over the least gap, of the first share [-]."""
+"""Deformation over the least gap in the first step of compliance [-]."""
 _REGRADE = 1.25
 """Change of the least gap beyond which the mesh is graded again."""
 _ACCURACY = 1e-9
@@ -46,7 +46,7 @@ class FilmEquilibrium:
     graded: float
     """The least gap to which the mesh is graded [-]."""
     steps: int
-    """Factorisations, of all shares and meshes so far."""
+    """Number of factorisations for all compliances and meshes so far."""
 
 
 def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> FilmEquilibrium:

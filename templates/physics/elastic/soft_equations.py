@@ -41,9 +41,9 @@ class Softness:
     size: float = 0.0
     """Roelands' ln(eta) + 9.67, L [-]."""
     scale: float = 0.0
-    """P in units of his pressure, s [-]."""
+    """Factor from P to Roelands' dimensionless pressure, s [-]."""
     power: float = 0.0
-    """His exponent Z; 0 leaves the viscosity alone [-]."""
+    """Roelands' exponent Z; 0 for constant viscosity [-]."""
 
     def times(self, share: float) -> "Softness":
         """Return the compliances multiplied by a factor."""
@@ -66,7 +66,7 @@ class Modes:
     shapes: Array
     """(n + 1, M) cos and sin at the nodes."""
     taken: Array
-    """(n + 1, M) weights with which the mean pressure across makes their amplitudes."""
+    """(n + 1, M) weights that give the amplitudes from the axial mean pressure."""
     compliance: Array
     """(M,) deformation per amplitude."""
 

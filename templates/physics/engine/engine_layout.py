@@ -21,7 +21,7 @@ from templates.core.language.declare import units
 
 TURN = 2 * np.pi
 SAME = np.radians(1e-6)
-"""Angles this near [rad] are one: input contradicts itself beyond."""
+"""Angles closer than this [rad] are equal; a larger difference is a contradiction of the inputs."""
 _ROUNDING = 1e-9
 
 
@@ -35,7 +35,7 @@ class Layout:
     firing: Array
     throw: NDArray[np.intp]
     is_timed: bool = True
-    """Whether firing angles are given; without gas pressures pins alone lay an engine out."""
+    """Whether firing angles are given; without gas pressures, pin angles alone define a layout."""
 
     @cached_property
     def cycle(self) -> float:

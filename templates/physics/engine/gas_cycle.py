@@ -29,7 +29,7 @@ from templates.physics.engine.gas_pressure import GasCycle, NoGas, TabulatedCycl
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
 _SAME = 1e-9
-"""Angles closer than this [rad] are one: at an event the pressure is that after it, whatever the rounding."""
+"""Angles closer than this [rad] are equal: at an event the pressure is that after it, despite rounding."""
 
 
 @dataclass(frozen=True)

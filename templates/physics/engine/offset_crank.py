@@ -24,7 +24,7 @@ from templates.core.language.declare import units
 from templates.physics.numerics.crank_grid import CrankGrid
 
 _ROUNDING = 2e-14
-"""Sines and cosines below it are those of dead centres and right angles."""
+"""Sines and cosines below this are rounding errors at dead centres and right angles."""
 
 
 @dataclass(frozen=True)

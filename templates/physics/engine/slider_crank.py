@@ -24,7 +24,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 _ROUNDING = 1e-14
-"""Sines and cosines below it are those of dead centres and right angles, accurate to no more digits."""
+"""Sines and cosines below this are rounding errors at dead centres and right angles."""
 
 
 @dataclass(frozen=True)

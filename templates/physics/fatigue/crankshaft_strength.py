@@ -17,7 +17,9 @@ from templates.core.language.declare import units
 MPA, MM = 1e6, 1e-3
 
 MANUFACTURES = {"continuous_grain_flow": 1.05, "free_form_forged": 1.0, "cast_rolled": 0.93}
-"""K for shafts without surface treatment; cast steel with cold rolled fillets, by an approved process."""
+"""Manufacturing factor K of shafts without surface treatment; cast steel with cold-rolled fillets, by an
+approved process.
+"""
 
 
 @units(

@@ -27,7 +27,7 @@ SURFACES = {
     "hot_rolled": (57.7, -0.718),
     "forged": (272.0, -0.995),
 }
-"""Factor and exponent of the ultimate strength in MPa."""
+"""Factor and exponent of the ultimate strength in MPa, for each surface."""
 
 BENDING, AXIAL = "bending", "axial"
 _LOADINGS = {BENDING: 1.0, AXIAL: 0.85}

@@ -17,7 +17,7 @@ import rainflow
 from templates.core.arrays import Array
 
 _SMALL = 0.01
-"""Of the largest amplitude of a history: cycles below it are not counted."""
+"""Fraction of the largest amplitude of a history below which cycles are ignored."""
 
 
 @dataclass(frozen=True)

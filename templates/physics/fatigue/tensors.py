@@ -23,13 +23,13 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 Rows = tuple[tuple[float, ...], ...]
 
 _WEIGHTS = np.sqrt(np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
-"""Of components in the length of a tensor: a shear stands in it twice."""
+"""Weights of the components in the length of a tensor: a shear component counts twice."""
 
 PROPORTIONAL = 0.95
-"""The share of one tensor in a history from which on a sign may be given to an equivalent stress."""
+"""The share of one tensor in a history above which an equivalent stress may have a sign."""
 
 MOST_TENSORS = 200_000
-"""Of all points, angles and curves; Findley's planes of so many take about ten seconds."""
+"""Most tensors for all points, angles and curves; Findley's method then takes about ten seconds."""
 
 _PURE_SHEAR = (
     1e-6  # |p1 + p3| over the length of a tensor, below which neither tension nor compression dominates

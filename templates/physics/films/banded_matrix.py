@@ -16,11 +16,11 @@ class BandedMatrix:
     """The symmetric matrix A of the unknown nodes, by its lower diagonals; axial index fastest."""
 
     diagonals: Array
-    """(diagonals, unknowns): each starts at the first unknown; those between are empty."""
+    """(diagonals, unknowns): each diagonal starts at the first unknown; those between are empty."""
     offsets: tuple[int, ...]
-    """Distances of the diagonals from the main one, rising from 0; the last is the bandwidth."""
+    """Distances of the diagonals from the main one, ascending from 0; the last is the bandwidth."""
     order: NDArray[np.intp]
-    """The rows of nodes around the bearing in the order of their unknowns."""
+    """The circumferential rows of nodes in the order of their unknowns."""
     shape: tuple[int, int]
     """Shape of the node arrays, fixed nodes included."""
 

@@ -29,15 +29,15 @@ class Equations:
     """Coefficients of the flow balances at (n + 1) × (m + 1) nodes."""
 
     around: Array
-    """(n,) conductance H³/dphi between neighbours around, per unit zeta."""
+    """(n,) conductance H³/dphi between circumferential neighbours, per unit zeta."""
     across: Array
-    """(n + 1,) conductance (D/B)² H³ dphi across, times dzeta."""
+    """(n + 1,) axial conductance (D/B)² H³ dphi, times dzeta."""
     source: Array
-    """(n + 1,) what rotation and squeeze bring to a node, per unit zeta."""
+    """(n + 1,) flow that rotation and squeeze bring to a node, per unit zeta."""
     zeta: Array
     """(m + 1,) axial places of the nodes."""
     ring: bool = False
-    """Whether the last node is the first; else P = 0 at both."""
+    """Whether the last node coincides with the first; otherwise P = 0 at both."""
 
     @cached_property
     def conductance_around(self) -> Array:

@@ -25,21 +25,21 @@ class Film:
     P_max: float
     """Largest pressure p psi²/(eta omega_h)."""
     peak: float
-    """Its place, from the narrowest gap in the sense of rotation: negative [rad]."""
+    """Angle of the largest pressure from the narrowest gap in the sense of rotation: negative [rad]."""
     rupture: float
-    """Where the film ruptures at mid-width, from the narrowest gap; good to a mesh width [rad]."""
+    """Rupture angle at mid-width, from the narrowest gap; accurate to a mesh width [rad]."""
     friction: float
     """Friction on the journal F_f psi/(B D eta omega), shear over the full circle (DIN 31652)."""
     friction_bearing: float
     """Friction on the bearing, in the same convention."""
     friction_streamers: float
-    """Friction on the journal if beyond the rupture only streamers that fill H_rupture/H shear."""
+    """Friction on the journal if, beyond rupture, only streamers that fill H_rupture/H are sheared."""
     side_flow: float
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
     supply_flow: float
     """Oil that enters the film at the widest gap, Q/(R³ psi omega_h)."""
     imbalance: float
-    """Oil lost by the discrete film over the supply: rounding, if the solution is one."""
+    """Residual of the discrete flow balance over the supply; only rounding error in a solution."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from templates.physics.films.long_bearing import rupture_Swift_Stieber
 from templates.physics.numerics.arrays import require
 
 _MARGIN = 1.03
-"""Extent of the mesh over that of the long bearing's film [-]; a finite bearing ruptures earlier."""
+"""Extent of the mesh over that of the long bearing's film [-]; in a finite bearing rupture is earlier."""
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,10 @@ import numpy as np
 from templates.core.arrays import Array
 
 _ALONG = np.linspace(-1, 1, 401)
-"""Axial places at which the narrowest gap is looked for; with a tilt alone it is at an end."""
+"""Number of axial places at which the narrowest gap is sought; with a tilt alone it is at an end."""
 
 _SAME = 1e-11
-"""Angles closer than this [rad] are one: rounding does not say on which side of a joint a node is."""
+"""Angles closer than this [rad] are equal, because rounding does not determine the side of a joint."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Bore:
     preload: float = 0.0
     """1 − c_b/c_p of each lobe, 0 to below 1 [-]."""
     angle: float = 0.0
-    """Where the middle of the first lobe is, from the load [rad]."""
+    """Angle of the middle of the first lobe from the load [rad]."""
     offset: float = 0.5
-    """Which share of a lobe's arc lies before its least gap: ½ centred, 1 at its end [-]."""
+    """Fraction of a lobe's arc before its least gap: ½ centred, 1 at its end [-]."""
     mouth: float = 0.0
     """Opening of the bell mouth at the ends over the radial clearance [-]."""
     mouth_length: float = 0.0
@@ -97,7 +97,7 @@ class Lie:
     """Position and tilt of the journal; axes x along the load, y ahead of it in the sense of rotation."""
 
     e: Array
-    """(2,) displacement of its middle over the radial clearance [-]."""
+    """(2,) displacement of the journal's middle over the radial clearance [-]."""
     tilt: Array
     """(2,) further displacement at the end zeta = 1, the opposite one at zeta = −1 [-]."""
 

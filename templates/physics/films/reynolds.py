@@ -27,9 +27,11 @@ from templates.physics.numerics.arrays import require_film
 
 _COARSEST = 16, 4
 _CLOSE = 0.9999
-"""Eccentricity above which rounding and the start decide about single nodes, by 1e-7 of a load [-]."""
+"""Eccentricity above which rounding and initial guess decide single nodes, with an effect of 1e-7 of the load
+[-].
+"""
 _CENTRED = 1e-9
-"""Eccentricity at which a centred journal's attitude and places are taken: their limits."""
+"""Eccentricity used for the limits of attitude and angles of a centred journal."""
 
 
 def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> Film:

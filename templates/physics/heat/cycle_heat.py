@@ -27,7 +27,7 @@ from scipy.optimize.elementwise import find_root
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.oil import ViscousOil, viscosity_at
 from templates.physics.journals.shear_thinning import (
     HTHS_TEMPERATURE,
     critical_rate_at,
@@ -45,55 +45,44 @@ from templates.physics.supplied.fed_cycle import (
 from templates.physics.supplied.supply_geometry import SupplyGeometry
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
-"""Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
+"""Levels of `fed_cycle` that are cheap enough to be solved at many viscosities."""
 _STEPS = 6
 _STEP = float(np.log(4))
-"""Steps, at most so many and of so much in ln, by which the search lowers the viscosity of the supply."""
+"""Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
 
 
-@dataclass(frozen=True)
-class CycleOil:
+@dataclass(frozen=True, kw_only=True)
+class CycleOil(ViscousOil):
     """The oil and its heat capacity, in SI; single values for each point."""
 
-    A: Array
-    B: Array
-    """Walther's intercept and slope [-]."""
-    a: Array
-    b: Array
-    offset: Array
-    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
-    eta: Array
-    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    T_ref: Array
-    """Density [kg/m³] at a temperature [K]."""
     left: Array
-    """Of what shear can take, the share that 1e6 1/s leave at 150 °C; NaN if the oil does not thin [-]."""
+    """Fraction of the shear-dependent viscosity that remains at 150 °C and 1e6 1/s; NaN without shear
+    thinning [-].
+    """
     endless: Array
-    """Share of the viscosity that endless shear leaves [-]."""
+    """Fraction of the viscosity that remains at infinite shear rate [-]."""
     exponent: Array
-    """Of Cross's law [-]."""
+    """Exponent of Cross's law [-]."""
     supply: Array
     """Temperature of the supply [K]."""
     heat_capacity: Array
-    """Per volume [J/(m³ K)]."""
+    """Heat capacity per volume [J/(m³ K)]."""
     share: Array
-    """Share of the loss that the oil carries off [-]."""
-
-    def still(self, T: Array) -> Array:
-        """Return the viscosity at low shear [Pa s] at a temperature [K]."""
-        return viscosity_at(
-            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
-        )
+    """Share of the power loss that the oil removes [-]."""
 
     def sheared(self, T: Array, rate: Array) -> Array:
         """Return the viscosity [Pa s] at a temperature [K] and a shear rate [1/s]."""
-        still, hot = self.still(T), self.still(np.asarray(HTHS_TEMPERATURE))
-        at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
+        return self.viscosity(T) * (1 - self.taken(T, rate))
+
+    def taken(self, T: Array, rate: Array) -> Array:
+        """Return the share [-] of the viscosity that shear takes at a temperature [K] and a rate [1/s]."""
+        one, nothing = np.asarray(1.0), np.asarray(0.0)
+        still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
+        at_150 = critical_rate_of_HTHS(self.left, one, nothing, self.exponent)
         critical = critical_rate_at(at_150, hot, still)
         with np.errstate(invalid="ignore"):
-            thin = viscosity_Cross_1965(rate, still, self.endless * still, critical, self.exponent)
-        return np.where(np.isnan(self.left), still, thin)
+            kept = viscosity_Cross_1965(rate, one, nothing, critical, self.exponent)
+        return np.where(np.isnan(self.left), 0.0, (1 - self.endless) * (1 - kept))
 
 
 @dataclass(frozen=True)
@@ -102,7 +91,7 @@ class CycleBearing:
 
     level: str
     duty: Duty
-    """Its scale is that of 1 Pa s."""
+    """Loads and speeds; the scale is that for 1 Pa s."""
     feeding: SupplyGeometry
     pressure: Array
     """Supply pressure, NaN without a groove [Pa]."""
@@ -123,16 +112,18 @@ class CycleHeat:
     """Effective viscosity [Pa s]; infinite where no balance was found."""
     T: Array
     """Effective temperature [K]."""
+    taken: Array
+    """Share of the viscosity that shear takes [-]."""
     rate: Array
     """Mean shear rate [1/s]."""
     loss: Array
     """Power loss [W]."""
     side_flow: Array
-    """What the journal's motion displaces from the ends [m³/s]."""
+    """Flow out of the ends displaced by the journal's motion [m³/s]."""
     feed_flow: Array
-    """What the supply pressure drives [m³/s]."""
+    """Flow driven by the supply pressure [m³/s]."""
     residual: Array
-    """Viscosity that belongs to the heat, over that taken, less 1 [-]."""
+    """Viscosity from the heat balance over the assumed viscosity, minus 1 [-]."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +162,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
         *(np.shape(getattr(bearing.feeding, field.name)) for field in fields(bearing.feeding)),
         np.shape(bearing.pressure), np.shape(bearing.clearance),
     )  # fmt: skip
-    top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
+    top = np.log(np.broadcast_to(oil.viscosity(oil.supply), shape))
 
     def lack(x: Array) -> Array:
         """Return the logarithm of the viscosity from the heat balance minus that of the assumed viscosity."""
@@ -203,7 +194,8 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     with np.errstate(invalid="ignore"):
         residual = np.asarray(oil.sheared(T, film.rate) / np.exp(solved) - 1)
     eta = np.where(np.isfinite(residual), np.exp(solved), np.inf)
-    values = (eta, T, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
+    taken = oil.taken(T, film.rate)
+    values = (eta, T, taken, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
     return CycleHeat(*(np.asarray(value)[()] for value in values))
 
 
@@ -262,6 +254,16 @@ def temperature_of(heat: CycleHeat, eta: Array) -> Array:
 def rate_of(heat: CycleHeat, eta: Array) -> Array:
     """Return the mean shear rate [1/s]; NaN where the viscosity is NaN."""
     return _where_known(eta, heat.rate)
+
+
+@units(None, "Pa*s", "Pa*s", returns="1", latex=r"1-\frac{{{1}}}{{{2}}}")
+def shear_loss_of(heat: CycleHeat, eta: Array, still: Array) -> Array:
+    """Return the share of the viscosity that shear takes [-]; NaN where the viscosity is.
+
+    By Cross's law, so that it is never below 0: 1 less the ratio of both viscosities [Pa s] is it but for
+    the residual of the balance.
+    """
+    return _where_known(eta, heat.taken)
 
 
 @units(None, "Pa*s", returns="W", latex=r"\text{{by the heat balance}}")

@@ -8,7 +8,7 @@ marches are enough.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from templates.physics.heat.cycle_heat import (
 
 MARCHED_LEVELS = (*LEVELS, "supplied")
 SETTLED, ROUNDS = 2e-3, 12
-"""What ln(viscosity) may lack, as a march repeats to 1e-3; marches at most."""
+"""Accepted residual of ln(viscosity), since a march repeats to 1e-3; largest number of marches."""
 FARTHEST = float(np.log(4))
 """Largest step of ln(viscosity)."""
 
@@ -40,7 +40,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"
     first = cycle_heat(replace(bearing, level=cheap), oil)
     shape = np.shape(first.eta)
-    start = first.eta if np.all(np.isfinite(first.eta)) else oil.still(oil.supply) / 2
+    start = first.eta if np.all(np.isfinite(first.eta)) else oil.viscosity(oil.supply) / 2
     rounds: list[tuple[float, float]] = [(float(np.log(np.ravel(start)[0])), np.nan)]
     while len(rounds) <= ROUNDS:
         x = rounds[-1][0]
@@ -52,7 +52,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return _balanced(oil, film, np.full(shape, np.exp(x)), lack)
         rounds.append((following(rounds), np.nan))
     none = np.full(shape, np.nan)
-    return CycleHeat(np.full(shape, np.inf), *(none for _ in range(6)))
+    return CycleHeat(np.full(shape, np.inf), *(none for _ in fields(CycleHeat)[1:]))
 
 
 def following(rounds: list[tuple[float, float]]) -> float:
@@ -82,6 +82,7 @@ def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[FilmState, 
 
 def _balanced(oil: CycleOil, film: FilmState, eta: Array, lack: float) -> CycleHeat:
     unknown = np.full(np.shape(eta), np.nan)
-    values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
+    T = temperature(oil, film)
+    values = (eta, T, oil.taken(T, film.rate), film.rate, film.loss, film.side_flow, unknown)
     residual = np.full(np.shape(eta), np.expm1(lack))
     return CycleHeat(*(np.asarray(value)[()] for value in (*values, residual)))

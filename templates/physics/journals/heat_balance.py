@@ -22,18 +22,18 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 from templates.core.language.declare import on_paper
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_load
-from templates.physics.journals.oil import density, vogel, walther
+from templates.physics.journals.oil import ViscousOil
 from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.roots import bracketed_root
 
 HOTTEST = 773.15
-"""Highest film temperature that is looked for [K]."""
+"""Highest film temperature that is sought [K]."""
 _ACCURACY = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
-class OperatingPoint:
+class OperatingPoint(ViscousOil):
     """A bearing in operation, in SI; arrays that broadcast together."""
 
     F: Array
@@ -45,40 +45,17 @@ class OperatingPoint:
     psi: Array
     """Relative clearance [-]."""
     omega_m: Array
-    """Size of the hydrodynamic speed [rad/s]."""
+    """Magnitude of the hydrodynamic speed [rad/s]."""
     omega_s: Array
-    """Speed of sliding in its sense [rad/s]."""
-    A: Array
-    """Walther's intercept [-]."""
-    B: Array
-    """Walther's slope [-]."""
-    a: Array
-    """Vogel's factor, if the viscosity follows from his law, else NaN [Pa s]."""
-    b: Array
-    """Vogel's slope [K]."""
-    offset: Array
-    """Vogel's offset [K]."""
-    eta: Array
-    """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    """Density at T_ref [kg/m³]."""
-    T_ref: Array
-    """Temperature of rho_ref [K]."""
+    """Sliding speed, positive with the hydrodynamic speed [rad/s]."""
     heat_capacity: Array
-    """Of the oil per volume, rho c [J/(m³ K)]."""
+    """Heat capacity of the oil per volume, rho c [J/(m³ K)]."""
     T_supply: Array
     """Temperature of the oil supplied, else NaN [K]."""
     T_ambient: Array
     """Temperature of the air, else NaN [K]."""
     kA: Array
     """Heat transfer coefficient times area, else NaN [W/K]."""
-
-    def viscosity(self, T: Array) -> Array:
-        """Return the dynamic viscosity [Pa s] at T [K]."""
-        of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
-        of_vogel = vogel(self.a, self.b, self.offset, T)
-        thin = np.where(np.isnan(self.a), of_walther, of_vogel)
-        return np.where(np.isnan(self.eta), thin, self.eta)
 
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:
         """Return power loss [W] and side flow [m³/s] at T [K]; beyond the film map, those at its limit."""
@@ -127,9 +104,9 @@ class HeatBalance:
     T: Array
     """Film temperature [K]; infinite where there is no balance below 500 °C."""
     T_out: Array
-    """Temperature of the oil that leaves; NaN too without a supply [K]."""
+    """Temperature of the outflowing oil; NaN also without a supply [K]."""
     residual: Array
-    """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
+    """Heat imbalance over the largest of power, heat to oil and heat to air [-]."""
 
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")

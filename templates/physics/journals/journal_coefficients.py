@@ -18,7 +18,7 @@ from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.films.short_dynamics import coefficients_Holmes_1960
 
 _CENTRED = 1e-6
-"""Eccentricity at which a centred journal's coefficients are taken: their limit [-]."""
+"""Eccentricity used for the limit of the coefficients of a centred journal [-]."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Linear:
     B_yx: Array
     B_yy: Array
     M_c: Array
-    """M omega² c psi²/(B D eta omega_h), M of the rotor's share; infinite where every mass is stable."""
+    """M omega² c psi²/(B D eta omega_h), with M the rotor mass per film; infinite if every mass is stable."""
 
 
 def coefficients_at(

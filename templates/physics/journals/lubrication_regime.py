@@ -16,7 +16,9 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 BOUNDARY, FREE = 0.5, 0.0001
-"""Share of the load that the contact bears, above which friction is boundary, to which the film is full."""
+"""Shares of the load carried by contact: friction is boundary above the first, the film is full up to the
+second.
+"""
 
 
 @units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")

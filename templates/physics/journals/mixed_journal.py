@@ -27,15 +27,15 @@ from templates.physics.roughness.asperities import contact_integrals, splined_su
 from templates.physics.roughness.flow_factors import rough_journal
 
 Indices = NDArray[np.int64]
-"""Numbers of bearings in a row."""
+"""Indices into a one-dimensional array of bearings."""
 
 MAP, AVERAGED = "map", "averaged"
 LEVELS = (MAP, AVERAGED)
-"""The film of smooth faces, or of rough ones by the average Reynolds equation."""
+"""The film of smooth surfaces, or of rough ones by the average Reynolds equation."""
 MULTIPLES = np.geomspace(1e-3, 1e2, 41)
 """Speeds of the Stribeck curve over that of the bearing [-]."""
 FULL_FILM = 3.0
-"""Gap over roughness from which on a film counts as full [-]."""
+"""Gap over roughness above which a film counts as full [-]."""
 
 _DEEPEST = float(-np.log1p(-ECCENTRICITY_LIMIT))
 _NODES = 20
@@ -63,7 +63,7 @@ class RoughJournal:
     roughness: Array
     """Composite roughness over radial clearance; 0 is smooth [-]."""
     asymmetry: Array
-    """Share of the journal in the square of the roughness less that of the bearing [-]."""
+    """Squared roughness of the journal minus that of the bearing, over their sum [-]."""
     contact: Array
     """Contact pressure over F_{5/2} [Pa]."""
     mu: Array
@@ -77,17 +77,17 @@ class MixedFilm:
     eps: Array
     """Relative eccentricity."""
     attitude: Array
-    """From the load to the narrowest gap in the sense of rotation [rad]."""
+    """Angle from the load to the narrowest gap in the sense of rotation [rad]."""
     film_share: Array
     """Force of the film over the load."""
     contact_share: Array
     """Force of the contact along the line of centres over the load."""
     contact_sum: Array
-    """Contact pressure summed over the surface, over the load."""
+    """Integral of the contact pressure over the surface, over the load."""
     shear: Array
     """Friction force of the film on the journal over the load."""
     friction: Array
-    """Friction coefficient, of film and contact."""
+    """Friction coefficient of film and contact together."""
 
     def admitted(self, eps: Array) -> "MixedFilm":
         """Return the same film with NaN where eps is NaN."""
@@ -100,7 +100,7 @@ class SmoothFilms:
     """Sommerfeld number and attitude of smooth films of a 1-D array of bearings, at any eccentricity."""
 
     ratio: Array
-    """B/D of each (N,) [-]."""
+    """B/D of each bearing (N,) [-]."""
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
         """Return So and attitude [rad] at eccentricities of the bearings with these indices."""
@@ -140,11 +140,11 @@ class MixedJournal:
     """A one-dimensional array of bearings with their films, and the shape of the points."""
 
     bearing: RoughJournal
-    """Those of which all is known (N,)."""
+    """The bearings whose data are complete (N,)."""
     films: SmoothFilms | AveragedFilms
-    """Their films."""
+    """The films of these bearings."""
     number: Indices
-    """Which of them each point is (...); −1 where it is none."""
+    """Index of the bearing of each point (...); −1 where data are missing."""
 
     def shares(self, eps: Array, speed: Array, i: Indices) -> tuple[Array, ...]:
         """Return the forces along and across the line of centres, and their components, for bearings i."""
@@ -260,9 +260,9 @@ class LeastFriction:
     """The minimum of a Stribeck curve; NaN if it lies at an end of the curve."""
 
     multiple: Array
-    """Its speed over that of the bearing."""
+    """Speed of the minimum over that of the bearing."""
     friction: Array
-    """Friction coefficient there."""
+    """Friction coefficient at the minimum."""
 
 
 @on_paper("by a parabola through the lowest of 21 points about the lowest one of the curve")

@@ -14,6 +14,8 @@ A. Cameron: The Principles of Lubrication, 1966, chapter 1.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from templates.core.arrays import Array
@@ -131,3 +133,27 @@ def viscosity_at(
     """
     thin = np.where(np.isnan(a), walther(A, B, T) * density(rho_ref, T, T_ref), vogel(a, b, c, T))
     return np.where(np.isnan(eta), thin, eta)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViscousOil:
+    """The viscosity of an oil over temperature, in SI; arrays that broadcast together."""
+
+    A: Array
+    B: Array
+    """Walther's intercept and slope [-]."""
+    a: Array
+    b: Array
+    offset: Array
+    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
+    eta: Array
+    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
+    rho_ref: Array
+    T_ref: Array
+    """Density [kg/m³] at a temperature [K]."""
+
+    def viscosity(self, T: Array) -> Array:
+        """Return the dynamic viscosity at low shear [Pa s] at T [K]."""
+        return viscosity_at(
+            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
+        )

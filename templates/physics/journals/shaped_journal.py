@@ -23,11 +23,11 @@ from templates.physics.journals.static_journal import FED, WIDTHS, JournalFilm, 
 from templates.physics.journals.whirl import threshold_mass
 
 BORES = ("plain", "lemon", "offset", "multi_lobe")
-"""Shapes of a bore around."""
+"""Circumferential shapes of a bore."""
 START_LINES = ("fixed", "moving")
-"""What the line of supply at the widest gap does while the journal is displaced from where it lies."""
+"""Behaviour of the supply line at the widest gap while the journal is displaced."""
 MOVABLE = ("short_bearing", "map", "reynolds")
-"""Levels that know the coefficients of a plain film whose line of supply moves with the journal."""
+"""Levels with coefficients of a plain film whose supply line rotates with the journal."""
 
 Grooves = tuple[tuple[float, float], ...]
 
@@ -43,17 +43,17 @@ class Shape:
     preload: Array
     """1 − c_b/c_p of each lobe [-]."""
     angle: Array
-    """Where the middle of a lobe is, from the load [rad]."""
+    """Angle of the middle of a lobe from the load [rad]."""
     offset: Array
-    """Which share of a lobe's arc lies before its least gap [-]."""
+    """Fraction of a lobe's arc before its least gap [-]."""
     mouth: Array
     """Return the opening of the bell mouth at the ends [-]."""
     mouth_length: Array
     """Axial length of each mouth over half the width [-]."""
     tilt_x: Array
-    """What the journal's end is displaced beyond its middle along the load [-]."""
+    """Displacement of the journal's end relative to its middle, along the load [-]."""
     tilt_y: Array
-    """The same ahead of the load [-]."""
+    """The same displacement, ahead of the load [-]."""
 
     def numbers(self) -> list[Array]:
         """Return all values except the first two."""
@@ -70,37 +70,41 @@ class StaticFilm:
     """The results of a static film; dimensionless arrays of one shape, except the matrices (..., 2, 2)."""
 
     eps: Array
-    """Displacement of the journal's middle over the radial clearance; infinite where none bears the load."""
+    """Displacement of the journal at mid-width over the radial clearance; infinite if no film carries the
+    load.
+    """
     attitude: Array
-    """Its direction from the load [rad]."""
+    """Direction of the displacement from the load [rad]."""
     least: Array
     """Smallest gap over the radial clearance."""
     P_max: Array
     """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
     peak: Array
-    """Its angle from the load [rad]; likewise."""
+    """Angle of the largest pressure from the load [rad]; NaN at level fit."""
     shear: Array
     """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
     load_couple: Array
-    """What pressure adds to that with the hydrodynamic speed; So eps sin(attitude)/2 in a plain bearing."""
+    """Friction due to pressure, which is added with the hydrodynamic speed; So eps sin(attitude)/2 in a plain
+    bearing.
+    """
     side_flow: Array
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
     couple_x: Array
     """Moment against a tilt along the load, over psi²/(B D eta omega_h) and B/2."""
     couple_y: Array
-    """The same ahead of the load."""
+    """Moment against a tilt ahead of the load, in the same unit."""
     mesh_error: Array
-    """How far the smallest gap may be off by its meshes, relative; NaN of a plain film."""
+    """Relative error of the smallest gap due to the meshes; NaN for a plain film."""
     place_error: Array
-    """How far the journal may lie from where it is said to, over its displacement; NaN of a plain film."""
+    """Error of the journal's position over its displacement; NaN for a plain film."""
     pressure_error: Array
-    """How far the largest pressure may be off by its meshes, relative; NaN of a plain film."""
+    """Relative error of the largest pressure due to the meshes; NaN for a plain film."""
     flow_error: Array
-    """The same of the side flow."""
+    """Relative error of the side flow due to the meshes; NaN for a plain film."""
     K: Array
-    """Stiffness in the units of So; NaN of a plain film, see `linear_of`."""
+    """Stiffness in units of So; NaN for a plain film, see `linear_of`."""
     B: Array
-    """Damping likewise."""
+    """Damping in units of So; NaN for a plain film, see `linear_of`."""
 
     def admitted(self, eps: Array) -> StaticFilm:
         """Return the same film with NaN where eps is NaN."""

@@ -21,7 +21,7 @@ from templates.core.language.declare import units
 HTHS_RATE = 1e6
 """Shear rate of the HTHS viscosity [1/s]."""
 HTHS_TEMPERATURE = 423.15
-"""Its temperature, 150 °C [K]."""
+"""Temperature of the HTHS viscosity, 150 °C [K]."""
 
 
 @units("1/s", "Pa*s", "Pa*s", "1/s", "1", returns="Pa*s")

@@ -43,7 +43,7 @@ WIDTHS = {
     "reynolds": (0.01, 100.0),
     "mass_conserving": (0.01, 100.0),
 }
-"""Width ratios B/D that each level takes [-]."""
+"""Range of width ratios B/D of each level [-]."""
 
 _SWIFT_STIEBER = "Swift-Stieber: p = 0 at the ends and along the widest gap; rupture where p = dp/dn = 0"
 BOUNDARY = {
@@ -54,15 +54,15 @@ BOUNDARY = {
     "mass_conserving": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply "
     "pressure in the grooves, or along the widest gap where there are none",
 }
-"""What each level takes for the pressure at the film's borders."""
+"""Boundary condition of each level for the pressure."""
 
 
 _CENTRED = 1e-6
-"""Eccentricity below which a full solution is taken in proportion [-]."""
+"""Eccentricity below which a full solution is scaled linearly [-]."""
 
 
 FED = "mass_conserving"
-"""The level that knows grooves and supply pressure."""
+"""The level that models grooves and supply pressure."""
 
 
 def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
@@ -82,7 +82,7 @@ class JournalFilm:
     """The results of a static film; dimensionless arrays of one shape."""
 
     eps: Array
-    """Relative eccentricity; infinite where no film bears the load."""
+    """Relative eccentricity; infinite if no film carries the load."""
     So: Array
     """Sommerfeld number F psi²/(B D eta omega_h)."""
     attitude: Array
@@ -90,11 +90,12 @@ class JournalFilm:
     P_max: Array
     """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
     peak: Array
-    """Its place, from the narrowest gap in the sense of rotation [rad]; likewise."""
+    """Angle of the largest pressure from the narrowest gap in the sense of rotation [rad]; NaN at level fit.
+    """
     shear: Array
     """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
     side_flow: Array
-    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    """Oil flow out of both ends, Q/(R³ psi omega_h)."""
 
     def admitted(self, eps: Array) -> "JournalFilm":
         """Return the same film with NaN where eps is NaN."""

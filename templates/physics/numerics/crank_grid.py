@@ -21,7 +21,7 @@ T = TypeVar("T", bound=np.generic)
 FINEST = np.pi / 180
 """The largest step of the internal grid [rad]."""
 COARSE = 5.000001 * np.pi / 180
-"""The largest step [rad] of returned curves that shows their peaks, 5° but for rounding."""
+"""The largest step [rad] at which returned curves show their peaks: 5° plus rounding."""
 _BEFORE = 1e-7  # distance of an angle before a jump [rad]
 
 

@@ -18,7 +18,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _REORDERED = {"contract", "reassoc", "arcp", "nsz"}
-"""Freedom of the compiler with sums and products; infinity and NaN keep their meaning."""
+"""Permission to reorder sums and products; infinity and NaN keep their meaning."""
 
 
 class _Spare(FunctionCache):

@@ -15,7 +15,7 @@ from scipy.linalg.lapack import dtbtrs
 from templates.core.arrays import Array
 
 _NEARLY = 1 + 1e-15
-"""Keeps a cycle that brings every disturbance back unchanged from being exactly singular."""
+"""Prevents an exactly singular matrix for a cycle that returns every disturbance unchanged."""
 
 
 def differences(steps: Array) -> Array:

@@ -13,9 +13,9 @@ from templates.core.language.declare import units
 from templates.physics.numerics.arrays import largest_load as largest_load
 
 FEWEST, MOST = 12, 3600
-"""Angles of a cycle."""
+"""Smallest and largest number of angles in a cycle."""
 NEARLY_HALF = 0.3
-"""By how much a speed may differ from half the crank's, over that [-]."""
+"""Accepted difference of a speed from half the crank's, relative to that [-]."""
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,14 @@ class CycleFilm:
     P_max: Array
     """The same over the cycle, (...)."""
     P_angle: Array
-    """Its crank angle [rad]."""
+    """Crank angle of the largest pressure [rad]."""
     loss: Array
     """Power 2 psi/(eta Omega² B D²), mean over the cycle, (...)."""
     side_flow: Array
-    """Oil that leaves at both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
+    """Oil flow out of both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
     feed_flow: Array
-    """What the supply pressure drives from a groove besides, likewise; 0 where `side_flow` has it."""
+    """Additional flow from a groove driven by the supply pressure, same unit; 0 if `side_flow` includes it.
+    """
 
 
 def weights(angle: Array, period: float) -> Array:
@@ -97,12 +98,13 @@ class LoadCourse:
     """Measures of how a load varies over the cycle; dimensionless, (...)."""
 
     peak: Array
-    """Its largest size over its mean size."""
+    """Largest magnitude over mean magnitude."""
     steadiness: Array
-    """Size of its mean over its mean size: 1 where it keeps its direction."""
+    """Magnitude of the mean vector over the mean magnitude: 1 if the direction is constant."""
     at_half_speed: Array
-    """Share of the cycle in which its direction turns at 0.2 to 0.8 of the crank's speed, about half of it: a
-    film bears no load that does so for ever."""
+    """Fraction of the cycle in which the load rotates at 0.2 to 0.8 of the crank's speed, about half of it:
+    no film carries a load that does so permanently.
+    """
 
 
 def load_course(angle: Array, F_x: Array, F_y: Array) -> LoadCourse:

@@ -31,7 +31,7 @@ class Motion:
     P_max: float
     """Largest pressure over the mean one, p_max B D/F [-]."""
     side_flow: float
-    """Oil that leaves at both ends over what the journal displaces, Q/(B D v) [-]."""
+    """Oil flow out of both ends over the displaced flow, Q/(B D v) [-]."""
     film: Mask
     """(n + 1, m + 1) nodes inside the film."""
 
@@ -42,14 +42,14 @@ class _UnitVelocityFilm:
 
     mesh: Mesh
     equations: Equations
-    """Balances of flow, their source still to be given."""
+    """Flow balances without their source."""
     matrix: BandedMatrix
     sources: Array
-    """(n + 1, 2) what each velocity brings to a node, per unit zeta."""
+    """(n + 1, 2) flow that each unit velocity brings to a node, per unit zeta."""
     brought: Array
     """(n + 1, m + 1, 2) the same over the nodes' cells."""
     may: Mask
-    """(n + 1, m + 1) nodes that may bear pressure."""
+    """(n + 1, m + 1) mask of nodes that may have pressure."""
 
 
 def film_mobility(

@@ -30,11 +30,11 @@ from templates.physics.orbits.mobility_map import mapped_film_under_load
 from templates.physics.orbits.rotation import PartRotation
 
 SECTOR = np.pi / 4
-"""Half of the sector about the load's direction in which the groove counts [rad]."""
+"""Half of the sector around the load's direction in which the groove has an effect [rad]."""
 _FINENESSES = 1, 4
-"""Factors by which the finest rings of `periodic_orbit` are finer than usual."""
+"""Refinement factors of the finest rings of `periodic_orbit`."""
 _HALVINGS = 12
-"""Limit on how often such a ring is thinned to every other node."""
+"""Largest number of times that a ring may be reduced to every other node."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +42,11 @@ class Groove:
     """A circumferential groove in the sleeve, centred axially, for some cases."""
 
     share: Array
-    """(C,) its width over that of the bearing; 0 is none [-]."""
+    """(C,) width of the groove over that of the bearing; 0 without a groove [-]."""
     start: Array
-    """(C,) where it begins, from the sleeve's axis in the sense x to y [rad]."""
+    """(C,) angle at which the groove begins, from the sleeve's axis in the sense x to y [rad]."""
     extent: Array
-    """(C,) how far it goes in that sense; 2 pi goes all around [rad]."""
+    """(C,) extent of the groove in that sense; 2 pi for a full circle [rad]."""
 
     def of(self, cases: Mask) -> "Groove":
         """Return the same object for a subset of the cases."""

@@ -29,28 +29,28 @@ from templates.physics.orbits.step_bound import least_between, step_bound
 LARGEST_STEP = np.radians(1.0)
 """The largest step of the finest ring of nodes [rad]."""
 TOLERANCE = 1e-5
-"""Largest change over the gap by the last Newton step; it leaves the square, 1e-9 or so [-]."""
+"""Largest change over the gap by the last Newton step; by quadratic convergence about 1e-9 is left [-]."""
 _ROUGH = 1e-3
-"""The same on coarser rings, which only give a start."""
+"""The same limit on coarser rings, which only give an initial guess [-]."""
 THINNEST = 2e-6
-"""Gap 1 − eps below which a film is taken to bear nothing: the mobility map ends at half of it [-]."""
+"""Gap 1 − eps below which a film counts as carrying no load: the mobility map ends at half of it [-]."""
 
 _COARSEST = 64
 _LAST = 2
-"""Stride up to which a case that has not settled on a coarser ring is tried again from the start."""
+"""Stride up to which a case that has not converged on a coarser ring is tried again from the start."""
 _MOST_STEPS = 60
 _THINNER, _LONGEST = 0.25, 0.7
-"""A Newton step leaves this share of the gap, and is no longer than this eccentricity."""
+"""Fraction of the gap that a Newton step must leave, and its largest length in eccentricity."""
 _STUCK = 0.1
-"""A journal at the wall that moves less than this, over its gap, stays there."""
+"""A journal at the wall that moves by less than this, relative to its gap, is stuck."""
 ROUGHEST = 2e-3
-"""Bound of the relative error of the smallest gap, beyond which the steps are shortened [-]."""
+"""Bound of the relative error of the smallest gap above which the steps are shortened [-]."""
 UNKNOWN = 0.1
-"""The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
+"""The same bound above which there is no orbit: its film may be an artefact of the steps [-]."""
 _FINER = 4
-"""Factor on the number of steps: where the film is thin, a degree is a long time."""
+"""Factor on the number of steps where the film is thin."""
 _BLOCK = 1 << 16
-"""Nodes of all cases solved together."""
+"""Most nodes of all cases that are solved together."""
 
 
 @dataclass(frozen=True)
@@ -80,14 +80,15 @@ class Orbit:
     least_gap: Array
     """(C,) smallest 1 − |eps| over the cycle, between the load's angles too [-]."""
     least_angle: Array
-    """(C,) its crank angle [rad]."""
+    """(C,) crank angle of the smallest gap [rad]."""
     step_error: Array
-    """(C,) relative error of the smallest gap by the step, from its change at the nodes that two rings share;
-    no bound, see `step_bound`; NaN where it is not measured [-]."""
+    """(C,) relative error of the smallest gap due to the step, from its change at the nodes that two rings
+    share; not a bound, see `step_bound`; NaN if not measured [-].
+    """
     between: Array
     """(C,) smallest gap between the nodes, by a parabola through three of them [-]."""
     step_bound: Array
-    """(C,) bound of the relative error of `between` by the step, see `step_bound`; NaN where unknown [-]."""
+    """(C,) bound of the relative error of `between` due to the step, see `step_bound`; NaN if unknown [-]."""
 
 
 @dataclass(frozen=True)

@@ -42,13 +42,13 @@ class MobilityMap:
     """The map's data."""
 
     axes: Axes
-    """Nodes over gap, chord and width: see `coordinates`."""
+    """Nodes over gap, chord and width; see `coordinates`."""
     motion: Array
     """Spline coefficients of the first two values of `encode`."""
     film: Array
-    """Spline coefficients of the last two."""
+    """Spline coefficients of the last two values of `encode`."""
     error: Array
-    """(cells over gap, chord, width, 4) largest error measured in each cell: see `mobility_error`."""
+    """(cells over gap, chord, width, 4) largest error measured in each cell; see `mobility_error`."""
 
 
 @cache

@@ -12,7 +12,7 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 
 CLOSED = np.radians(2.0)
-"""Largest angle by which a sum of speeds between angles may miss whole turns [rad]."""
+"""Largest angle by which a sum of speeds may differ from whole revolutions [rad]."""
 
 
 @dataclass(frozen=True)
@@ -20,11 +20,11 @@ class PartRotation:
     """The angle of a part in the frame, for some cases: uniform rotation plus a periodic swing."""
 
     turns: Array
-    """(C,) turns in the frame over the cycle; NaN where these are not whole [-]."""
+    """(C,) revolutions in the frame per cycle; NaN if this is not an integer [-]."""
     period: float
     """The cycle [rad]."""
     swing: Array
-    """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
+    """(C, N) angle at the load's angles minus the uniform rotation, 0 at crank angle 0 [rad]."""
 
     def of(self, cases: Mask) -> "PartRotation":
         """Return the same object for a subset of the cases."""

@@ -17,7 +17,7 @@ import numpy as np
 from templates.core.arrays import Array
 
 _BLOCK = 4096
-"""Points whose pressure is sought together."""
+"""Most points that are solved together."""
 
 
 def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:

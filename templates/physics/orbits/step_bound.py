@@ -21,11 +21,11 @@ import numpy as np
 from templates.core.arrays import Array
 
 MARGIN = 1.25
-"""Bound over the largest change from ring to ring, each brought to the finest ring [-]."""
+"""Bound over the largest change from ring to ring, each extrapolated to the finest ring [-]."""
 LEAST = 5e-4
-"""What is stated at least: where the changes are smaller, kinks of the load decide the error [-]."""
+"""Smallest stated bound: below it, kinks of the load determine the error [-]."""
 RINGS = 4
-"""Rings of which the changes count, the finest and those before it."""
+"""Number of rings whose changes are used: the finest and those before it."""
 
 
 def least_between(place: Array, period: float, gap: Array) -> Array:

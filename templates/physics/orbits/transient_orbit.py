@@ -17,12 +17,13 @@ from templates.physics.films.film_equations import dual_widths
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit
 
 MOST_CYCLES = 8
-"""Cycles after which an orbit that does not repeat is given up."""
+"""Largest number of cycles for an orbit to repeat."""
 REPEATS = 0.02
-"""Largest difference between two cycles, over the gap, of an orbit that repeats; where the journal is
-nearly centred, the node at which oil is fed may change from cycle to cycle [-]."""
+"""Largest difference between two cycles, over the gap, of an orbit that repeats; if the journal is nearly
+centred, the feed node may change from cycle to cycle [-].
+"""
 MOST_NODES = 2000
-"""Steps of a cycle that are taken at most."""
+"""Most steps in a cycle."""
 
 _SUBSTEPS = 4
 _REPORTED = 30  # steps between two reports of progress
@@ -48,11 +49,11 @@ class TransientOrbit:
     P_max: Array
     """(K,) largest pressure p psi²/(eta Omega)."""
     side_flow: Array
-    """(K,) oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+    """(K,) oil flow out of both ends, Q/(B D c Omega), c the radial clearance."""
     shear: Array
-    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    """(K,) shear of the existing oil; pi/sqrt(1 − eps²) for a full film."""
     cycles: int
-    """Cycles run."""
+    """Number of marched cycles."""
 
 
 def transient_orbit(

@@ -17,7 +17,7 @@ from templates.core.language.declare import units
 
 CAPILLARY, ORIFICE, CONSTANT_FLOW = "capillary", "orifice", "constant_flow"
 RESTRICTORS = (CAPILLARY, ORIFICE, CONSTANT_FLOW)
-"""What feeds the recess."""
+"""The restrictors that can feed a recess."""
 
 
 @units("m", "m", returns="1", latex=r"\ln\frac{{{1}}}{{{0}}}")

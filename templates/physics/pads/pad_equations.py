@@ -46,7 +46,7 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
     inlet = H_mid[:, 0] / 2 - conductance[:, 0] * line[:, 0] / 2
     edge = 1 - np.sum(
         shares**2, axis=-1
-    )  # the half cells at the sides, where P = 0, pass on all their inflow
+    )  # at the sides P = 0, so the half cells there pass on all their inflow
     side = np.einsum("inm,nm,ni->n", p, eigenvalues * shares**2, leak[:, 1:-1]) + edge * source.sum(-1)
     measures = np.stack([load.sum(-1), (load * x[:, 1:-1]).sum(-1), inlet, side / 2], axis=-1)
     return measures, np.pad(np.einsum("inm,nm->ni", p, shares * centre), ((0, 0), (1, 1)))

@@ -17,7 +17,7 @@ import numpy as np
 from templates.core.arrays import Array
 
 _FLATTEST = 1e-9
-"""The smallest ln(a) in the map; below it the film is even to rounding."""
+"""Smallest ln(a) in the map; below it the film is uniform to rounding."""
 _NEWTON_STEPS = 12
 
 
@@ -28,7 +28,7 @@ class NodeMap:
     logarithm: Array
     """L = ln a [-]."""
     skew: Array
-    """Vinokur's A, the root of the ratio of the end slopes [-]."""
+    """Vinokur's A, the square root of the ratio of the end slopes [-]."""
     stretch: Array
     """Vinokur's Delta, 0 for no stretching [-]."""
 

@@ -39,13 +39,13 @@ from templates.physics.pads.slider import (
 )
 
 STEEPEST = 1000.0
-"""The largest film ratio h_i/h_o that the mesh resolves [-]."""
+"""Largest film ratio h_i/h_o that the mesh resolves [-]."""
 NARROWEST, WIDEST = 0.01, 100.0
-"""Widths b/l that the mesh resolves [-]."""
+"""Smallest and largest width b/l that the mesh resolves [-]."""
 STATIONS = np.linspace(0, 1, 101)
-"""Places x/l at which the pressure along a pad is reported [-]."""
+"""Positions x/l at which the pressure along a pad is reported [-]."""
 HEIGHTS = np.linspace(0, 1, 41)
-"""Places z/h at which the velocity across the film is reported [-]."""
+"""Positions z/h at which the velocity across the film is reported [-]."""
 
 _BLOCK = 512
 
@@ -59,15 +59,15 @@ class PadFilm(ABC):
     load: Array
     """W h_o²/(6 eta U l² b)."""
     centre: Array
-    """Centre of pressure from the inlet over l; NaN where the pad bears nothing."""
+    """Distance of the centre of pressure from the inlet over l; NaN where the pad supports no load."""
     P_max: Array
     """Largest pressure p h_o²/(6 eta U l)."""
     peak: Array
-    """Its place from the inlet over l; NaN where the pad bears nothing."""
+    """Distance of the largest pressure from the inlet over l; NaN where the pad supports no load."""
     inlet_flow: Array
-    """Flow in at the inlet q/(U h_o b)."""
+    """Flow in at the inlet over U h_o b."""
     side_flow: Array
-    """Flow out at both sides, likewise."""
+    """Flow out at both sides over U h_o b."""
 
     @property
     def friction_moving(self) -> Array:
@@ -201,7 +201,7 @@ class FinitePad(PadFilm):
     """A solved pad of finite width, with its pressure at mid-width."""
 
     mesh: NodeMap
-    """Where its nodes stand."""
+    """The nodes along the pad."""
     P: Array
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""
 

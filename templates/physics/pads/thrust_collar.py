@@ -24,16 +24,17 @@ from templates.physics.pads.sector_equations import solved_sectors
 from templates.physics.pads.slider_film import shear_of_wedge
 
 FLATTEST, STEEPEST = 1e-6, 99.0
-"""Smallest and largest h_i/h_o − 1 that is looked for [-]."""
+"""Limits of the search for h_i/h_o − 1 [-]."""
 HOTTEST = 773.15
-"""Highest film temperature that is looked for [K]."""
+"""Highest film temperature of the search [K]."""
 
 _MESH = 32, 8
 _BLOCK = 512
 _LARGEST_LOGARITHM = 60.0
 
 Law = Callable[..., Array]
-"""Viscosity [Pa s] at a temperature [K], with the oil's constants as further arguments."""
+"""Function that returns the viscosity [Pa s] at a temperature [K]; further arguments are the oil's
+constants."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,39 +42,39 @@ class Collar:
     """A collar in operation, in SI; arrays that broadcast together."""
 
     load: Array
-    """Specific load, that over the area of the pads [Pa]."""
+    """Specific load: the load over the area of the pads [Pa]."""
     taper: Array
-    """h_i − h_o [m]."""
+    """Taper h_i − h_o [m]."""
     omega: Array
     """Angular velocity [rad/s]."""
     radius: Array
     """Mean radius r_m [m]."""
     angle: Array
-    """Of one pad [rad]."""
+    """Angle of one pad [rad]."""
     reach: Array
     """Outer over inner radius [-]."""
     heat_capacity: Array
-    """Of the oil per volume, rho c [J/(m³ K)]."""
+    """Heat capacity of the oil per volume, rho c [J/(m³ K)]."""
     T_supply: Array
     """Temperature of fresh oil; NaN if there is no heat balance [K]."""
     carried: Array
-    """Share k of the outlet's oil that goes on under the next pad [-]."""
+    """Fraction k of the oil from a pad's outlet that enters the next pad [-]."""
 
 
 @dataclass(frozen=True)
 class CollarFilm:
-    """The results of the film, dimensionless; NaN where no film ratio carries the load."""
+    """The results of the film, dimensionless; NaN where no film ratio carries the load below `HOTTEST`."""
 
     a: Array
-    """Film ratio h_i/h_o."""
+    """Film ratio h_i/h_o; infinite where no film ratio supports the load."""
     load: Array
     """Specific load times h_o²/(6 eta omega r_m² angle)."""
     friction: Array
-    """Torque over load, mean radius and h_o/l."""
+    """Friction torque over load, mean radius and h_o/l."""
     inlet: Array
     """Flow into a pad over omega r_m h_o b."""
     side: Array
-    """Flow out at its sides, likewise."""
+    """Flow out at the sides of a pad over omega r_m h_o b."""
 
 
 def collar_film(a: Array, angle: Array, reach: Array) -> CollarFilm:
@@ -130,6 +131,8 @@ def _excess(law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) 
 def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     """Return the film that carries the load with the oil's viscosity at the temperature of the film.
 
+    There is none where the heat balance has it hotter than `HOTTEST`.
+
     Parameters
     ----------
     collar
@@ -158,4 +161,9 @@ def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     borne = np.isfinite(a)
     film = collar_film(a[borne], *(parts[names.index(name)][borne] for name in ("angle", "reach")))
     numbers[:, borne] = [getattr(film, field.name) for field in fields(CollarFilm)]
+    whole = Collar(**dict(zip(names, parts, strict=False)))
+    with np.errstate(all="ignore"):
+        hot = collar_temperature(whole, CollarFilm(*numbers)) > HOTTEST
+    numbers[:, hot] = np.nan
+    numbers[0, hot | (usable & ~borne)] = np.inf
     return CollarFilm(*(number[()] for number in numbers))

@@ -19,7 +19,7 @@ LIMIT = np.array([0.19, 0.22, 0.26, 0.28, 0.30, 0.34, 0.38, 0.42, 0.44])
 AXIAL = np.array([2.30, 1.99, 1.71, 1.55, 1.45, 1.31, 1.15, 1.04, 1.00])
 RADIAL = 0.56
 WEIBULL, LEAST = 1.5, 0.05
-"""Slope of the distribution of lives, and the share of L10 that no bearing falls short of."""
+"""Slope of the distribution of lives, and the fraction of L10 that every bearing reaches."""
 
 
 def _last(value: Array, curve: Array) -> Array:

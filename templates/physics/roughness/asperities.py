@@ -23,7 +23,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 FARTHEST = 10.0
-"""Gap over roughness from which on no summits touch: F_{5/2} is 2e-25 there [-]."""
+"""Ratio of gap to roughness above which no summits touch: F_{5/2} is 2e-25 there [-]."""
 
 _KNOTS = 801
 _POINTS = 48

@@ -30,16 +30,16 @@ PRESSURE = {
     1 / 9: (1.48, 0.42), 1 / 6: (1.38, 0.42), 1 / 3: (1.18, 0.42), 1: (0.90, 0.56),
     3: (0.225, 1.5), 6: (0.520, 1.5), 9: (0.870, 1.5),
 }  # fmt: skip
-"""C and r of phi_x by gamma: 1 − C exp(−r u) up to gamma = 1, 1 + C u^−r above."""
+"""Constants C and r of phi_x for each gamma: 1 − C exp(−r u) up to gamma = 1, 1 + C u^−r above."""
 SHEAR = {
     1 / 9: (2.046, 1.12, 0.78, 0.03, 1.856), 1 / 6: (1.962, 1.08, 0.77, 0.03, 1.754),
     1 / 3: (1.858, 1.01, 0.76, 0.03, 1.561), 1: (1.899, 0.98, 0.92, 0.05, 1.126),
     3: (1.560, 0.85, 1.13, 0.08, 0.556), 6: (1.290, 0.62, 1.09, 0.08, 0.388),
     9: (1.011, 0.54, 1.07, 0.08, 0.295),
 }  # fmt: skip
-"""A_1, alpha_1, alpha_2, alpha_3 and A_2 of phi_s by gamma."""
+"""Constants A_1, alpha_1, alpha_2, alpha_3 and A_2 of phi_s for each gamma."""
 THINNEST = 0.5
-"""h/sigma at which the tables end [-]."""
+"""Smallest h/sigma of the tables [-]."""
 
 
 def pressure_flow_factor(u: Array, gamma: float = 1) -> Array:

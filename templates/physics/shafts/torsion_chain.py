@@ -27,8 +27,8 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 
 FREE, FIXED = "free_free", "fixed_free"
-MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # in a chain; in the mode shapes of all chains
-TIE = 1 - 1e-9  # entries of a mode shape this near to the largest are as large
+MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # per chain; in the mode shapes of all chains
+TIE = 1 - 1e-9  # mode-shape entries above this fraction of the largest count as equal to it
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 PLACES = 21
-"""Speeds at which the lines of the diagram are given."""
+"""Number of speeds at which the lines of the diagram are given."""
 
 RPM = 2 * np.pi / 60
 

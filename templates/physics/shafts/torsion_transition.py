@@ -28,7 +28,7 @@ from templates.core.language.declare import units
 
 CARTER, BETWEEN, WILSON = "carter", "between", "wilson"
 HALF_WIDTH = 0.1
-"""Of the transition, in D_j + D_c."""
+"""Half the width of the transition, over D_j + D_c."""
 
 APART = "pin and journal are well apart: the webs bend, which Carter's formula allows for"
 NEITHER = (

@@ -63,9 +63,9 @@ BOUNDARY = {
     "supplied": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply pressure "
     "in grooves and holes; oil in a cavity stays where it is",
 }
-"""What each level takes for the pressure at the film's borders."""
+"""Boundary conditions of the pressure at each level."""
 WIDTHS = {"mobility_short": (0.01, 100.0), **dict.fromkeys(LEVELS[1:], (NARROWEST, WIDEST))}
-"""Width ratios B/D that each level takes [-]."""
+"""Smallest and largest width ratio B/D at each level [-]."""
 OWN_ERRORS = {
     "maximum_pressure": "pressure",
     "power_loss": "loss",
@@ -73,15 +73,15 @@ OWN_ERRORS = {
     "supply_flow": "side_flow",
     "bore_deflection": "pressure",
 }
-"""Outputs of which a march states the error, by its name in `Totals`."""
+"""Outputs whose error the march states, each with the name of that error in `Totals`."""
 UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
-"""Verdicts that leave no film to report."""
+"""Verdicts for which no film is reported."""
 REMEDY = {
     Verdict.STARVED: "move the groove or the hole to where the load seldom points, or add one",
     Verdict.UNSETTLED: "give less load in kN, or more dynamic_viscosity in mPa*s; under a light load give "
     "less supply_pressure in bar",
 }
-"""What a user may change where no film repeats."""
+"""Changes of the input that can give a repeating film."""
 
 
 @dataclass(frozen=True)
@@ -89,17 +89,17 @@ class FedDuty:
     """Loads and speeds of a bearing over a cycle, and its oil supply; SI."""
 
     duty: Duty
-    """Load and speeds; the load is what the journal pushes with."""
+    """Load and speeds; the load is the force of the journal on the film."""
     groove_share: Array
-    """Width of a groove in the sleeve over that of the bearing, 0 where there is none, (...) [-]."""
+    """Width of a groove in the sleeve over the width of the bearing, 0 without a groove, (...) [-]."""
     groove_start: Array
-    """Where it begins, from the sleeve's axis, (...) [rad]."""
+    """Angle from the sleeve's axis at which the groove begins, (...) [rad]."""
     groove_extent: Array
-    """Extent in the sense x to y, (...) [rad]."""
+    """Angle that the groove extends from its start in the sense x to y, (...) [rad]."""
     pressure: Array
-    """Supply pressure above ambient P = p psi²/(eta Omega), NaN where nothing feeds, (...) [-]."""
+    """Supply pressure above ambient P = p psi²/(eta Omega), NaN without a supply, (...) [-]."""
     supplies: NDArray[np.object_] | None = None
-    """Grooves and holes and their pressure, a `Supply` or None, (...); level supplied alone needs them."""
+    """Grooves and holes and their pressure, a `Supply` or None, (...); only level supplied needs them."""
 
 
 @dataclass(frozen=True)
@@ -112,15 +112,15 @@ class FedOrbit:
     gap: Array
     """1 − |eps|, (..., N)."""
     eps_max: Array
-    """Largest relative eccentricity, between the angles too, by a parabola, (...)."""
+    """Largest relative eccentricity, also between the angles (by a parabola), (...)."""
     angle: Array
-    """Its crank angle, at the mobility levels that of the nearest node [rad]."""
+    """Crank angle of the largest eccentricity; the mobility levels give that of the nearest node [rad]."""
     numerical_error: Array
-    """Relative error of the smallest gap by the step, or from cycle to cycle, (...); NaN where unknown."""
+    """Relative error of the smallest gap from the step or from cycle to cycle, (...); NaN where unknown."""
     marches: tuple[SuppliedOrbit | None, ...] = ()
-    """Results of marching in time at level supplied, of every point; None of one without speed or supply."""
+    """Result of the march at level supplied for each point; None for a point without speed or supply."""
     flooded: TransientOrbit | None = None
-    """Results of marching in time at level flooded."""
+    """Result of the march at level flooded."""
 
     def admitted(self, eps_max: Array) -> "FedOrbit":
         """Return the same orbit with NaN where the largest eccentricity is NaN."""
@@ -206,7 +206,7 @@ class _Cases:
 
     passing: GroovePassage
     ratio: Array
-    """(C,) width over diameter; 1 where the level does not take it, and the load has no speed then."""
+    """(C,) width over diameter; 1, and a load without speed, where the level does not support the width."""
     sliding: Array
     """(C, N) speed of the journal over the sleeve, over Omega."""
     pressure: Array
@@ -327,13 +327,16 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     """Return the points of a duty, dimensionless; NaN speeds where the level does not support the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
-    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure)
+    fed_points = np.zeros(
+        () if fed.supplies is None else fed.supplies.shape
+    )  # points may differ only in the size of a hole, so the shape of the supplies counts too
+    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure, fed_points)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
     curves = np.broadcast_arrays(duty.F_x * scale, duty.F_y * scale, *speeds, *flat, duty.angle)
     points = curves[0].shape[:-1]
     x, y, journal, sleeve, frame, *rows, _ = (np.reshape(c, (-1, duty.angle.size)) for c in curves)
-    ratio, share, start, extent, pressure = (row[:, 0] for row in rows)
+    ratio, share, start, extent, pressure, _ = (row[:, 0] for row in rows)
     groove = Groove(np.nan_to_num(share), np.nan_to_num(start), np.nan_to_num(extent))
     turned = turning(duty.angle, period, sleeve - frame)
     taken = _taken(level, ratio, groove, turned.turns)
@@ -465,7 +468,7 @@ def _of_march(
     P, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.shear))
     flow = np.full_like(
         P, marched.mean_side_flow
-    )  # mean over the steps, which are finer than the load's angles
+    )  # mean over the steps, which are finer than the angles of the load
     rate = [_at(marched, _slope(marched.theta, e, load.period), load) for e in marched.eps]
     squeezing = np.stack(rate)[:, None] - load.w * np.stack([-eps[1], eps[0]])
     valid = np.isfinite(eps[0])

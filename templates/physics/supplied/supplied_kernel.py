@@ -24,13 +24,14 @@ from templates.physics.numerics.machine_code import compiled
 from templates.physics.supplied.supplied_mesh import Mesh
 
 MOST = 25
-"""Iterations of Newton's method."""
+"""Largest number of Newton iterations."""
 SETTLED = 3e-5
-"""Last change of the eccentricity over the gap, and imbalance of a cell over what a full one stores [-]."""
+"""Convergence: last change of the eccentricity over the gap, and imbalance of a cell over what it stores
+when full [-]."""
 LEAVES = 0.3
-"""An iteration leaves this share of the gap."""
+"""An iteration leaves at least this fraction of the gap."""
 NEAREST = 1e4
-"""Conductance that holds a node at the pressure of its pocket, over that of the cell [-]."""
+"""Conductance that holds a node at the pressure of its pocket, over the conductance of the cell [-]."""
 
 
 @compiled

@@ -18,17 +18,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 GAP_CHANGE = 0.2
-"""A step is chosen so that the gap changes by about this share, down to `SMALLEST` of the step asked for."""
+"""Relative change of the gap that a step aims at; the step is not reduced below `SMALLEST` times the
+requested step."""
 STRAYS = 3.0
-"""And so that the journal strays from where its velocity would bring it by about this many gaps per square
-of the step asked for [1/rad²]: at 2° by 0.4 % of the gap."""
+"""Aimed-at deviation of the journal from a move at constant velocity, in gaps per square of the requested
+step [1/rad²]: at 2° 0.4 % of the gap."""
 RETAKEN, SMALLEST = 2.0, 1 / 8
-"""A step so many times larger than it should be is taken again; smallest share of the step asked for [-]."""
+"""A step this many times too large is repeated; smallest fraction of the requested step [-]."""
 SHORTEST = 1e-3
-"""Share of the step asked for below which a step that still fails ends the march."""
+"""Fraction of the requested step below which a step that still fails ends the march."""
 OVERDRAWN = 1.02
-"""Void of a cell beyond which a step of second order, which took oil that was not there, is repeated with
-first order [-]."""
+"""If the void of a cell exceeds this, a second-order step removed more oil than the cell held and is
+repeated with first order [-]."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class TurnedAngle:
     """(N,) rising crank angles [rad]."""
     period: float
     speed: Array
-    """(N,) over Omega [-]."""
+    """(N,) speed over Omega [-]."""
 
     def __call__(self, theta: Array) -> Array:
         """Return the angle rotated since crank angle 0 [rad]."""
@@ -153,13 +154,13 @@ class State:
     velocity: Array
     """(2,) d(e)/d(theta)."""
     step: float
-    """That led here; 0 at a start [rad]."""
+    """Step that led to this state; 0 at a start [rad]."""
     feed: float = 0.0
-    """Oil fed, Q/(B D c Omega), c radial."""
+    """Oil fed, Q/(B D c Omega), c the radial clearance."""
     side_flow: float = 0.0
-    """Oil lost at both ends, likewise."""
+    """Oil lost at both ends, Q/(B D c Omega)."""
     flows: tuple[float, float] = (0.0, 0.0)
-    """Both over the step that led here, in the mean that the step takes: fed less lost is stored."""
+    """Oil fed and oil lost over the last step, averaged as the step does: their difference is stored."""
 
 
 def gap_at(mesh: Mesh, e: Array) -> Array:
@@ -176,7 +177,7 @@ def start(mesh: Mesh, duty: Duty) -> State:
 
 def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
     """Return the state after a step, of second order and by the active set if possible."""
-    from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second
+    from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second to load
 
     last = states[-1]
     theta = last.theta + h

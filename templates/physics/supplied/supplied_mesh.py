@@ -13,11 +13,11 @@ from scipy.interpolate import CubicSpline
 from templates.core.arrays import Array, Integers
 
 _FADES = 0.35
-"""Distance from the end over D/2 within which the pressure of a wide bearing falls to that of the end [-]."""
+"""Distance from the end over D/2 within which the pressure of a wide bearing falls to ambient [-]."""
 _FADES_THIN = 2.0
-"""The same over the width of the least gap, sqrt(2 (1 − eps)) [-]."""
+"""The same distance over the width of the smallest gap, sqrt(2 (1 − eps)) [-]."""
 _DENSITY = 0.6
-"""Rows in the length of a pocket over those of equal spacing [-]."""
+"""Row density along a pocket, relative to equal spacing [-]."""
 
 
 class Mesh(NamedTuple):
@@ -26,17 +26,17 @@ class Mesh(NamedTuple):
     ratio: float
     """Width over diameter B/D [-]."""
     zeta: Array
-    """(m + 1,) axial places of the nodes, 0 (middle) … 1 (end)."""
+    """(m + 1,) axial positions of the nodes, 0 (middle) … 1 (end)."""
     width: Array
     """(m,) axial widths of the cells."""
     quadrature: Array
-    """(m,) weights of the nodes' pressures in the mean over the width, exact for a parabola."""
+    """(m,) weights that average the nodes' pressures over the width; exact for a parabola."""
     normal: Array
     """(2, n) cosine and sine of the nodes' angles."""
     middle: Array
-    """(2, n) the same midway to the next node."""
+    """(2, n) cosine and sine of the angles midway to the next node."""
     order: Integers
-    """(n,) place of each node in the sequence 0, 1, 3, …, 4, 2, in which neighbours are at most two apart."""
+    """(n,) index of each node in the sequence 0, 1, 3, …, 4, 2, in which neighbours are at most two apart."""
 
 
 def supplied_mesh(

@@ -28,29 +28,31 @@ from templates.physics.supplied.supplied_run import (
 from templates.physics.supplied.supply import Supply
 
 MASS = 2.5e-4
-"""Mass of the journal m c Omega psi²/(B D eta), c radial: it regularises where the film is empty [-]."""
+"""Mass of the journal m c Omega psi²/(B D eta), c the radial clearance: it regularises the motion where the
+film is empty [-]."""
 SECTOR = np.pi / 3
-"""A pocket whose centre lies within this angle of the load's direction, and whose half angle is smaller, is
-under the load [rad]."""
+"""A pocket is under the load if its half angle is smaller than this and its centre lies within this angle
+of the load's direction [rad]."""
 OFTEN = 0.4
-"""Share of the cycle under the load from which a pocket stays there [-]."""
+"""Fraction of the cycle under the load from which a pocket counts as staying there [-]."""
 THINNEST = 1e-4
-"""Least gap that the mesh follows [-]."""
-_REPORTED = 0.05  # share of a cycle between two reports of progress
+"""Smallest gap that the mesh resolves [-]."""
+_REPORTED = 0.05  # fraction of a cycle between two progress reports
 
 
 class Verdict(StrEnum):
     """How a march ended."""
 
     REPEATING = "repeating"
-    """The orbit repeats: its least gap to 1e-3."""
+    """The orbit repeats: its smallest gap repeats to 1e-3."""
     WANDERING = "wandering"
-    """The least gap repeats to `repeat_error` only, 3 % at most."""
+    """The smallest gap repeats only to `repeat_error`, at most 3 %."""
     STARVED = "starved"
-    """The film thins like 1/sqrt(n) with the cycle n or faster, or none is left under the load."""
+    """The film thins with the cycle number n like 1/sqrt(n) or faster, or no film is left under the load."""
     UNSETTLED = "unsettled"
-    """No orbit was found: the least gap changes by more than 3 % from cycle to cycle without thinning, as
-    where the supply lifts a journal more than its load presses it; or no film bears the load."""
+    """No orbit was found: the smallest gap changes by more than 3 % from cycle to cycle without thinning
+    (for example if the supply lifts the journal more than the load presses it), or no film supports the
+    load."""
 
 
 @dataclass(frozen=True)
@@ -60,33 +62,35 @@ class MeshSettings:
     around: int
     across: int
     step: float
-    """[rad]."""
+    """Largest time step [rad]."""
     most: int
     near_edges: bool = False
-    """Whether rows are finer at both sides of a hole's edge, as they are at a groove's."""
+    """Whether rows are also finer on both sides of a hole's edge, as they are at a groove's edge."""
     cells: float = 1.0
-    """Cells around over those that a thin gap asks for, where the mesh follows it [-]."""
+    """Circumferential cells relative to those that a thin gap needs [-]."""
 
 
 COARSE = MeshSettings(64, 4, np.radians(4.0), 30)
-"""The mesh that runs in."""
+"""The mesh of the first cycles."""
 FINE = MeshSettings(128, 6, np.radians(2.0), 24)
-"""The mesh of the result; more around where the least gap is thin."""
+"""The mesh of the result; it has more circumferential cells where the smallest gap is thin."""
 RESOLVED, MOST_AROUND = 0.3, 384
-"""Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
+"""Largest width of a cell over the width of the smallest gap, sqrt(2 (1 − eps)), and the largest number of
+cells [-]."""
 
 NEAR_HOLES = (
     MeshSettings(192, 6, np.radians(2.0), 24, near_edges=True, cells=1.5),
     MeshSettings(256, 8, np.radians(2.0), 24, near_edges=True, cells=2.0),
 )
-"""Meshes that follow where every hole stays under the load: there all oil enters against the film's pressure,
-through the hole's edges, and the mesh at these edges decides how much."""
+"""Further meshes for bearings in which every hole stays under the load: there all oil enters through the
+hole's edges against the film's pressure, so the mesh at these edges determines the flow."""
 NEAR_EDGES = 0.4
-"""Spacing of their rows at the edges over that of equal ones, at most [-]."""
+"""Largest row spacing at a hole's edge on these meshes, relative to equal rows [-]."""
 STAYS = 0.6
-"""Share of the cycle under the load above which they do [-]."""
+"""Fraction of the cycle under the load above which the holes count as staying under it [-]."""
 THIN, MORE_ROWS = 0.002, 4
-"""Least gap below which a mesh after the first has so many more rows across [-]."""
+"""If the smallest gap is below the first number, meshes after the first have the second number of extra
+axial rows [-]."""
 
 
 @dataclass(frozen=True)
@@ -94,13 +98,13 @@ class Totals:
     """The results of one cycle on one mesh; dimensionless."""
 
     gap: float
-    """Smallest gap, between the angles too."""
+    """Smallest gap, also between the angles."""
     pressure: float
     """Largest pressure p psi²/(eta Omega)."""
     loss: float
-    """Mean of shear times sliding speed squared, and of the load's work on the film."""
+    """Mean of shear times the square of the sliding speed, plus the mean work of the load on the film."""
     side_flow: float
-    """Mean of the oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+    """Mean flow of oil out of both ends, Q/(B D c Omega), c the radial clearance."""
 
     def change(self, before: "Totals") -> "Totals":
         """Return the change to another mesh, relative to this one [-]."""
@@ -121,12 +125,13 @@ class Totals:
 UNKNOWN = Totals(np.nan, np.nan, np.nan, np.nan)
 LEAST = Totals(gap=5e-3, pressure=0.05, loss=5e-3, side_flow=0.01)
 LEAST_OF_HOLES = replace(LEAST, pressure=0.2)
-"""Where holes alone feed, a starved film may end in an impact, whose pressure follows the step."""
+"""Where only holes feed the bearing, a starved film may end in an impact, whose pressure depends on the
+step."""
 LEAVES = Totals(gap=3.0, pressure=3.0, loss=1.5, side_flow=2.0)
 COARSE_BEYOND = Totals(gap=0.012, pressure=0.1, loss=0.02, side_flow=0.05)
-"""The error that mesh and step leave is `LEAST` and `LEAVES` times the change from the mesh before. Of a
-change beyond the third, which is the coarse mesh's own, a quarter counts. Chosen on marches with finer
-meshes, and checked on others, by `python -m benchmarks.film_cycle_engines` [-]."""
+"""The error of mesh and step is `LEAST` plus `LEAVES` times the change since the previous mesh. A change
+beyond `COARSE_BEYOND` stems from the coarse mesh; only a quarter of it counts. The numbers were chosen on
+marches with finer meshes and checked on others by `python -m benchmarks.film_cycle_engines` [-]."""
 
 
 @dataclass(frozen=True)
@@ -144,39 +149,39 @@ class SuppliedOrbit:
     feed: Array
     """(K,) oil fed by all pockets, Q/(B D c Omega), c the radial clearance."""
     side_flow: Array
-    """(K,) oil that leaves at both ends, likewise."""
+    """(K,) oil that leaves at both ends, Q/(B D c Omega)."""
     shear: Array
-    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    """(K,) shear of the oil present; pi/sqrt(1 − eps²) for a full film."""
     void: Array
     """(K,) share of the gap's volume that is void."""
     least_gap: float
-    """Smallest gap over the cycle, between the angles too, by a parabola; NaN without a whole cycle [-]."""
+    """Smallest gap over the cycle, also between the angles (by a parabola); NaN without a whole cycle [-]."""
     least_angle: float
-    """Its crank angle [rad]."""
+    """Crank angle of the smallest gap [rad]."""
     verdict: Verdict
     repeat_error: float
-    """Change of the least gap from the cycle before, relative; unless it repeats the largest of the last
-    three, infinite if there were not two cycles."""
+    """Relative change of the smallest gap since the previous cycle. If the orbit does not repeat, it is the
+    largest change of the last three cycles, and infinite with fewer than two cycles."""
     error: Totals
-    """Relative error by mesh and step, and by what the cycle lacks of repeating; NaN where unknown [-]."""
+    """Relative error from mesh, step and imperfect repetition of the cycle; NaN where unknown [-]."""
     drift: float
-    """Change of the eccentricity from the cycle before, over the gap, mean over the cycle; likewise."""
+    """Change of the eccentricity since the previous cycle over the gap, averaged over the cycle [-]."""
     cycles: tuple[int, ...]
     """Cycles marched on each mesh."""
     around: int
-    """Cells around of the last mesh."""
+    """Circumferential cells of the last mesh."""
     mean_feed: float
-    """Oil fed in the mean over the cycle, as the steps took it [-]."""
+    """Mean flow of oil fed over the cycle, averaged over the steps [-]."""
     mean_side_flow: float
-    """Oil that leaves at both ends, likewise [-]."""
+    """Mean flow of oil out of both ends, averaged over the steps [-]."""
     mass_balance: float
-    """Oil fed less oil lost at the ends less oil stored, over the oil lost [-]."""
+    """Oil fed minus oil lost at the ends minus oil stored, over the oil lost [-]."""
     halvings: int
-    """Number of halvings in the last cycle, of steps that had not converged."""
+    """Number of times a step of the last cycle was halved because it did not converge."""
     under_load: float
-    """Share of the cycle in which every pocket lies under the load, within 60° of its direction [-]."""
+    """Fraction of the cycle in which every pocket is under the load, within 60° of its direction [-]."""
     change: Totals
-    """Change of the cycle from the mesh before, relative; NaN if there was none [-]."""
+    """Relative change of the cycle since the previous mesh; NaN if there was none [-]."""
 
     @property
     def reason(self) -> str:

@@ -28,15 +28,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 REPEATS = 1e-3
-"""Change of the least gap between two cycles, relative, of an orbit that repeats [-]."""
+"""Largest relative change of the smallest gap between two cycles of a repeating orbit [-]."""
 DRIFTS = 0.02
-"""The same of the eccentricity over the gap, mean over the cycle [-]."""
+"""Largest change of the eccentricity between two cycles of a repeating orbit, over the gap and averaged
+over the cycle [-]."""
 WANDERS = 0.03
-"""Largest change of the least gap in `RECENT` cycles of an orbit that `repeat_error` goes with [-]."""
+"""Largest change of the smallest gap in `RECENT` cycles for which an orbit is reported with its
+`repeat_error` [-]."""
 RECENT = 3
 STARVING, EARLIEST = 0.15, 24
-"""A film starves whose least gap tends to less than this share of the last one; judged from this cycle on
-[-]."""
+"""A film starves if its smallest gap tends to less than this fraction of the last one; first cycle that is
+judged [-]."""
 
 _SAMPLES = 361
 
@@ -56,14 +58,14 @@ class Run:
 
     mesh: Mesh
     states: list[State]
-    """Of the last whole cycle; the first is where it began."""
+    """States of the last whole cycle; the first state is its start."""
     gaps: list[float]
-    """Least gap of each cycle [-]."""
+    """Smallest gap of each cycle [-]."""
     drift: float
-    """Change of the eccentricity over the gap from the cycle before, mean over the cycle; infinite in the
-    first [-]."""
+    """Change of the eccentricity since the previous cycle over the gap, averaged over the cycle; infinite
+    in the first [-]."""
     halvings: int
-    """In the last cycle."""
+    """Number of halved steps in the last cycle."""
     ending: RunOutcome
 
     @property

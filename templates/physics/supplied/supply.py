@@ -18,13 +18,13 @@ class Pocket:
     """A hole, slot or groove full of oil at the supply pressure, symmetric about the bearing's middle."""
 
     centre: float
-    """Angle in the axes of the sleeve or, on_journal, of the journal, at crank angle 0 [rad]."""
+    """Angle at crank angle 0, in the axes of the sleeve or, with on_journal, of the journal [rad]."""
     half_angle: float
-    """Half its extent around; pi goes all around [rad]."""
+    """Half the circumferential extent; pi for a full circle [rad]."""
     half_length: float
-    """Half its length across over B/2, above 0, at most 0.95 [-]."""
+    """Half the axial extent over B/2, above 0 and at most 0.95 [-]."""
     on_journal: bool = False
-    """Whether it turns with the journal; otherwise with the sleeve."""
+    """Whether the pocket rotates with the journal; otherwise it is in the sleeve."""
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ from templates.physics.orbits.rotation import turning
 from templates.physics.supplied.supply import LONGEST, Pocket, Supply
 
 UNDER_LOAD = np.pi / 3
-"""A hole nearer than this to the load's direction lies under the load [rad]."""
+"""A hole within this angle of the load's direction is under the load [rad]."""
 HALF = np.pi / 3
-"""By how much the extent of a half groove may differ from 180° [rad]."""
+"""Largest deviation of a half groove's extent from 180° [rad]."""
 AROUND = 2 * np.pi * (1 - 1e-9)
-"""An extent that goes all around [rad]."""
+"""Smallest extent that counts as a full circle [rad]."""
 
 
 @dataclass(frozen=True)
@@ -32,25 +32,25 @@ class SupplyGeometry:
     D: Array
     """Diameter of the bearing [m]."""
     W: Array
-    """Its width [m]."""
+    """Width of the bearing [m]."""
     groove_width: Array
-    """Groove in the sleeve [m]."""
+    """Width of the groove in the sleeve [m]."""
     groove_start: Array
-    """Where it begins, from the sleeve's axis [rad]."""
+    """Angle from the sleeve's axis at which the groove begins [rad]."""
     groove_extent: Array
-    """Return its extent around [rad]."""
+    """Angle that the groove extends [rad]."""
     sleeve_length: Array
-    """Hole or slot in the sleeve: along the width [m]."""
+    """Axial length of the hole or slot in the sleeve [m]."""
     sleeve_arc: Array
-    """Around [m]."""
+    """Circumferential length of the hole or slot in the sleeve [m]."""
     sleeve_angle: Array
-    """Its middle, from the sleeve's axis [rad]."""
+    """Angle of the middle of the sleeve's hole from the sleeve's axis [rad]."""
     pin_length: Array
-    """Hole or slot in the pin: along the width [m]."""
+    """Axial length of the hole or slot in the pin [m]."""
     pin_arc: Array
-    """Around [m]."""
+    """Circumferential length of the hole or slot in the pin [m]."""
     pin_angle: Array
-    """Its middle, from the throw [rad]."""
+    """Angle of the middle of the pin's hole from the throw [rad]."""
 
     @property
     def grooved(self) -> Mask:

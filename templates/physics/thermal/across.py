@@ -26,21 +26,21 @@ class Across:
     """The integrals at N circumferential places; the last axis is that of J strips, from the sleeve."""
 
     conductance: Array
-    """(N,) F_2; 1/12 at even viscosity [-]."""
+    """(N,) F_2; 1/12 at uniform viscosity [-]."""
     carried: Array
-    """(N,) share of U h that the journal drags along, 1 − F_1/F_0; 1/2 at even viscosity [-]."""
+    """(N,) fraction of U h that the journal drags along, 1 − F_1/F_0; 1/2 at uniform viscosity [-]."""
     shear: Array
-    """(N,) 1/F_0, shear stress of a film without pressure in eta_s U/h [-]."""
+    """(N,) 1/F_0, the shear stress of a film without a pressure gradient in eta_s U/h [-]."""
     by_pressure: Array
-    """(N, J) flow of each strip by a unit of pressure's slope; their sum is −F_2 [-]."""
+    """(N, J) flow of each strip per unit of pressure gradient; their sum is −F_2 [-]."""
     by_drag: Array
     """(N, J) flow of each strip by drag; their sum is `carried` [-]."""
     heat_of_pressure: Array
-    """(N, J) ∫ f (Y − F_1/F_0)² dY, dissipation by the square of pressure's slope [-]."""
+    """(N, J) ∫ f (Y − F_1/F_0)² dY, dissipation by the square of the pressure gradient [-]."""
     heat_of_both: Array
-    """(N, J) 2 ∫ f (Y − F_1/F_0) dY/F_0, that by the slope times the drag; their sum is 0 [-]."""
+    """(N, J) 2 ∫ f (Y − F_1/F_0) dY/F_0, dissipation by gradient times drag; their sum is 0 [-]."""
     heat_of_drag: Array
-    """(N, J) ∫ f dY/F_0², that by drag; their sum is 1/F_0 [-]."""
+    """(N, J) ∫ f dY/F_0², dissipation by drag; their sum is 1/F_0 [-]."""
 
 
 def strip_edges(count: int) -> Array:

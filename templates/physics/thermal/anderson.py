@@ -6,7 +6,7 @@ from templates.core.arrays import Array
 
 _KEPT = 6
 _SHARE = 0.7
-"""Share of the change that is taken where nothing is known of it yet."""
+"""Fraction of the change that is applied while no earlier changes are known."""
 
 
 class Anderson:

@@ -14,7 +14,7 @@ from templates.physics.films.film_equations import dual_widths
 from templates.physics.films.film_mesh import graded_across
 
 _FINE = 8000
-"""Places at which the density of nodes is integrated."""
+"""Number of points at which the density of nodes is integrated."""
 _INLET, _LAYER = 0.5, 0.01
 """Weight and width [rad] of the finer mesh where fresh oil meets the warm walls."""
 
@@ -26,7 +26,7 @@ class Arc:
     phi: Array
     """(n + 1,) angles from the load, rising by less than a turn [rad]."""
     zeta: Array
-    """(m + 1,) axial places, 0 (middle) … 1 (end)."""
+    """(m + 1,) axial positions, 0 (middle) … 1 (end)."""
     ratio: float
     """Width over diameter B/D [-]."""
 

@@ -13,15 +13,15 @@ from templates.physics.thermal.arc import Arc
 from templates.physics.thermal.pressure import Gap, PressureSolution, gap_of, pressed
 
 FARTHEST = float(np.arctanh(0.9999))
-"""Length of y beyond which no journal is looked for."""
+"""Largest length of y in the search."""
 _STEPS = 40
 _LONGEST = 0.7
 _DIFFERENCE = 1e-5
 _NOISE = 1e-6
-"""What may be lacking where no step leaves less: the films themselves are not solved more closely."""
+"""Accepted residual where no step reduces it further: the films are not solved more accurately."""
 _HALVINGS = 8
 _STALE = 0.3
-"""A step that leaves more than this share of what was lacking asks for new slopes."""
+"""After a step that leaves more than this fraction of the residual, the slopes are computed again."""
 
 
 class NoBalance(ArithmeticError):

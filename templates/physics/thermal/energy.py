@@ -32,19 +32,20 @@ class HeatSources:
     """The heating and cooling of a film; temperatures in K."""
 
     delta: float
-    """eta_s omega/(rho c psi²) [K]."""
+    """Temperature scale of dissipation, eta_s omega/(rho c psi²) [K]."""
     kappa: float
-    """k/(rho c omega c_r²) [-]."""
+    """Conduction across the film, k/(rho c omega c_r²) [-]."""
     wall: float
-    """Heat transfer of the bush, h_B/(rho c omega c_r); 0: adiabatic; infinite: held [-]."""
+    """Heat transfer of the bush, h_B/(rho c omega c_r); 0 if adiabatic, infinite at a given temperature
+    [-]."""
     outside: float
     """Temperature behind the bush [K]."""
     supply: float
-    """That of the fresh oil [K]."""
+    """Temperature of the fresh oil [K]."""
     journal: float
-    """That of the journal; NaN for one of no net heat [K]."""
+    """Temperature of the journal; NaN for a journal without net heat flow [K]."""
     carry_over: float = 1.0
-    """Share of the oil that arrives at the groove which goes on into the film [-]."""
+    """Fraction of the oil arriving at the groove that continues into the film [-]."""
 
 
 @dataclass(frozen=True)
@@ -52,24 +53,24 @@ class FilmHeat:
     """The temperatures of a film, and its heat flows, each over rho c U c_r B [K]."""
 
     T: Array
-    """(n + 1, J) at the nodes and strips; the groove's at the first and the last [K]."""
+    """(n + 1, J) temperature at the nodes and strips; the first and last are the groove's [K]."""
     bush: Array
-    """(n + 1,) of the bush's surface, at the groove's edges that beside them [K]."""
+    """(n + 1,) temperature of the bush's surface; at the groove's edges that of the neighbouring node [K]."""
     journal: float
-    """Of the journal [K]."""
+    """Temperature of the journal [K]."""
     groove: float
-    """Of the oil that enters the film [K]."""
+    """Temperature of the oil that enters the film [K]."""
     dissipated: float
     by_side: float
-    """What leaves with the oil at the ends, above the supply's temperature."""
+    """Heat that leaves with the oil at the ends, relative to the supply temperature."""
     by_drain: float
-    """What leaves with arriving oil that does not go on."""
+    """Heat that leaves with the arriving oil that drains from the groove."""
     by_bush: float
     by_journal: float
     side: float
-    """Oil that leaves at the ends, over U c_r B [-]."""
+    """Oil flow out of the ends, over U c_r B [-]."""
     fresh: float
-    """Oil that the groove takes from the supply, likewise [-]."""
+    """Oil flow from the supply into the groove, over U c_r B [-]."""
 
     @property
     def residual(self) -> float:
@@ -83,17 +84,17 @@ class StripFlows:
     """Oil flows between the strips, over U c_r B, and their dissipation and cooling."""
 
     around: Array
-    """(n, J) from node to node."""
+    """(n, J) flow from node to node."""
     side: Array
-    """(n − 1, J) that leaves at the ends."""
+    """(n − 1, J) flow out of the ends."""
     up: Array
-    """(n − 1, J − 1) from strip to strip towards the journal."""
+    """(n − 1, J − 1) flow from strip to strip towards the journal."""
     heat: Array
     """(n − 1, J) dissipation at the inner nodes, over delta."""
     wet: Array
-    """(n − 1,) length of each inner node's cell that oil covers [rad]."""
+    """(n − 1,) length of each inner node's cell that is wetted by oil [rad]."""
     near: Array
-    """(n − 1,) the same over the gap [rad]."""
+    """(n − 1,) wetted length over the gap [rad]."""
 
 
 def carried(film: PressureSolution) -> StripFlows:

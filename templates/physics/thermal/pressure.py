@@ -31,15 +31,15 @@ class Gap:
 
     arc: Arc
     y: Array
-    """(2,) the journal's place along and ahead of the load, as long as atanh(eps)."""
+    """(2,) position of the journal along and ahead of the load, with length atanh(eps)."""
     nodes: Across
-    """Integrals across at the n + 1 nodes."""
+    """Integrals across the film at the n + 1 nodes."""
     faces: Across
-    """The same midway between them, n."""
+    """Integrals across the film midway between the nodes, n."""
     pressure: float
-    """That of the groove P_s [-]."""
+    """Pressure P_s of the groove [-]."""
     length: float
-    """Of the groove across, over the width [-]."""
+    """Axial length of the groove over the bearing's width [-]."""
 
     @property
     def eps(self) -> float:
@@ -89,7 +89,7 @@ class PressureSolution:
     P: Array
     """(n + 1, m + 1) pressure [-]."""
     void: Array
-    """(n + 1, m + 1) share of the gap without oil; at the ends that of the node beside [-]."""
+    """(n + 1, m + 1) fraction of the gap without oil; at the ends that of the neighbouring node [-]."""
 
     @property
     def fill(self) -> Array:

@@ -22,16 +22,17 @@ from templates.physics.thermal.energy import FilmHeat, HeatSources, carried, hea
 from templates.physics.thermal.pressure import PressureSolution
 
 HOTTEST = 773.15
-"""Highest temperature that is looked for [K]."""
+"""Highest temperature of the search [K]."""
 FIELD, FINE = "field", "fine_field"
 MESHES = {FIELD: ((24, 4, 8), (48, 8, 12)), FINE: ((48, 8, 12), (96, 16, 24))}
-"""Of each level, with the mesh to start from: intervals around, across half the width, strips across."""
+"""The initial and the final mesh of each level: intervals around, across half the width, strips across the
+film."""
 _ROUNDS = 80
 _ACCURACY = 1e-7
-"""Change of temperature over its largest rise at which the search ends [-]."""
+"""The iteration ends when the change of temperature over the largest rise is below this [-]."""
 _FORCE = 1e-8
 _LIGHTEST, _HEAVIEST = 0.05, 0.98
-"""Eccentricities between which a search begins [-]."""
+"""Smallest and largest eccentricity at which a search starts [-]."""
 
 
 @dataclass(frozen=True)
@@ -43,12 +44,13 @@ class Bearing:
     ratio: float
     """Width over diameter [-]."""
     pressure: float
-    """Of the supply, p psi²/(eta_s omega) [-]."""
+    """Supply pressure p psi²/(eta_s omega) [-]."""
     groove: tuple[float, float, float]
-    """Angle of its middle from the load, width around [rad], and length over the bearing's width [-]."""
+    """Angle of the groove's middle from the load [rad], its angular width [rad], and its length over the
+    bearing's width [-]."""
     heating: HeatSources
     fluidity: Callable[[Array], Array]
-    """Viscosity of the supply over that at a temperature [K]."""
+    """Function that returns the viscosity at supply over the viscosity at a temperature [K]."""
 
     def arc(self, y: Array, mesh: tuple[int, int, int]) -> Arc:
         """Return the film's mesh, graded to a position of the journal."""
@@ -91,7 +93,7 @@ class Warm:
     film: PressureSolution
     heated: FilmHeat
     rounds: int
-    """Films until the temperatures stood."""
+    """Number of films solved until the temperatures converged."""
     placing: PositionSearch
     supply: float
     """Temperature of the fresh oil [K]."""

@@ -7,66 +7,48 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.language.declare import units
-from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.oil import ViscousOil
 from templates.physics.thermal.energy import HeatSources
 from templates.physics.thermal.thermal_balance import Bearing
 
 
-@dataclass(frozen=True)
-class ThermalCase:
+@dataclass(frozen=True, kw_only=True)
+class ThermalCase(ViscousOil):
     """A bearing with its oil, in SI; arrays that broadcast together, NaN where data are not given."""
 
     F: Array
     """Load [N]."""
     D: Array
     W: Array
-    """Diameter and width [m]."""
+    """Diameter and width of the bearing [m]."""
     psi: Array
     """Relative clearance [-]."""
     omega: Array
     """Speed of the journal [rad/s]."""
     pressure: Array
-    """Of the supply, above ambient [Pa]."""
+    """Supply pressure above ambient [Pa]."""
     angle: Array
-    """From the load to the groove's middle [rad]."""
+    """Angle from the load to the groove's middle [rad]."""
     extent: Array
-    """Of the groove around [rad]."""
+    """Angular width of the groove [rad]."""
     length: Array
-    """Of the groove across, over the width [-]."""
+    """Axial length of the groove over the bearing's width [-]."""
     carry_over: Array
-    """Share of the oil arriving at the groove that goes on [-]."""
+    """Fraction of the oil arriving at the groove that continues into the film [-]."""
     supply: Array
     """Temperature of the fresh oil [K]."""
     heat_capacity: Array
-    """Of the oil per volume [J/(m³ K)]."""
+    """Heat capacity of the oil per volume [J/(m³ K)]."""
     conductivity: Array
-    """Of the oil [W/(m K)]."""
+    """Thermal conductivity of the oil [W/(m K)]."""
     held: Array
-    """Temperature at which the bush is held, else NaN [K]."""
+    """Given temperature of the bush, else NaN [K]."""
     transfer: Array
     """Heat transfer coefficient of the bush, else NaN [W/(m² K)]."""
     ambient: Array
-    """Temperature behind it, else NaN [K]."""
+    """Temperature behind the bush, else NaN [K]."""
     journal: Array
-    """Temperature of the journal, NaN for one without net heat [K]."""
-    A: Array
-    B: Array
-    """Walther's intercept and slope [-]."""
-    a: Array
-    b: Array
-    offset: Array
-    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
-    eta: Array
-    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Array
-    T_ref: Array
-    """Density [kg/m³] at a temperature [K]."""
-
-    def viscosity(self, T: Array) -> Array:
-        """Return the dynamic viscosity [Pa s] at T [K]."""
-        return viscosity_at(
-            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
-        )
+    """Temperature of the journal; NaN for a journal without net heat flow [K]."""
 
     def is_whole(self) -> bool:
         """Return whether all data that a film needs are known."""

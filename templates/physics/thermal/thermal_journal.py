@@ -16,7 +16,7 @@ from templates.physics.thermal.thermal_case import ThermalCase
 ONE = "one_temperature"
 LEVELS = (ONE, FIELD, FINE)
 ANGLES = np.radians(np.arange(0, 360, 5))
-"""From the load, at which the bush's temperature is given [rad]."""
+"""Angles from the load at which the bush's temperature is given [rad]."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class WarmFilm:
     eps: Array
     """Relative eccentricity; infinite where no film was found [-]."""
     attitude: Array
-    """From the load to the narrowest gap [rad]."""
+    """Angle from the load to the smallest gap [rad]."""
     P_max: Array
     """Largest pressure p psi²/(eta_s omega) [-]."""
     T_max: Array
@@ -35,29 +35,29 @@ class WarmFilm:
     """Highest temperature of the bush's surface [K]."""
     T_journal: Array
     T_groove: Array
-    """Of the journal and of the oil that enters the film [K]."""
+    """Temperatures of the journal and of the oil that enters the film [K]."""
     T_side: Array
-    """Mean of the oil that leaves at the ends [K]."""
+    """Mean temperature of the oil that leaves at the ends [K]."""
     torque: Array
-    """M psi/(B R² eta_s omega) [-]."""
+    """Friction torque M psi/(B R² eta_s omega) [-]."""
     side: Array
-    """Flow from the ends, over U c_r B [-]."""
+    """Oil flow out of the ends, over U c_r B [-]."""
     dissipated: Array
     by_oil: Array
     by_bush: Array
     by_journal: Array
-    """Heat that arises, and that leaves with oil, bush and journal, over rho c U c_r B [K]."""
+    """Heat dissipated, and heat removed by oil, bush and journal, over rho c U c_r B [K]."""
     residual: Array
-    """Heat not accounted for, over that which arises, 0 below 1e-9; NaN with one temperature [-]."""
+    """Error of the heat balance over the dissipation, 0 below 1e-9; NaN with one temperature [-]."""
     mesh_error: Array
-    """Change of the smallest film from half the mesh [-]."""
+    """Relative change of the smallest film since the mesh of half the resolution [-]."""
     mesh_change: Array
-    """Change of the largest temperature from half the mesh [K]."""
+    """Change of the highest temperature since the mesh of half the resolution [K]."""
     one_T: Array
-    """One effective temperature for the same bearing [K]."""
+    """Effective temperature of the same bearing in the one-temperature model [K]."""
     one_eps: Array
     one_torque: Array
-    """Eccentricity and torque with it [-]."""
+    """Eccentricity and friction torque in the one-temperature model [-]."""
     bush: Array
     """(..., 72) temperature of the bush's surface at `ANGLES` [K]."""
 

@@ -155,12 +155,6 @@ def are_pairs(first: Array, second: Array) -> bool:
     return np.ndim(first) == 1 and np.shape(first) == np.shape(second)
 
 
-@units("1", "N*m/rad", returns="1")
-def have_stiffness(first: Array, k: Array) -> bool:
-    """Return whether each shaft has a stiffness [N m/rad; ..., shaft]."""
-    return np.shape(k)[-1:] == np.shape(first)[-1:]
-
-
 @units("kg*m**2", "1", "1", returns="1")
 def name_inertias(J: Array, first: Array, second: Array) -> bool:
     """Return whether two lists of numbers name existing inertias, never the same one twice in a pair."""

@@ -1,4 +1,4 @@
-"""Whoever checks or releases a revision says why criteria that are not confirmed may stand."""
+"""Whoever checks or releases a revision with unconfirmed criteria must justify it."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""Approval, comments and audit on the pages, as forms without scripts."""
+"""Approval, comments and audit on the pages, by forms without scripts."""
 
 import re
 

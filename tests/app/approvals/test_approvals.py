@@ -1,4 +1,4 @@
-"""Approval over HTTP: three principals, one after another, each of whom signs what was seen."""
+"""Approval over HTTP: three principals sign one after another, each the content that they saw."""
 
 import hashlib
 import re

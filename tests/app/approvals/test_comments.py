@@ -1,4 +1,4 @@
-"""Comments on revisions, and rows of the audit that belong to the transaction of their change."""
+"""Comments on revisions, and audit rows in the same transaction as the change that they record."""
 
 import pytest
 from approving import Room

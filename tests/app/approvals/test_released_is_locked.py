@@ -1,4 +1,4 @@
-"""A revision that was signed cannot change: not by any route, not by a job, not by a statement of SQL."""
+"""A signed revision cannot change: not by a route, not by a job, not by an SQL statement."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Outputs as a file of NumPy over HTTP: the values of the JSON answer, or a refusal with its reason."""
+"""Outputs as a NumPy file over HTTP: the values of the JSON answer, or a refusal with its reason."""
 
 from io import BytesIO
 from types import SimpleNamespace

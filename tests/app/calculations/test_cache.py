@@ -1,4 +1,4 @@
-"""Results that are kept count by their memory, and stay within the limit."""
+"""The cache counts results by their memory and stays within its limit."""
 
 import sys
 

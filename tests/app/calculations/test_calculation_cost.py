@@ -1,4 +1,4 @@
-"""Estimates of cost: what takes milliseconds stays below the limit, what takes long does not."""
+"""Estimates of cost: calculations of milliseconds are below the limit, long ones above it."""
 
 import pytest
 
@@ -24,8 +24,9 @@ def test_every_example_is_cheap_at_its_usual_level(cls):
         ("map", 1, False),
         ("map", 100, False),
         ("map", 2000, True),
-        ("reynolds", 1, True),
-        ("mass_conserving", 1, True),
+        ("reynolds", 1, False),
+        ("reynolds", 10, True),
+        ("mass_conserving", 10, True),
     ],
 )
 def test_levels_and_points_make_the_cost(level, points, is_expensive):
@@ -67,7 +68,9 @@ def test_solving_costs_more_than_evaluating():
     cls = CATALOGUE.get("oil_film", 1)
     target = ["minimum_film_thickness"]
     assert solving_seconds(cls, cls.example, target=target) > estimated_seconds(cls, cls.example)
-    assert solving_seconds(FILM, FILM.example, "mass_conserving", target=target) > EXPENSIVE
+    evaluating = estimated_seconds(FILM, FILM.example, "mass_conserving")
+    solving = solving_seconds(FILM, FILM.example, "mass_conserving", target=target)
+    assert solving > max(EXPENSIVE, 2 * evaluating)
 
 
 @pytest.mark.parametrize(

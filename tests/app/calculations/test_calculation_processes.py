@@ -1,4 +1,4 @@
-"""Functions of templates and of designs run in processes of their own kind; the others start when needed."""
+"""Functions of templates and designs run in their own kind of process, started when needed."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""The queue of expensive calculations: turns by client, admission, lanes, cancelling."""
+"""The queue of expensive calculations: clients in turn, admission, lanes, cancellation."""
 
 import threading
 from concurrent.futures import wait

@@ -1,4 +1,4 @@
-"""`POST /curves` and `pressure=@file.csv`: tables as the inputs of templates take them; faults by line."""
+"""`POST /curves` and `pressure=@file.csv`: tables become inputs of templates; faults name their line."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Indicator diagrams as measuring programs write them, at `/curves` and in the paste of a page."""
+"""Indicator diagrams in the formats of measuring programs, at `/curves` and pasted into a page."""
 
 import base64
 import io

@@ -1,4 +1,4 @@
-"""A measurement from its CSV file into a design, beside a calculated curve, and into page and report."""
+"""A measurement from a CSV file in a design, compared with a calculated curve, on page and report."""
 
 from serving import API, created, revision
 

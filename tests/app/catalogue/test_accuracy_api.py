@@ -1,4 +1,4 @@
-"""Measured accuracy over REST, and answers of levels as JSON."""
+"""Measured errors over REST, and answers of levels as JSON."""
 
 from serving import API
 

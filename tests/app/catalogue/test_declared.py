@@ -1,4 +1,4 @@
-"""Declarations are read once for each schema, and quantities are written alike in all their forms."""
+"""Declarations are read once for each schema, and quantities have the same form everywhere."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Files of a team's folder: checked when they are loaded, quarantined with their faults, read again."""
+"""Files of a team's folder are checked when loaded, quarantined if faulty, and read again if changed."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""`crankwright audit verify` and `list` as an operator types them: sound, changed, unreadable databases."""
+"""`crankwright audit verify` and `list` on sound, changed and unreadable databases."""
 
 import shutil
 import sqlite3

@@ -1,4 +1,4 @@
-"""Commands are imported when they are called, and bring only what they need."""
+"""Commands are imported when they are called, and import only what they need."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""The paper's demonstration: its service is a fork here; the slow lane runs the command of the README."""
+"""The paper's demonstration: here its service is a fork; a slow test runs the command of the README."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""The embedded default needs no extra: it starts, builds and answers where none of `team` is installed."""
+"""The embedded default needs no extra: it starts, builds and answers without the extra `team`."""
 
 import os
 import subprocess

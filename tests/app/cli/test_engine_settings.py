@@ -1,4 +1,4 @@
-"""Where jobs run by CRANKWRIGHT_ENGINE: what is refused at the start, and what the default does without."""
+"""CRANKWRIGHT_ENGINE selects where jobs run: wrong values are refused, the default needs no Dask."""
 
 import os
 

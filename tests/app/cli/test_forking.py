@@ -1,4 +1,4 @@
-"""Fork servers that a process forks from itself before it has threads."""
+"""A process forks its fork servers before it has threads."""
 
 import os
 import signal

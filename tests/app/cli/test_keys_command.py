@@ -1,4 +1,4 @@
-"""`crankwright keys …` on a data folder, and what `serve` makes of it."""
+"""`crankwright keys …` on a data folder, and its effect on `serve`."""
 
 import pytest
 from click.testing import CliRunner

@@ -1,4 +1,4 @@
-"""One thread for the libraries of linear algebra, in the service and its processes, unless it is set."""
+"""Libraries for linear algebra use one thread in the service and its processes, unless set otherwise."""
 
 import os
 import subprocess

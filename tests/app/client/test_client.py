@@ -1,4 +1,4 @@
-"""The typed client: what it gives back, and the problems that it raises."""
+"""The typed client: the objects that it returns, and the problems that it raises."""
 
 import asyncio
 import inspect

@@ -1,4 +1,4 @@
-"""Auto-map proposes by kind, name and role of a quantity, and applies nothing on its own."""
+"""Auto-map proposes relations by kind, name and role of quantities, and applies nothing by itself."""
 
 import pytest
 from serving import API, created

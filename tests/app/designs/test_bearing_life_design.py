@@ -1,4 +1,4 @@
-"""A ball bearing of a design gives its own load ratings to its life."""
+"""A ball bearing in a design passes its own load ratings to its life calculation."""
 
 import pytest
 from serving import API, created

@@ -1,4 +1,4 @@
-"""Two revisions, or two designs, side by side: what differs, by how much, in which unit."""
+"""The comparison of two revisions or designs lists the differences with amount and unit."""
 
 from copy import deepcopy
 

@@ -1,4 +1,4 @@
-"""A design whose film decides a width, over HTTP: variants, a study, explanation, network, report."""
+"""A condition on the film sets a width, over HTTP: variants, study, explanation, network, report."""
 
 import pytest
 from serving import API, created

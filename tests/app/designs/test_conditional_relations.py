@@ -1,4 +1,4 @@
-"""Designs whose relations decide: conditions, choices and lists, in one design and in rows."""
+"""Relations with conditions, choices and lists, in single designs and in rows."""
 
 import copy
 

@@ -1,4 +1,4 @@
-"""Calculation and crank are one loop: the solid's inertia in its vibration, webs that follow its mass."""
+"""Calculation and crank form a loop: the solid's inertia affects its vibration, webs depend on its mass."""
 
 from math import pi, sqrt
 

@@ -1,4 +1,4 @@
-"""`decide`: levels climb only where a criterion is undecided; what was spent, and why it stopped."""
+"""`decide` uses finer levels only for undecided criteria, and reports its cost and why it stopped."""
 
 import numpy as np
 import pytest
@@ -227,7 +227,9 @@ def test_what_no_level_can_state_stays_open():
 
 def test_an_expensive_level_goes_on_as_a_job(http):
     value = film_at("map")
-    design = created(http, document(f"film.minimum_film_thickness >= {value!r} um", level="map"))
+    loads = {"value": [16.0 + number for number in range(10)], "unit": "kN"}  # the last is FILM's
+    required = f"film.minimum_film_thickness >= {value!r} um"
+    design = created(http, document(required, level="map", radial_load=loads))
     wanted = {"criteria": ["own"], "budget": "60 s"}
     path, later = f"{DESIGNS}/{design['id']}/decide?units=us", {"Prefer": "respond-async"}
     answer = http.post(path, json=wanted, headers=later)

@@ -1,4 +1,4 @@
-"""`model.stl?deflection=…`: a mesh as fine as its user asks for, or a refusal that says what is right."""
+"""`model.stl?deflection=…` returns a mesh of the requested fineness, or a refusal with the valid values."""
 
 import pytest
 from serving import API, created, faults, moody, problem

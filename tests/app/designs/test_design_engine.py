@@ -1,4 +1,4 @@
-"""A design as a function of N rows: equal to each row as a design of its own, and what it refuses."""
+"""A design of N rows gives the results of N separate designs; and what the engine refuses."""
 
 import copy
 

@@ -1,4 +1,4 @@
-"""Every template and every model as a design of many rows, equal to each row as a design of its own."""
+"""Every template and model in a design of many rows gives the results of separate designs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Rows of a design with solids: which rows need them, and what is used where a measure is known."""
+"""Rows of a design with solids: which rows need solids, and where known measurements are used."""
 
 import numpy as np
 from row_designs import FILM, calculated, codes, engine_of, ref

@@ -1,4 +1,4 @@
-"""Files of a design name it: outside, in Content-Disposition, and inside, by a stamp that `verify` skips."""
+"""Files of a design name it in Content-Disposition and in a stamp, which `verify` ignores."""
 
 import hashlib
 import io

@@ -1,4 +1,4 @@
-"""Analytic: the filter on the list of designs selects what it says, together with pages of any length."""
+"""Analytic: the filter on the list of designs selects the right designs, with pages of any length."""
 
 from uuid import uuid4
 

@@ -1,4 +1,4 @@
-"""Measures of solids in worksheets, and iterations through them."""
+"""Measurements of solids in worksheets, and iterations through them."""
 
 import pytest
 from designing import feedback, weighed

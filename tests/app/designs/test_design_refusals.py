@@ -1,4 +1,4 @@
-"""What a design refuses, all faults at once, and what it saves without a value."""
+"""A design refuses all faults at once, and saves some inputs without a value."""
 
 import pytest
 from designing import bore, created_by, feedback

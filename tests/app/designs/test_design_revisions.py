@@ -1,4 +1,4 @@
-"""Revisions: immutable, copied, restored, paged; patches; the last good model of a failed one."""
+"""Revisions are immutable, copied, restored and paged; patches; the last good model of a failed one."""
 
 import hashlib
 

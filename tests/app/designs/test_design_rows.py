@@ -1,4 +1,4 @@
-"""The rows of designs, their revisions and models: which of them a question selects."""
+"""Database rows of designs, revisions and models: which of them a query selects."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The link between calculation and geometry, through REST: what is saved, what is rebuilt, what is kept."""
+"""The link between calculation and geometry over REST: what is saved, rebuilt and reused."""
 
 import pytest
 from bare_shells import BUSH

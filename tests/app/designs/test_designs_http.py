@@ -1,4 +1,4 @@
-"""The rules of HTTP that designs and their jobs keep: preconditions, repeats, waiting, full queues."""
+"""HTTP rules for designs and their jobs: preconditions, repeated requests, waiting, full queues."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace

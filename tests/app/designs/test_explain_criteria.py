@@ -1,4 +1,4 @@
-"""Where a verdict comes from: verdict ← value ← formula ← inputs, and limit ← who gave it."""
+"""The origin of a verdict: verdict ← value ← formula ← inputs, and limit ← its source."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""An iteration that does not settle ends after its own rounds, and names those alone."""
+"""An iteration that does not converge ends after its own number of rounds, and only it is named."""
 
 from collections import Counter
 from types import SimpleNamespace

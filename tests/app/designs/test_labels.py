@@ -1,4 +1,4 @@
-"""Tags, archive and names of designs: they select, and change no result."""
+"""Tags, archive and names of designs select designs and change no result."""
 
 from uuid import uuid4
 

@@ -1,4 +1,4 @@
-"""Whatever client bytes reach takes a time that is linear in their number, or refuses by their number."""
+"""Processing of client bytes takes linear time, or the number of items is limited."""
 
 from types import SimpleNamespace
 

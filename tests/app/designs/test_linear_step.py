@@ -1,4 +1,4 @@
-"""The header of a STEP file that a client sends is read in a time that is linear in its length."""
+"""The header of a STEP file from a client is read in linear time."""
 
 import pytest
 from scaling import assert_constant, assert_linear

@@ -1,4 +1,4 @@
-"""Parameters of a model that are lists, by the live interface: a shaft whose pins follow from an engine."""
+"""Model parameters that are lists, over HTTP: the pins of a shaft come from an engine."""
 
 import pytest
 from engines import bearings_of, four_cylinders

@@ -1,4 +1,4 @@
-"""What drives what in a design, over HTTP."""
+"""The network of relations in a design, over HTTP."""
 
 from serving import API, created, paper, problem
 

@@ -1,4 +1,4 @@
-"""Names of designs as references, the order of a network, and calculations that are continued."""
+"""Names as references in designs, the order of a network, and continued calculations."""
 
 import pytest
 

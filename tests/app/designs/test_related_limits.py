@@ -1,4 +1,4 @@
-"""Limits of a step that follow from relations: values, errors upstream, waiting, faults; and over HTTP."""
+"""Limits of a step that are relations: values, upstream errors, waiting, faults; also over HTTP."""
 
 from types import SimpleNamespace
 

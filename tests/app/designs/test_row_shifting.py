@@ -1,4 +1,4 @@
-"""Errors of upstream steps in verdicts of rows: what is calculated at both of their ends, and what is not."""
+"""Errors of upstream steps in verdicts of rows: which values are calculated at both ends of a band."""
 
 import copy
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""Saves and previews with steps that take long: as jobs, stopped by who leaves, safe from kills."""
+"""Saves and previews with slow steps run as jobs, end when the client leaves, and survive a kill."""
 
 import json
 import socket

@@ -1,4 +1,4 @@
-"""Analytic: sensitivities of explained values against closed forms, and where there are none."""
+"""Analytic: sensitivities of explained values against closed forms, and the cases without any."""
 
 import copy
 

@@ -1,4 +1,4 @@
-"""Solving a design: every value of one parameter that gives a wanted output, through relations and steps."""
+"""Solving a design finds every value of one parameter that gives a wanted output, through relations."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Stored results are read once for equal texts; answers and digests stay as they are without that."""
+"""Stored results are parsed once for equal texts; answers and digests are the same as without that."""
 
 import hashlib
 

@@ -1,4 +1,4 @@
-"""Units of a design's parameters that a relation sets, as the interface writes them."""
+"""Units of design parameters that a relation sets, as the interface writes them."""
 
 from serving import API
 

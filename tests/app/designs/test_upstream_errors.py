@@ -1,4 +1,4 @@
-"""Errors of the steps from which a criterion of a design follows: carried downstream, or named."""
+"""Errors of upstream steps are propagated to a design's criteria, or named."""
 
 import numpy as np
 import pytest

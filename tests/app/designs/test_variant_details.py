@@ -1,4 +1,4 @@
-"""One variant with its curves: equal to a design of its own, refused where it cannot be calculated."""
+"""One variant with its curves equals a separate design; refused where it cannot be calculated."""
 
 import asyncio
 

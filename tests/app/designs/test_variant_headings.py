@@ -1,4 +1,4 @@
-"""Sheets of variants as a person writes them: headings in words, names with spaces."""
+"""Tables of variants written by people: headings in words, names with spaces."""
 
 import pytest
 

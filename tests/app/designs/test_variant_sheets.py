@@ -1,4 +1,4 @@
-"""The table of variants as CSV and XLSX: round trips, faulty cells by address, files of strangers."""
+"""The table of variants as CSV and XLSX: round trips, addresses of faulty cells, foreign files."""
 
 import io
 import zipfile

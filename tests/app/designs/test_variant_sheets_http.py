@@ -1,4 +1,4 @@
-"""The table of variants over HTTP as CSV and XLSX: read, saved, refused by the addresses of its cells."""
+"""The table of variants over HTTP as CSV and XLSX: read, saved, refused with addresses of cells."""
 
 import io
 

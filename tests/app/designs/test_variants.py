@@ -1,4 +1,4 @@
-"""Variants of a design: the table, and what is calculated of it, held against designs of their own."""
+"""Variants of a design: the table, and results equal to those of separate designs."""
 
 from copy import deepcopy
 

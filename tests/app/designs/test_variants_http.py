@@ -1,4 +1,4 @@
-"""Variants over HTTP: the table saved and read, one solid for equal parameters, files, a ZIP, a verdict."""
+"""Variants over HTTP: table saved and read, one solid for equal parameters, files, ZIP, verdict."""
 
 import io
 import re

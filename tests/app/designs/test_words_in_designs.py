@@ -1,4 +1,4 @@
-"""Grades of oil as they are printed, and radial clearances, in a design."""
+"""Oil grades as they are printed, and radial clearances, in a design."""
 
 import pytest
 from serving import API, created, faults, patched, revision

@@ -1,4 +1,4 @@
-"""The promises of test_contract.py, on what covers each keyword of each schema; all that can be asked so."""
+"""The checks of test_contract.py on requests that cover each keyword of each schema."""
 
 import pytest
 from hypothesis import Phase, settings

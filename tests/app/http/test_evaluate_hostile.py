@@ -1,4 +1,4 @@
-"""Whatever is sent to `evaluate` gets an answer or a problem, never an error of the server."""
+"""Every request to `evaluate` gets an answer or a problem, never a server error."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Keys at the gate: whose request it is, what one that is not valid is answered, what a role may."""
+"""Keys: to whom a request belongs, the answer to an invalid key, and the rights of a role."""
 
 from datetime import UTC, datetime, timedelta
 

@@ -1,4 +1,4 @@
-"""A hostile page in the browser of somebody who may reach the service changes nothing and reads nothing."""
+"""A hostile page in the browser of an authorised user changes nothing and reads nothing."""
 
 import json
 import re

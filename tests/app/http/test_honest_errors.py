@@ -1,4 +1,4 @@
-"""Errors over REST, on pages and in reports: truth, one level for all points, curves, null if unknown."""
+"""Stated errors over REST, on pages and in reports: reference, one level for all points, null if unknown."""
 
 import pytest
 from serving import API, created

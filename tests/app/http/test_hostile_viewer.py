@@ -1,4 +1,4 @@
-"""A hostile user with a viewer's key: headers that claim to be somebody else, and races of checkers."""
+"""A hostile user with a viewer's key: headers that claim another identity, and races of checkers."""
 
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier

@@ -1,4 +1,4 @@
-"""A key belongs to the client that sent it, and to nobody else's request."""
+"""An idempotency key belongs to the client that sent it, and to the same request."""
 
 from serving import API, moody, problem
 

@@ -1,4 +1,4 @@
-"""Requests made up from the interface's own description: never a 5xx, and every refusal is a problem."""
+"""Requests generated from the OpenAPI document: never a 5xx, and every refusal is a problem."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""U+0000 is refused in every text, by the name of the field that has it, on both kinds of database."""
+"""U+0000 is refused in every text, naming the field, with both kinds of database."""
 
 import pytest
 from scaling import assert_linear

@@ -1,4 +1,4 @@
-"""The description of the interface: valid, complete, with examples that run; and its page, which is local."""
+"""The OpenAPI document is valid and complete, its examples run, and its page loads only local files."""
 
 import re
 from html.parser import HTMLParser

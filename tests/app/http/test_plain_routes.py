@@ -1,4 +1,4 @@
-"""The routes that are called most read their requests by themselves: `PlainRoute`."""
+"""The most frequent routes read their requests themselves: `PlainRoute`."""
 
 import pytest
 from serving import API

@@ -1,4 +1,4 @@
-"""Every refusal is a problem of its own kind, and every kind explains itself."""
+"""Every refusal is a problem of its own kind, and every kind has an explanation."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Whatever a client sends is answered by a problem that names what is wrong: no 500, no hang."""
+"""Every wrong request is answered by a problem that names the cause: no 500, no hang."""
 
 import json
 

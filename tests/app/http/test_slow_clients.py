@@ -1,4 +1,4 @@
-"""Clients that send or read at a trickle, or too much at once, do not hold the server; each is answered."""
+"""Clients that send or read slowly, or send too much, do not block the server; each gets an answer."""
 
 import json
 import socket

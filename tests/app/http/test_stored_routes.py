@@ -1,4 +1,4 @@
-"""Every stored file of a folder is sent whole, in ranges, or not at all to who has it."""
+"""Every stored file is sent whole, in ranges, or not at all to a client that has it."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A stream of events lasts no longer than the key by which it was opened."""
+"""A stream of events ends when the key that opened it is revoked."""
 
 from serving import API, created, heard, patched
 

@@ -1,4 +1,4 @@
-"""Patterns of texts mean the same to pydantic and to JSON Schema, whatever letter it is."""
+"""Patterns of texts mean the same in pydantic and in JSON Schema, for every character."""
 
 import sys
 

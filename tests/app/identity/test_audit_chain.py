@@ -1,4 +1,4 @@
-"""The audit: a row in the transaction of its change, sealed into a chain in which no row can be changed."""
+"""Audit rows are written in the transaction of their change and sealed in an unchangeable chain."""
 
 import pytest
 from click.testing import CliRunner

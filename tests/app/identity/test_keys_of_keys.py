@@ -1,4 +1,4 @@
-"""Keys that somebody makes for themselves: none does more, or lasts longer, than the one that made it."""
+"""A key created by another key has no more rights and does not last longer than its creator."""
 
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta

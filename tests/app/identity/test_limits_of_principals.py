@@ -1,4 +1,4 @@
-"""What limits a principal where it holds: jobs that wait, and all that counts as stored."""
+"""Limits of a principal where they apply: queued jobs, and everything that counts as stored."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What belongs to one principal: jobs, reviews, the author of a revision; and no word of a key anywhere."""
+"""Objects of one principal: jobs, reviews, the author of a revision; no key appears anywhere."""
 
 import logging
 

@@ -1,4 +1,4 @@
-"""Principals, keys and usage by the interface: administrators for all, everybody for themselves."""
+"""Principals, keys and usage over REST: administrators see all, other users their own."""
 
 import pytest
 from bare_shells import BUSH

@@ -1,4 +1,4 @@
-"""Signing in by a browser: the cookie, the way back, forms of the session, its end."""
+"""Signing in by a browser: cookie, redirect, forms of the session, its end."""
 
 import re
 

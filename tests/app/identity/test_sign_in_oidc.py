@@ -1,4 +1,4 @@
-"""Signing in by an OpenID provider, against one in this process: what it must prove, and who comes of it."""
+"""Signing in with an OpenID provider in this process: required proofs, and the resulting principal."""
 
 import base64
 import hmac

@@ -1,4 +1,4 @@
-"""The impact of a version: designs together come to what they come to alone; what moves is ranked."""
+"""The impact of a version: joint results equal separate ones; changes are ranked."""
 
 import numpy as np
 import pytest

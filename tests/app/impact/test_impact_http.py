@@ -1,4 +1,4 @@
-"""The impact of a version over HTTP: what is ranked, refused, cancelled; nothing is written."""
+"""The impact of a version over HTTP: ranking, refusals, cancellation; nothing is saved."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""An assembly: a model of this program with fixed parts beside it, measured, checked and named."""
+"""An assembly of a model of this program with fixed parts is measured, checked and named."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""The page that puts a bought part beside a model of a design, and shows what it measures."""
+"""The page that adds a bought part to a model of a design, and shows the measurements."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What stands in the place of FreeCAD and answers wrongly: it is ended, and the refusal has a name."""
+"""A program in the place of FreeCAD that answers wrongly is ended, and the refusal names the fault."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""A STEP file as a fixed part: stored, checked, measured; and what is not taken as a model."""
+"""A STEP file as a fixed part is stored, checked and measured; and what is refused as a model."""
 
 import hashlib
 

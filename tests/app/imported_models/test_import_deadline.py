@@ -1,4 +1,4 @@
-"""An import of a file of FreeCAD has one deadline for all its drawings, here with a FreeCAD that is slow."""
+"""The import of a FreeCAD file has one deadline for all builds, here with a slow FreeCAD."""
 
 import threading
 import time

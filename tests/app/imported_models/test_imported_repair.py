@@ -1,4 +1,4 @@
-"""`crankwright check --repair` draws the lost build of an imported model again from its source file."""
+"""`crankwright check --repair` rebuilds the lost files of an imported model from its source file."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""News reach those who listen, in order, none twice and none missing, and never hold up those who tell."""
+"""Events reach all subscribers in order, without duplicates or gaps, and never delay the sender."""
 
 import asyncio
 import random

@@ -1,4 +1,4 @@
-"""Streams go on where the client left off: `Last-Event-ID` (HTML standard, server-sent events)."""
+"""Streams resume where the client stopped: `Last-Event-ID` (HTML standard, server-sent events)."""
 
 import itertools
 import json

@@ -1,4 +1,4 @@
-"""What happens to designs and jobs is sent as it happens, in order (server-sent events)."""
+"""Events of designs and jobs are sent at once and in order (server-sent events)."""
 
 import threading
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""Jobs over HTTP, and a server that stops although somebody watches."""
+"""Jobs over HTTP, and a server that stops although a client watches."""
 
 import asyncio
 import json

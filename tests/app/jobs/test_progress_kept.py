@@ -1,4 +1,4 @@
-"""What is stored of the progress of jobs: the latest, at a modest rate, and nothing once a job has ended."""
+"""Only the latest progress of a job is stored, at a moderate rate, and nothing after its end."""
 
 import threading
 import time

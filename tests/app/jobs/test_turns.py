@@ -1,4 +1,4 @@
-"""Clients take turns: nobody's many jobs delay or refuse another's one."""
+"""Clients are served in turn: the many jobs of one do not delay or refuse the job of another."""
 
 import pytest
 from components import ON_POSTGRESQL
@@ -196,9 +196,9 @@ class TestAdmission:
 
     def test_what_ended_or_runs_counts_no_more(self, make, put, claim):
         jobs = make(client_queue_limit=1)
-        put(ANNA, "first", jobs=jobs)
+        first = put(ANNA, "first", jobs=jobs)
         claim(end=False)
-        put(ANNA, "second", jobs=jobs)
+        assert put(ANNA, "second", jobs=jobs) != first
 
     def test_one_client_cannot_fill_the_queue_whatever_the_settings(self, make, put):
         jobs = make(client_queue_limit=1000, queue_limit=20)

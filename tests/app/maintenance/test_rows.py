@@ -1,4 +1,4 @@
-"""The files that rows name, which a backup holds and a check looks for."""
+"""The files to which rows refer: a backup contains them and a check verifies them."""
 
 import json
 import sqlite3

@@ -1,4 +1,4 @@
-"""Logs, ids of requests, and figures: what an operator sees from outside."""
+"""Logs, request ids and metrics: what an operator sees."""
 
 import asyncio
 import io

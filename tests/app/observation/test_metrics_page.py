@@ -1,4 +1,4 @@
-"""The page of metrics lists what `/metrics` gives, with its type, and nothing else."""
+"""The page on metrics lists exactly the metrics of `/metrics`, with their types."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""`/readyz` says which part of the service cannot do its work, and answers even if the writer hangs."""
+"""`/readyz` names the part of the service that cannot work, and answers even if the writer hangs."""
 
 import asyncio
 import os

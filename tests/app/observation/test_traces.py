@@ -1,4 +1,4 @@
-"""Traces: what a collector gets for a change of a design, and that nothing is loaded without the setting."""
+"""Traces: the spans for a change of a design; nothing is loaded without the setting."""
 
 import os
 from collections import Counter

@@ -1,4 +1,4 @@
-"""The bound of a formula's width on paper is no less than what the typesetter measures."""
+"""The bound of a formula's width in a report is at least the width that Typst measures."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Worksheets as CSV and XLSX: numbers are numbers, units stand apart, texts are not formulas."""
+"""Worksheets as CSV and XLSX: numbers are numbers, units are separate, texts are not formulas."""
 
 import csv
 import io

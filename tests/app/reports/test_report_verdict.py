@@ -1,4 +1,4 @@
-"""The report begins with the verdict; ranges and rules stand apart, and no limit prints its opposite."""
+"""The report begins with the verdict; ranges and rules are separate; no limit contradicts itself."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Reports carry who signed what; a printed one is verified line by line, and each tampering is named."""
+"""Reports contain the signatures; a printed report is verified line by line, and tampering is named."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""Fields of a title block that are typed at a download of a drawing."""
+"""Fields of a title block that a user types for the download of a drawing."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""What nobody has wanted for long is deleted while the service runs, and nothing else."""
+"""The running service deletes what nobody has used for a long time, and nothing else."""
 
 import pytest
 from components import ON_POSTGRESQL

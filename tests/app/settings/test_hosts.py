@@ -1,4 +1,4 @@
-"""By which hosts, and from which origins, the service is asked: here, on a network, behind a proxy."""
+"""Accepted hosts and origins of requests: locally, in a network, behind a proxy."""
 
 import asyncio
 import re

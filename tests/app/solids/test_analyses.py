@@ -1,4 +1,4 @@
-"""Analyses of solids over REST: a bar whose stiffness is known, what is refused, what is found again."""
+"""Analyses of solids over REST: a bar of known stiffness, refusals, and stored results."""
 
 import hashlib
 import subprocess

@@ -1,4 +1,4 @@
-"""Analyses of designs that are refused: what is not declared, has no such output, or cannot be."""
+"""Refused analyses of designs: undeclared ones, ones without such an output, and impossible ones."""
 
 import pytest
 from serving import API, created, faults

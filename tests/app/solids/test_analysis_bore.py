@@ -1,4 +1,4 @@
-"""The analysis `bore_compliance` at the interface: which models offer it, and what it refuses."""
+"""The analysis `bore_compliance` over REST: which models offer it, and what it refuses."""
 
 import pytest
 from serving import API, faults

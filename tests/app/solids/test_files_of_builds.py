@@ -1,4 +1,4 @@
-"""Files of several builds are one job; what fails for one is reported once the others are there."""
+"""Files of several builds are one job; the failure of one is reported when the others are ready."""
 
 from bare_shells import BUSH
 from patience import until

@@ -1,4 +1,4 @@
-"""What a solid measures, as the interface shows it: also of builds that an older recipe made."""
+"""Measurements of a solid in the interface, also of builds from an older recipe."""
 
 from app.solids.measures import measurements
 from cad.inspect import MEASURES

@@ -1,4 +1,4 @@
-"""CAD models over REST: parameters, builds, every kind of file, artifacts, verification; and health."""
+"""CAD models over REST: parameters, builds, every kind of file, artifacts, verification; health."""
 
 import hashlib
 import xml.etree.ElementTree as ElementTree

@@ -1,4 +1,4 @@
-"""Artifacts that another program or another file made are gone, and say so; a damaged database is refused."""
+"""Artifacts of another program or file version are reported as gone; a damaged database is refused."""
 
 from contextlib import contextmanager
 

@@ -1,4 +1,4 @@
-"""What follows a unit of work: once it is durable, and never otherwise."""
+"""Actions after a unit of work run once it is durable, and never otherwise."""
 
 import sqlite3
 import threading

@@ -1,4 +1,4 @@
-"""Artifacts are whole or absent, named by the hashes of their bytes, in a folder as in a bucket."""
+"""Artifacts are complete or absent, named by their hashes, in a folder or a bucket."""
 
 import hashlib
 import os

@@ -1,4 +1,4 @@
-"""Functions of one job share a process; what ends it fails alone, and the next have a new one."""
+"""Functions of one job share a process; if one ends the process, only it fails."""
 
 import hashlib
 import os

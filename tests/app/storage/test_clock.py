@@ -1,4 +1,4 @@
-"""Ages and orders come from counters: a wall clock that jumps changes neither."""
+"""Ages and orders come from counters, so a jumping wall clock changes neither."""
 
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace

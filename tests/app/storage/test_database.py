@@ -1,4 +1,4 @@
-"""One writer, many readers: durable, isolated unit by unit, in groups."""
+"""One writer and many readers: durable, isolated by unit of work, committed in groups."""
 
 import os
 import signal

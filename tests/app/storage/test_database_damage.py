@@ -1,4 +1,4 @@
-"""A damaged database is refused at the start, with the page; damage that shows later ends all writing."""
+"""A damaged database is refused at the start, naming the page; later damage stops all writing."""
 
 import os
 import shutil

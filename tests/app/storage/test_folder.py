@@ -1,4 +1,4 @@
-"""A data folder belongs to one process, for as long as that lives."""
+"""A data folder belongs to one process as long as that process lives."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What is kept stands under all that it depends on, and is on disk before its name is."""
+"""A stored file is keyed by everything on which it depends, and is on disk before its name."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""A statement that is compiled once does in a unit of work what SQLAlchemy does elsewhere."""
+"""A statement that is compiled once behaves in a unit of work like one of SQLAlchemy."""
 
 import pytest
 from components import ON_POSTGRESQL

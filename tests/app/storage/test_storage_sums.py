@@ -1,4 +1,4 @@
-"""What a principal has stored is one row, right whatever wrote: this program, or a statement of its own."""
+"""The storage of a principal is one row, right for writes of this program and of plain SQL."""
 
 from concurrent.futures import ThreadPoolExecutor
 

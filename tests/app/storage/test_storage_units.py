@@ -1,4 +1,4 @@
-"""Counters, errors and marks of damage, one by one."""
+"""Counters, errors and damage marks, tested separately."""
 
 import pickle
 import sqlite3

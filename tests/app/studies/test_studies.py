@@ -1,4 +1,4 @@
-"""Studies over the interface: rows are those of single calculations, faults have names."""
+"""Studies over REST: rows equal single calculations, and faults are named."""
 
 import csv
 import io

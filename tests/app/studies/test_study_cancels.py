@@ -1,4 +1,4 @@
-"""A study that is cancelled ends its calculations and keeps no further chunk."""
+"""A cancelled study ends its calculations and stores no further chunk."""
 
 import pytest
 from patience import until

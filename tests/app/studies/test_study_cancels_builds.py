@@ -1,4 +1,4 @@
-"""The build of a study that is cancelled: its process is killed, and the job is cancelled."""
+"""When a study is cancelled, the process of its build is killed and the job is cancelled."""
 
 import httpx
 import pytest

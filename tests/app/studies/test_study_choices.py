@@ -1,4 +1,4 @@
-"""Rows of a study that are taken over: as a revision of the design, or as variants of a new one."""
+"""A chosen row of a study becomes a revision; several rows become variants of a new design."""
 
 import pytest
 from serving import API, faults, problem

@@ -1,4 +1,4 @@
-"""The columns of a study's rows: in the order in which its user named the places."""
+"""The columns of a study's rows are in the order in which the user named the inputs."""
 
 import numpy as np
 

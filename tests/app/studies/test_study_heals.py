@@ -1,4 +1,4 @@
-"""Rows of a study whose files are lost or damaged are calculated again, to the same bytes."""
+"""Rows of a study whose files are lost or damaged are recalculated to the same bytes."""
 
 import httpx
 import pytest

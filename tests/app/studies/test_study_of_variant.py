@@ -1,4 +1,4 @@
-"""A study of a variant: its rows, the row that is chosen, the design that is built, unknown names."""
+"""A study of a variant: its rows, the chosen row, the new design, unknown names."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Parts of studies by themselves: archives, fronts, files of rows, jobs that let others go first."""
+"""Parts of studies, tested separately: archives, fronts, files of rows, jobs that yield."""
 
 import io
 import threading

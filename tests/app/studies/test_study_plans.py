@@ -1,4 +1,4 @@
-"""The plan of a study: what it refuses, that it is one for equal studies, and what it estimates."""
+"""The plan of a study: refusals, equal plans for equal studies, and estimates."""
 
 import pytest
 from serving import problem

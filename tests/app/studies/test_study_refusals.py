@@ -1,4 +1,4 @@
-"""Studies that are refused before they begin: what is wrong is named, and a limit that is passed."""
+"""Studies that are refused before they begin: the message names the fault or the exceeded limit."""
 
 import pytest
 from serving import faults

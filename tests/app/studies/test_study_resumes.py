@@ -1,4 +1,4 @@
-"""A study goes on after its server stopped: no row is lost or doubled, same bytes."""
+"""A study continues after its server stopped: no row is lost or doubled, and the bytes are equal."""
 
 import pytest
 from patience import patient, until

@@ -1,4 +1,4 @@
-"""Studies that vary what a relation sets: only on request, and shown wherever the study is shown."""
+"""Studies that vary a value set by a relation: only on request, and always shown."""
 
 import pytest
 from serving import API, faults

@@ -1,4 +1,4 @@
-"""Rows that wait for their solids: one build for each distinct solid, whatever becomes of one of them."""
+"""Rows wait for their solids: one build for each distinct solid, even if one build fails."""
 
 import httpx
 import numpy as np

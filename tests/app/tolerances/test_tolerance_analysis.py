@@ -1,4 +1,4 @@
-"""The tolerance analysis of a design over HTTP, held against single evaluations and random products."""
+"""The tolerance analysis over HTTP, compared with single evaluations and random products."""
 
 import itertools
 

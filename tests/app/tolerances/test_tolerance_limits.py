@@ -1,4 +1,4 @@
-"""What a tolerance analysis says of limits: one that follows from a relation has been given."""
+"""A tolerance analysis accepts a limit that a relation sets."""
 
 from app.designs.document import Document
 from app.designs.graph import Catalogues, build_graph

@@ -1,4 +1,4 @@
-"""Limits, scatter, yields and shares over closed forms, whose answers are known."""
+"""Limits, scatter, yields and shares of closed forms with known results."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Tolerances are kept and not used: whoever gives one is warned, wherever the result is shown."""
+"""Ordinary calculations ignore tolerances, and warn wherever the result is shown."""
 
 import pytest
 from serving import API, created, paper, revision

@@ -1,4 +1,4 @@
-"""What tests of the pages share: a page that is watched, designs of the gallery, a template of its own."""
+"""Shared helpers for tests of pages: a watched page, designs of the gallery, a test template."""
 
 import shutil
 

@@ -1,4 +1,4 @@
-"""Property over all pages: nothing outside is asked, nothing fails, nobody is shut out, all is light."""
+"""Properties of all pages: no external request, no error, accessible, small."""
 
 import re
 

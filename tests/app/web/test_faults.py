@@ -1,4 +1,4 @@
-"""How a design page shows what is wrong and where, in a browser."""
+"""How and where a design page shows faults, in a browser."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Pages of other origins, in Chromium: whatever they send, nothing changes, and nothing comes back."""
+"""Pages of other origins in Chromium: their requests change nothing and get no answer."""
 
 import json
 import logging

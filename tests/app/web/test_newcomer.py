@@ -1,4 +1,4 @@
-"""What a newcomer does: from the gallery to a STEP file, in a browser."""
+"""A newcomer's way from the gallery to a STEP file, in a browser."""
 
 import re
 import shutil

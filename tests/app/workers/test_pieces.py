@@ -1,4 +1,4 @@
-"""Large bytes in pieces: between processes, from clients and to them; short requests come between."""
+"""Large data is transferred in pieces between processes and clients; short requests come in between."""
 
 import asyncio
 import pickle

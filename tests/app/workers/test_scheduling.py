@@ -1,4 +1,4 @@
-"""The server comes before processes that calculate: short slices, one session, own process groups."""
+"""The server has priority over calculating processes: short slices, one session, own groups."""
 
 import os
 import threading

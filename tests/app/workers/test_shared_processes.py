@@ -1,4 +1,4 @@
-"""The process of a job that leaves nothing behind serves the next such job; all others end with their job."""
+"""A job's process that is clean afterwards serves the next such job; all others end with their job."""
 
 import os
 import signal

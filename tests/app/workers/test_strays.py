@@ -1,4 +1,4 @@
-"""Tasks of a scheduler that no machine works on, by its answers."""
+"""Scheduler tasks on which no machine works, recognised by the scheduler's answers."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Hostile packages and documents are refused by name, in little time and memory."""
+"""Hostile packages and documents are refused by name, with little time and memory."""
 
 import io
 import random

@@ -1,4 +1,4 @@
-"""The public sheets, where CRANKWRIGHT_MATHCAD_SHEETS names a folder of them; none is in this repository."""
+"""Public sheets in the folder of CRANKWRIGHT_MATHCAD_SHEETS; none is in this repository."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What `check` says of a text, and texts that mean harm."""
+"""The results of `check` for a text, and hostile texts."""
 
 import pytest
 from serving import API, HANG, faults, problem

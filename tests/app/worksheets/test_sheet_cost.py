@@ -1,4 +1,4 @@
-"""What a worksheet will cost is known before: many equations leave the event loop of the server."""
+"""The cost of a worksheet is known in advance: many equations run outside the server's event loop."""
 
 from app.pool.cost import EXPENSIVE, array_seconds, estimated_seconds, is_quick, solving_seconds
 from templates.core.sheets import read

@@ -1,4 +1,4 @@
-"""A design on a worksheet: variants, studies, tolerances and solving treat it as they treat a file."""
+"""A design with a worksheet: variants, studies, tolerances and solving work as with a template file."""
 
 import pytest
 from serving import API

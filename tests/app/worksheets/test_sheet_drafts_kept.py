@@ -1,4 +1,4 @@
-"""A server keeps few drafts: every edit makes another class, of a megabyte and more."""
+"""A server caches few drafts, because every edit creates a class of a megabyte or more."""
 
 from contextlib import nullcontext
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""The life of a worksheet: draft → tested → reviewed → released → withdrawn, and every way beside it."""
+"""The life of a worksheet: draft → tested → reviewed → released → withdrawn, and all refused steps."""
 
 import pytest
 from serving import API, faults, pages, problem

@@ -1,4 +1,4 @@
-"""Who is the same person, by typed names: what nobody sees makes no other person of an author."""
+"""Typed names of people: invisible differences do not make a different person of an author."""
 
 import pytest
 from pydantic import ValidationError

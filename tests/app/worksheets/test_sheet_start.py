@@ -1,4 +1,4 @@
-"""Worksheets over the end of a server: a start, a tampered database, kill -9, backup and restore."""
+"""Worksheets over a restart: a start, a tampered database, kill -9, backup and restore."""
 
 import json
 import sqlite3
@@ -186,6 +186,6 @@ def test_releases_that_wait_to_be_read_calculate_nothing_until_then(tmp_path):
         catalogues.templates.get("second", 1)
     published.look()
     assert catalogues.templates.get("second", 1).sheet is not None
-    published.start()
-    published.stop()
+    published.follower.start()
+    published.follower.stop()
     database.close()

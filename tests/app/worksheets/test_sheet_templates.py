@@ -1,4 +1,4 @@
-"""A released worksheet is a template like one from a file; a draft is for previews alone."""
+"""A released worksheet is a template like one from a file; only previews may use a draft."""
 
 import pytest
 from serving import API, created, faults, pages, patched, problem, revision

@@ -1,4 +1,7 @@
-"""Analytic: the picture of a circular shaft is Coulomb's; a half with its image is the whole."""
+"""Analytic: the surface data of a circular shaft follow Coulomb.
+
+A half with its mirror image is the whole.
+"""
 
 from math import degrees, pi, sqrt
 

@@ -1,4 +1,4 @@
-"""Analytic: shafts of which stiffness and frequency are known; halves that must equal their wholes."""
+"""Analytic: shafts of known stiffness and frequency; halves that must equal their wholes."""
 
 from math import pi, sqrt
 from typing import Any

@@ -1,4 +1,4 @@
-"""The nine-cylinder generator set of DYREMI: inputs as far as they survive, and what was printed."""
+"""The nine-cylinder generator set of DYREMI: the known inputs, and the printed results."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""bearing_load 1: a textbook case, free bodies in balance, work and energy, an independent second method."""
+"""bearing_load 1: a textbook case, equilibrium of free bodies, work and energy, a second method."""
 
 import numpy as np
 import pytest

@@ -188,7 +188,7 @@ class TestOrders:
 
     def test_orders_are_one_list(self):
         raw = {**sizes(self.ROW), "firing_order": [1], "orders": [[1, 2], [4, 6]]}
-        with pytest.raises(InvalidInputs, match="The orders are one list"):
+        with pytest.raises(InvalidInputs, match="The orders are a single list"):
             values(raw, ["order_force_forward"])
 
     def test_analytic_offset_makes_odd_orders(self):

@@ -1,4 +1,4 @@
-"""The rod's inertia from its period as a pendulum, as it is calculated and as it stands on paper."""
+"""The rod's inertia from its pendulum period, as calculated and as printed in the report."""
 
 import numpy as np
 import pytest

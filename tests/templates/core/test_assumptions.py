@@ -1,4 +1,4 @@
-"""What an answer takes for granted: defaults that make a part look safer are listed while they stand."""
+"""Assumptions of an answer: defaults that make a part look safer are listed while they apply."""
 
 import pytest
 

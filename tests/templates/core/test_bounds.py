@@ -1,4 +1,4 @@
-"""Limits of single values and of arrays: both admit the same."""
+"""Limits of single values and of arrays accept the same values."""
 
 import math
 

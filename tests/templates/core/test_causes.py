@@ -1,4 +1,4 @@
-"""Property: one cause is one fault, at the input that can have broken the rules."""
+"""Property: one cause is one fault, at an input that can have broken the rules."""
 
 import pytest
 

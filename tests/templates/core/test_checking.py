@@ -1,4 +1,4 @@
-"""Analytic: each fault that somebody can write into a template is reported with its line, and no other."""
+"""Analytic: each possible fault in a template is reported with its line, and no other."""
 
 import json
 from itertools import chain

@@ -1,4 +1,4 @@
-"""Comparisons of a rule, recorded while the rule runs."""
+"""Comparisons in a rule are recorded while the rule runs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Criteria of templates: refused with the class, judged with the evaluation, on small templates made here."""
+"""Criteria of small templates: refused with the class, judged with the evaluation."""
 
 import json
 

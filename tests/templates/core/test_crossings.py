@@ -1,4 +1,4 @@
-"""A crossing between two samples: a root, or a jump whose two sides the answer names."""
+"""A crossing between two samples is a root, or a jump whose two sides the answer names."""
 
 from types import SimpleNamespace
 

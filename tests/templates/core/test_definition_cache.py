@@ -1,4 +1,4 @@
-"""Definitions that are kept parsed give what reading them gives; damaged ones are read again."""
+"""Cached parsed definitions equal newly read ones; damaged ones are read again."""
 
 import importlib
 import os

@@ -1,4 +1,4 @@
-"""The digest of a version: what changes it."""
+"""The digest of a version: which changes affect it."""
 
 import ast
 import copy

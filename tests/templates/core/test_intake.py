@@ -1,4 +1,4 @@
-"""How a template reads inputs: rows of the columns that a table declares, and texts of a bounded length."""
+"""How a template reads inputs: table rows by declared columns, and texts of limited length."""
 
 import pytest
 

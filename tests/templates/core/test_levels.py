@@ -1,4 +1,4 @@
-"""Levels of fidelity and what else `oil_film` 2 asks of the language, on small templates made here."""
+"""Levels of fidelity and other language features of `oil_film` 2, on small templates."""
 
 import json
 

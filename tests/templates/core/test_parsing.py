@@ -1,4 +1,4 @@
-"""Syntax trees of several threads at once, and in a process forked meanwhile."""
+"""Syntax trees in several threads, and in a process forked in the meantime."""
 
 import ast
 import gc

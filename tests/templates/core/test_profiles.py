@@ -1,4 +1,4 @@
-"""Profiles and curves of templates, and inputs that serve all points."""
+"""Profiles and curves of templates, and inputs with one value for all points."""
 
 import json
 

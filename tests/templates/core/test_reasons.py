@@ -1,4 +1,4 @@
-"""What the language says of an absent value and of a fault: the reason, where it holds, and nothing else."""
+"""Messages about missing values and faults give only the reason and where it applies."""
 
 import jsonschema_rs
 import numpy as np

@@ -1,4 +1,4 @@
-"""Relations: what they mean, which units they keep, and what they refuse."""
+"""Relations: their meaning, their units, and what they refuse."""
 
 import ast
 import math

@@ -1,4 +1,4 @@
-"""The language at its edges: lengths of units and lists, depths of arrays, docstrings, broken files."""
+"""Edge cases of the language: lengths of units and lists, depths of arrays, docstrings, broken files."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The catalogue, digests and golden records, on template files written here; errors that cross a process."""
+"""The catalogue, digests and golden records, on test templates; errors that cross a process."""
 
 import json
 import pickle

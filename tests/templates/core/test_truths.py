@@ -1,4 +1,4 @@
-"""Truths: against what an error was measured, and which levels are nearer to the same truth."""
+"""References of errors, and which levels are closer to the same reference."""
 
 from pathlib import Path
 

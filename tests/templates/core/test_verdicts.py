@@ -1,4 +1,4 @@
-"""Checks of a calculation: bounds and rules written out and held against values."""
+"""Checks of a calculation: bounds and rules in words, compared with values."""
 
 import numpy as np
 import pytest

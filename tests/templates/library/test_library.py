@@ -1,4 +1,4 @@
-"""The library: what its files must be, what is refused, and values held against what their sources print."""
+"""The library: required form of its files, refusals, and values compared with their sources."""
 
 import pytest
 

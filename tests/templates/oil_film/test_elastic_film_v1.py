@@ -1,4 +1,4 @@
-"""`elastic_film` 1: equal to oil_film where nothing gives way, and what its answers say where it does."""
+"""`elastic_film` 1: equal to oil_film for rigid parts, and its results for elastic ones."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Inputs that came out wrong: a value without a warning, a refusal as an exception; with the right answer."""
+"""Inputs that once gave wrong results (no warning, an exception), with the right result."""
 
 import numpy as np
 import pytest

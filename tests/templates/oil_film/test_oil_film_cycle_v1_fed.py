@@ -264,6 +264,15 @@ class TestRefusals:
         raw = {**inputs(1.0, 0.0, **HALF), **curves, "crank_angle": si(degrees, "deg")}
         assert "cover one cycle of 360° or 720°" in refusal(raw)["crank_angle"]
 
+    @pytest.mark.slow
+    def test_analytic_holes_of_two_sizes_are_two_points_though_nothing_else_is(self):
+        def of_holes(length):
+            return outputs(inputs(X, Y, **PIN | {"pin_hole_length": si(length, "mm")}), "supplied")
+
+        many, alone = of_holes([5.0, 6.0]), [of_holes(5.0), of_holes(6.0)]
+        for name in ("minimum_film_thickness", "side_flow", "numerical_error"):
+            assert many[name].tolist() == [float(one[name]) for one in alone], name
+
 
 class TestRandom:
     """Whatever is given: every value is finite, or has a reason."""

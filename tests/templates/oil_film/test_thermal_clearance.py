@@ -1,4 +1,4 @@
-"""Warm clearances, against the closed form by hand and its limits."""
+"""Warm clearances against a manual calculation and its limits."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""`thermal_film` 1: equal to oil_film where heat does nothing, and what its answers say where it does."""
+"""`thermal_film` 1: equal to oil_film without heating, and its results with heating."""
 
 import numpy as np
 import pytest

@@ -143,7 +143,7 @@ class TestInputs:
             ({"supply_temperature": None}, "supply_temperature"),
             ({"load": "1 GN"}, "film_ratio"),
             ({"load": "1e-25 N"}, "film_ratio"),
-            ({"heat_capacity": "0.01 kJ/(m**3*K)", "dynamic_viscosity": "30 mPa*s"}, "film_temperature"),
+            ({"heat_capacity": "0.01 kJ/(m**3*K)", "dynamic_viscosity": "30 mPa*s"}, "film_ratio"),
         ],
     )
     def test_property_refuses_by_name(self, raw, name):
@@ -179,3 +179,16 @@ class TestInputs:
         present = np.isfinite(outputs["film_temperature"].value)
         assert present.sum() > count / 20
         assert (outputs["side_flow"].value[present] > 0).all()
+
+
+def test_a_film_hotter_than_the_viscosity_law_knows_is_none():
+    """Refused for one point; at a point of an array no result stands, and each says why."""
+    hot = {"taper": "0.001 um"}
+    with pytest.raises(InvalidInputs, match="below 500 °C"):
+        answer(hot)
+    both = answer({"taper": {"value": [30.0, 0.001], "unit": "um"}})
+    for name in ("minimum_film_thickness", "outlet_temperature", "temperature_rise", "power_loss"):
+        one = both.outputs[name]
+        assert np.isfinite(one.value).tolist() == [True, False], name
+        assert one.reasons[0] is None, name
+        assert "below 500 °C" in one.reasons[1], name

@@ -1,4 +1,4 @@
-"""`crank_stiffness`: one formula outside of the transition, and no jump of what it recommends within."""
+"""`crank_stiffness`: one formula outside the transition, and no jump inside it."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""forced_torsion 1 refuses what cannot be a train, names the input, and says what would be right."""
+"""forced_torsion 1 refuses impossible trains, names the input, and states what would be right."""
 
 import re
 

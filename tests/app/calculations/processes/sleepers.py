@@ -1,4 +1,4 @@
-"""Requests to a service whose template `sleeper` takes as long as asked for."""
+"""Requests to a service whose template `sleeper` takes a requested time."""
 
 from itertools import count
 

@@ -1,4 +1,4 @@
-"""Calculations for which nobody waits any longer: they go on as jobs, which keep their answers."""
+"""Calculations that exceed the waiting time continue as jobs, which store their answers."""
 
 import json
 from concurrent.futures import ThreadPoolExecutor

@@ -1,4 +1,4 @@
-"""An equal question finds the job, or the kept answer, of the earlier one."""
+"""An equal request finds the job, or the stored answer, of the earlier one."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Jobs on a database, stopped at the end of each test."""
+"""A job dispatcher on a database, stopped at the end of each test."""
 
 import pytest
 from stored_jobs import KIND, Failures, describe, storing

@@ -1,4 +1,4 @@
-"""Handlers of jobs that leave traces in the database, and what tests read of them."""
+"""Job handlers that write to the database, and functions to read what they wrote."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""Jobs: once committed they run to an end, and nothing is written twice."""
+"""A committed job runs to its end, and nothing is written twice."""
 
 import asyncio
 import threading

@@ -1,4 +1,4 @@
-"""Jobs whose process crashes, that are cancelled, or whose server stops or is killed."""
+"""Jobs whose process crashes, that are cancelled, or whose server is stopped or killed."""
 
 import threading
 import time

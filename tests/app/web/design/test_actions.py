@@ -1,4 +1,4 @@
-"""What forms of a design do beside saving, and where one is afterwards."""
+"""Actions of a design's forms other than saving, and the page that follows."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""Downloads in Chromium: a file that has to be made is waited for, and what is not a file is never saved."""
+"""Downloads in Chromium: the page waits for a file, and never saves an error as a file."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""What becomes of what is typed and not saved, in a browser."""
+"""Typed but unsaved values, in a browser."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The layout of what drives what: boxes do not overlap, wires go forward and run behind no box."""
+"""The layout of the relation network: boxes do not overlap, wires run forwards and behind no box."""
 
 from itertools import combinations, pairwise
 from random import Random

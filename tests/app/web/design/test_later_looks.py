@@ -1,4 +1,4 @@
-"""No page of a design shows old values, whatever is kept between two looks."""
+"""A design page never shows outdated values, whatever is cached between two visits."""
 
 import re
 

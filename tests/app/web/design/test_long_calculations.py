@@ -1,4 +1,4 @@
-"""A template's page while a calculation takes long: how far it is, a way to stop it, its answer."""
+"""A template's page during a long calculation: progress, cancellation, result."""
 
 import browsing  # noqa: F401 - makes the tests of the service importable
 import pytest

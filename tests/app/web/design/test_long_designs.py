@@ -1,4 +1,4 @@
-"""The page of a long design has few steps in full; the others are fetched when they are opened."""
+"""The page of a long design shows few steps in full and fetches the others when opened."""
 
 import re
 

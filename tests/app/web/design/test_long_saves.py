@@ -1,4 +1,4 @@
-"""A design's page while a step takes long: how far it is, a way to stop it, its results."""
+"""A design's page during a slow step: progress, cancellation, results."""
 
 import browsing  # noqa: F401 - makes the tests of the service importable
 import pytest

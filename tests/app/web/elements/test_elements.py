@@ -1,4 +1,4 @@
-"""Property: finite elements in the page: asked for, followed, shown, painted; and read without a script."""
+"""Finite elements on the page: request, progress, results, picture; readable without scripts."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""From a verdict to where it comes from, and from a fault to its related places, in a browser."""
+"""From a verdict to its origin, and from a fault to related fields, in a browser."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""A team's faulty file in a browser: the templates lead to its faults, a design says why it waits."""
+"""A team's faulty file in a browser: the template list links its faults, a design gives the reason."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The search over templates on the front page, by keyboard: what it finds, and how it is left."""
+"""The template search on the home page, by keyboard."""
 
 import pytest
 from browsing import CHROMIUM

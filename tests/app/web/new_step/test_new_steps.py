@@ -1,4 +1,4 @@
-"""A new design or step begins empty; a mapping is proposed and applied by its user's choice alone."""
+"""A new design or step begins empty; suggested links apply only if the user chooses them."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Property: a calculation gets its pictures by what its outputs are called, and whether they are curves."""
+"""Property: names of outputs, and whether they are curves, determine the pictures of a calculation."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""Arrays in cells: short ones whole, long ones by their ends, where these are, and a line of their course."""
+"""Arrays in table cells: short ones in full, long ones by their range, its positions and a sparkline."""
 
 import re
 

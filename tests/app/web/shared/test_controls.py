@@ -1,4 +1,4 @@
-"""What controls of the forms are called, and what becomes of what is typed there, in a browser."""
+"""Labels of form controls, and the handling of typed values, in a browser."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Light and dark: by the system's wish, by the switch, kept from page to page; a report stays white."""
+"""Light and dark theme: by the system or the switch, kept between pages; reports stay white."""
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe

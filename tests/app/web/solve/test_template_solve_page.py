@@ -1,4 +1,4 @@
-"""The page that solves a template: its roots as a table, its curve, and what the form carries over."""
+"""The page that solves a template: table of roots, curve, and values passed to the form."""
 
 import re
 from html import unescape

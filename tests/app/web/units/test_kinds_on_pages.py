@@ -1,4 +1,4 @@
-"""Differences of temperature and speeds in turns as pages show and take them."""
+"""Temperature differences and speeds in turns, as pages show and accept them."""
 
 import pytest
 from playwright.sync_api import expect

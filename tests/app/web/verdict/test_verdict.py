@@ -1,4 +1,4 @@
-"""The design page leads with the verdict: what it says, where it stands, how long the page is."""
+"""The design page begins with the verdict: its text, its position, the length of the page."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What a newcomer does with a worksheet: from three lines to a STEP file, in a browser."""
+"""A newcomer's way from three lines of a worksheet to a STEP file, in a browser."""
 
 import re
 

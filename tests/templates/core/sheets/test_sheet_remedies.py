@@ -1,4 +1,4 @@
-"""What a worksheet says where something is wrong: remedies, warnings, and how far a test missed."""
+"""Messages of worksheets about faults: remedies, warnings, and by how much a test failed."""
 
 import pytest
 from test_sheet_attacks import ATTACKS, SHEET, faults

@@ -1,4 +1,4 @@
-"""An equation that holds at both of its bounds says no value: any answer would be an arbitrary one."""
+"""An equation that is satisfied at both bounds has no value, because any root would be arbitrary."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Temperatures and differences of temperature in worksheets: which is which, and what each refuses."""
+"""Temperatures and temperature differences in worksheets: their kinds, and what each refuses."""
 
 import itertools
 
@@ -110,6 +110,32 @@ class TestChecks:
     )
     def test_kinds_do_not_meet(self, line):
         refused(line)
+
+    @pytest.mark.parametrize(
+        ("line", "meant"),
+        [
+            ("T2 - T1 <= rise + 10 degC", "10 delta_degC"),
+            ("T2 - T1 <= 10 degC + rise", "10 delta_degC"),
+            ("T2 - T1 - rise - 50 degF <= free - free + rise", "50 delta_degF"),
+            ("T2 <= T1 - 50 degF", "50 delta_degF"),
+            ("T2 <= T1 + 10 degC", "10 delta_degC"),
+            ("T2 - T1 <= max(10 degC, 20 degC)", "10 delta_degC, 20 delta_degC"),
+        ],
+    )
+    def test_the_remedy_names_the_number_that_is_meant_as_a_difference(self, line, meant):
+        """What it names is accepted, and judged as a difference: no temperature of 283 K."""
+        said = refused(f'check {line} "cool"')
+        assert f"write {meant} for" in said
+        assert "both in the same unit" not in said
+        for text in meant.split(", "):
+            line = line.replace(text.replace("delta_", ""), text)
+        assert judged(f'check {line} "cool"').verdict in ("met", "not_met")
+
+    def test_without_such_a_number_the_remedy_is_a_sum_or_a_difference(self):
+        said = refused('check rise <= T1 "cool"')
+        assert "subtract a temperature from the temperature, or add one to the difference" in said
+        assert judged('check rise <= T1 - T2 "cool"').verdict == "not_met"
+        assert judged('check rise + T2 <= T1 "cool"').verdict == "not_met"
 
     def test_conditions_and_rules_take_the_kind_of_the_other_side(self):
         lines = 'y [1] = if T2 - T1 > 30 degC then 1 else 2 "y"\nrequire rise <= 6 degC "small"'

@@ -1,4 +1,4 @@
-"""Expressions as relations and worksheets share them: what each gives, and what is refused where."""
+"""Expressions of relations and worksheets: their results, and what is refused where."""
 
 from __future__ import annotations
 

@@ -1,0 +1,111 @@
+"""What a drawing shows: views, removed sections and the dimensions that define its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from cad.drafting.declaration import DrawingDeclaration
+from cad.drafting.definition import Definition
+from cad.drafting.measures import lengths, measures
+from cad.drafting.parameter_match import Dimension, matched, spans_of
+from cad.drafting.parts_features import Features
+from cad.drafting.plan import Plan, plans
+from cad.drafting.protrusions import standing
+from cad.drafting.removed_section import RemovedSection, removed_sections
+from cad.drafting.supplement import Supplement
+from cad.drafting.views import View, is_assembly, views
+from cad.header import Header
+from cad.inspect import look_at
+from cad.step import Body
+from cad.surfaces import PartSurfaces, Surface
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a drawing shows.
+
+    Attributes
+    ----------
+    unseen
+        Parameters that no dimension shows.
+    undefined
+        What its dimensions have to define, before any of them is taken; None of an assembly, whose parts
+        have sheets of their own.
+    repeated
+        Start and end of lengths along the shaft that repeat, by parameter.
+    """
+
+    section: View
+    end: View
+    removed: Sequence[RemovedSection]
+    dimensions: Sequence[Dimension]
+    unseen: Sequence[str]
+    undefined: Features | None
+    repeated: Mapping[str, Sequence[tuple[float, float]]]
+
+    def plans(self) -> Iterator[Plan]:
+        """Yield the sheets and scales in the order in which they are tried."""
+        elsewhere = sum(len(one.dimensions) for one in self.removed)
+        return plans(self.section, self.end, self.dimensions, elsewhere)
+
+    def missing(self, without: Dimension | None = None) -> list[str]:
+        """Return in words what no dimension defines, perhaps if one of them were left out."""
+        if self.undefined is None:
+            return []
+        definition = Definition.of(self.undefined)
+        for section in self.removed:
+            kept = tuple(one for one in section.dimensions if one is not without)
+            replace(section, dimensions=kept).define(definition)
+        supplement = Supplement(definition, self.section, self.end, (), self.repeated)
+        for one in self.dimensions:
+            if one is not without and not one.is_reference:
+                supplement.judged(one)
+        return [*definition.missing()]
+
+
+def content_of(bodies: Sequence[Body], header: Header | None) -> Content:
+    """Return what the drawing of a STEP file shows, where the sheet has room for everything."""
+    seen = look_at(bodies)
+    declared = DrawingDeclaration.of(header, seen, is_assembly=is_assembly(bodies))
+    return next(contents(bodies, seen, header, declared))
+
+
+def contents(
+    bodies: Sequence[Body],
+    seen: Mapping[str, PartSurfaces],
+    header: Header | None,
+    declared: DrawingDeclaration,
+) -> Iterator[Content]:
+    """Yield what a drawing shows: with removed sections, and without them where they have no room."""
+    section, end = views(bodies, is_shaft=declared.is_shaft)
+    parameters = header.parameters if header else {}
+    repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
+    shown = [
+        *lengths(declared.sizes.values(), seen, section),
+        *measures(bodies, seen, section, end),
+        *standing([*seen.values()], section, end),
+    ]
+    features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame)
+    removed = removed_sections(declared, parameters, bodies, seen, end)
+    for some in ([removed] if removed else []) + [[]]:
+        names = {name for one in some for name in one.names}
+        rest = {name: text for name, text in parameters.items() if name not in names}
+        dimensions, unseen = matched(rest, declared.sizes, shown, declared.limits)
+        if features is not None:
+            definition = Definition.of(features)
+            for one in some:
+                one.define(definition)
+            dimensions = Supplement(definition, section, end, shown, repeated).complete(dimensions)
+        yield Content(section, end, some, dimensions, unseen, features, repeated)
+
+
+def _defined(declared: DrawingDeclaration, seen: Mapping[str, PartSurfaces]) -> list[Surface]:
+    """Return the surfaces of the parts that carry parameters; others are like them, or mirrored."""
+    carriers = {
+        part
+        for size in declared.sizes.values()
+        for place in size.places
+        for part, _ in (*place.first, *place.second)
+    }
+    return [s for name, one in seen.items() if name in carriers or not carriers for s in one.surfaces]

@@ -1,0 +1,302 @@
+"""Whether the dimensions of a sheet define its parts: nothing missing, nothing given twice (ISO 129-1).
+
+Every face has stations: the position of a plane along its normal, the radius of a cylinder about the shaft,
+the axis of another one, the direction of what stands askew about the shaft. A dimension joins the stations
+between which it is drawn. The sheet is complete if the stations of each direction are connected; a dimension
+between two stations that are connected already closes a chain, and stands in brackets.
+
+A drawing gives without numbers: features on a centre line, pairs on both sides of one, equal features (which
+are dimensioned once), holes evenly round their circle, fillets that touch their neighbours, right angles.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from math import atan2, degrees, dist, hypot
+from typing import Literal
+
+from cad.drafting.measures import Measure
+from cad.drafting.parts_features import Features, Hole, Sort, Words
+from cad.surfaces import Face
+
+Direction = Literal["along", "across", "up", "round", "turn"]
+"""Along the shaft; level and upright in the end view; radii about the shaft [mm]; angles about it [deg]."""
+
+Station = tuple[Direction, float]
+Own = tuple[Sort, float]
+
+CLEAR = 1e-4  # [mm, deg]: stations that are nearer coincide
+AXIS: Station = ("round", 0.0)
+"""The axis of the shaft, on which the centre lines of the end view meet."""
+
+
+def station(direction: Direction, at: float) -> Station:
+    """Return a station; those on the axis are one, and angles lie within a turn."""
+    at = round(at % 360 if direction == "turn" else at, 4) + 0.0
+    if direction == "turn":
+        return ("turn", 0.0) if at % 90 < CLEAR or 90 - at % 90 < CLEAR else ("turn", at)
+    return AXIS if direction != "along" and abs(at) < CLEAR else (direction, at)
+
+
+@dataclass
+class Definition:
+    """What must be defined on a sheet, and what its dimensions have defined so far.
+
+    Attributes
+    ----------
+    needed, optional
+        Stations in words; the optional ones are of holes, which either two coordinates or a circle and an
+        angle locate.
+    centres
+        Positions along the shaft at which the section has a centre line.
+    """
+
+    features: Features
+    needed: dict[Station, str] = field(default_factory=dict)
+    optional: set[Station] = field(default_factory=set)
+    own: dict[Own, str] = field(default_factory=dict)
+    given: set[Own] = field(default_factory=set)
+    sized: set[tuple[str, Face]] = field(default_factory=set)
+    widths: set[float] = field(default_factory=set)
+    turns: dict[float, int] = field(default_factory=dict)
+    centres: set[float] = field(default_factory=set)
+    _symmetric: list[tuple[Station, Station]] = field(default_factory=list)
+    _group: dict[Station, Station] = field(default_factory=dict)
+
+    @staticmethod
+    def of(features: Features) -> Definition:
+        """Return what the faces of parts need, with no dimension yet."""
+        made = Definition(features)
+        every: dict[Direction, Words] = {
+            "along": features.along,
+            "across": features.across,
+            "up": features.up,
+            "round": features.round,
+            "turn": features.rays,
+        }
+        for direction, levels in every.items():
+            made.needed |= {station(direction, at): words for at, words in levels.items()}
+        made.needed.pop(AXIS, None)
+        made.needed.pop(("turn", 0.0), None)
+        made.own = {(sort, round(value, 4)): words for (sort, value), words in features.own.items()}
+        made.centres = set(features.centres)
+        for hole in features.holes:
+            made.optional |= set(hole_stations(hole))
+        for one in [*made.needed]:
+            if one[0] in ("across", "up") and ("round", abs(one[1])) in made.needed:
+                made.join(one, ("round", abs(one[1])))  # a plane that goes straight on from a cylinder
+        return made
+
+    def add(self, measure: Measure) -> bool:
+        """Add a dimension; return whether it says anything new, and closes no chain."""
+        span = self.span(measure)
+        if measure.sort in ("width", "gap"):
+            self.widths.add(round(measure.value, 4))
+        if span is None:
+            return self._adds_own(measure)
+        is_new = measure.sort not in ("diameter", "width") and self._adds_own(measure)
+        if span[0][0] == "turn":
+            self.turns[round(measure.value, 4)] = measure.count
+        if self.is_symmetric(*span):
+            self._symmetric.append(span)
+            fresh = not (self.joined(span[0], AXIS) and self.joined(span[1], AXIS))
+            self.settle()
+            return is_new or fresh
+        fresh = not self.joined(*span)
+        self.join(*span)
+        self.settle()
+        return is_new or fresh
+
+    def _adds_own(self, measure: Measure) -> bool:
+        sort = measure.sort
+        if sort not in ("diameter", "radius", "angle", "chamfer", "width") or self.is_pitch_circle(measure):
+            return False
+        own: Own = (sort, round(measure.value, 4))
+        faces = {(sort, face) for face in measure.first}
+        is_new = not faces or not faces <= self.sized
+        self.sized |= faces
+        self.given.add(own)
+        return is_new
+
+    def is_pitch_circle(self, measure: Measure) -> bool:
+        """Return whether a diameter is that of a circle about the shaft through the axes of holes."""
+        on = (measure.sort, measure.form, measure.points[0]) == ("diameter", "circle", (0.0, 0.0))
+        return on and any(dist(hole.axis, measure.points[1]) < CLEAR for hole in self.features.holes)
+
+    def span(self, measure: Measure) -> tuple[Station, Station] | None:
+        """Return the two stations that a dimension joins; None if it is a feature's own size."""
+        points = measure.points
+        if measure.form == "angle":
+            if measure.place != "end" or hypot(*points[0]) > CLEAR:
+                return None
+            one, other = (degrees(atan2(y, x)) for x, y in points[1:])
+            return station("turn", one), station("turn", other)
+        if measure.form in ("circle", "arc"):
+            is_about = measure.place == "end" and hypot(*points[0]) < CLEAR
+            radius = measure.value / (2 if measure.sort == "diameter" else 1)
+            return self._ends("up", 0.0, radius) if is_about else None
+        if measure.form == "across" and measure.place == "section":
+            return self._ends("along", points[0][0], points[-1][0]) if measure.sort != "diameter" else None
+        if measure.form == "aligned":
+            return None
+        along = int(measure.form == "up")
+        low, high = points[0][along], points[-1][along]
+        if measure.sort == "diameter":
+            return self._ends("up", 0.0, high) if abs(low + high) < CLEAR else None
+        return self._ends("up" if along else "across", low, high)
+
+    def _ends(self, direction: Direction, low: float, high: float) -> tuple[Station, Station] | None:
+        one, other = self.known(direction, low), self.known(direction, high)
+        return (one, other) if one and other and one != other else None
+
+    def known(self, direction: Direction, at: float) -> Station | None:
+        """Return the station at a coordinate; of a cylinder about the shaft, that of its radius."""
+        found = [station(direction, at)]
+        if direction in ("across", "up"):
+            found.append(station("round", abs(at)))
+        here = [one for one in found if one in self.needed or one in self.optional or one == AXIS]
+        if direction == "along" and not here and any(abs(at - c) < CLEAR for c in self.centres):
+            return found[0]
+        for one in here[1:]:
+            self.join(here[0], one)  # on one line of the drawing
+        return here[0] if here else None
+
+    def is_symmetric(self, one: Station, other: Station) -> bool:
+        """Return whether two stations lie on both sides of a centre line."""
+        if one[0] == "turn":
+            return other[0] == "turn" and self._centre_of(one[1], other[1]) is not None
+        if one[0] == "along":
+            middle = (one[1] + other[1]) / 2
+            return any(abs(middle - centre) < CLEAR for centre in self.centres)
+        return one[0] == other[0] != "round" and abs(one[1] + other[1]) < CLEAR
+
+    def _centre_of(self, one: float, other: float) -> Station | None:
+        """Return the station of the line midway between two directions, if it is drawn."""
+        middle = (one + other) / 2
+        for turn in (0, 90, 180, 270):
+            here = station("turn", middle + turn)
+            if here == ("turn", 0.0) or (turn % 180 == 0 and here in self.needed):
+                return here
+        return None
+
+    def settle(self) -> None:
+        """Let the pairs about centre lines locate their members, once other dimensions have not."""
+        before = -1
+        while before != len({self._root(one) for one in [*self.needed, AXIS]}):
+            before = len({self._root(one) for one in [*self.needed, AXIS]})
+            for one, other in self._symmetric:
+                self.join(one, other)
+                self.join(one, self._middle(one, other))
+            self._alike_turns()
+
+    def _middle(self, one: Station, other: Station) -> Station:
+        if one[0] == "turn":
+            return self._centre_of(one[1], other[1]) or one
+        return station("along", (one[1] + other[1]) / 2) if one[0] == "along" else AXIS
+
+    def _alike_turns(self) -> None:
+        """Join the directions of a pattern, which one angle with a count describes, and mirrored pairs."""
+        rays = [one for one in self.needed if one[0] == "turn"]
+        zero: Station = ("turn", 0.0)
+        for one, other in combinations(rays, 2):
+            turn = abs((one[1] - other[1] + 180) % 360 - 180)
+            given = [count for value, count in self.turns.items() if abs(turn - value) < 1e-3]
+            if any(count > 1 for count in given):
+                self.join(one, other)
+            if given:
+                self._about_located(one, other)
+            if self.is_mirrored(one, other):
+                away = min(one[1] % 90, 90 - one[1] % 90)
+                twice = any(abs(away - value) < 1e-3 and count > 1 for value, count in self.turns.items())
+                located = twice and (self.joined(one, zero) or self.joined(other, zero))
+                if located or self.joined(one, other):
+                    self.join(one, zero)
+                    self.join(other, zero)
+
+    def is_mirrored(self, one: Station, other: Station) -> bool:
+        """Return whether two directions are mirrored at a centre line of the end view."""
+        return station("turn", (one[1] + other[1]) / 2) == ("turn", 0.0)
+
+    def _about_located(self, one: Station, other: Station) -> None:
+        """Locate a pair of directions about one that is located, as the flanks of equal counterweights."""
+        middle = one[1] + ((other[1] - one[1] + 180) % 360 - 180) / 2
+        for turn in (0, 180):
+            if self.joined(station("turn", middle + turn), ("turn", 0.0)):
+                self.join(one, ("turn", 0.0))
+                self.join(other, ("turn", 0.0))
+
+    def join(self, one: Station, other: Station) -> None:
+        """Connect two stations."""
+        self._group[self._root(one)] = self._root(other)
+
+    def joined(self, one: Station, other: Station) -> bool:
+        """Return whether dimensions connect two stations."""
+        return self._root(one) == self._root(other)
+
+    def _root(self, one: Station) -> Station:
+        while (next_ := self._group.get(one, one)) != one:
+            one = next_
+        return one
+
+    def is_located(self, hole: Hole) -> bool:
+        """Return whether two coordinates, or a circle and an angle, give the axis of a hole."""
+        across, up, around, turn = hole_stations(hole)
+        zero: Station = ("turn", 0.0)
+        if self.joined(around, AXIS) and (self.joined(turn, zero) or self.is_spaced(hole)):
+            return True
+        return self.joined(across, AXIS) and self.joined(up, AXIS)
+
+    def is_spaced(self, hole: Hole) -> bool:
+        """Return whether a hole is one of at least three evenly round their circle, one on a centre line."""
+        alike = [one for one in self.features.holes if one.is_like(hole)]
+        turns = sorted({round(one.turn % 360, 3) for one in alike})
+        step = 360 / len(turns)
+        even = all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
+        known = any(self.joined(station("turn", turn), ("turn", 0.0)) for turn in turns)
+        mirrored = any(station("turn", turn + step / 2) == ("turn", 0.0) for turn in turns)
+        return len(turns) > 2 and even and (known or mirrored)
+
+    def components(self, direction: Direction) -> list[list[Station]]:
+        """Return the groups of stations of a direction that nothing connects, the located one first."""
+        groups = defaultdict[Station, list[Station]](list)
+        for one in self.needed:
+            if one[0] == direction:
+                groups[self._root(one)].append(one)
+        origin = self._root(("turn", 0.0) if direction == "turn" else AXIS)
+        ordered = sorted(groups.items(), key=lambda item: (item[0] != origin, -len(item[1]), item[1]))
+        found = [sorted(stations) for _, stations in ordered]
+        return found if direction == "along" or (ordered and ordered[0][0] == origin) else [[], *found]
+
+    def has_own(self, own: Own) -> bool:
+        """Return whether a feature's size is given: of a round end also by the width that it closes."""
+        return own in self.given or (own[0] == "width" and own[1] in self.widths)
+
+    def missing(self) -> Iterator[str]:
+        """Yield in words what no dimension gives."""
+        for own, words in self.own.items():
+            if not self.has_own(own):
+                yield words
+        directions: tuple[Direction, ...] = ("along", "across", "up", "round", "turn")
+        for direction in directions:
+            for group in self.components(direction)[1:]:
+                yield f"position of {self.needed[group[0]]}"
+        for hole in self.features.holes:
+            if not self.is_located(hole):
+                yield f"position of {hole.words}"
+
+
+def hole_stations(hole: Hole) -> tuple[Station, Station, Station, Station]:
+    """Return the stations of a hole: level, upright, round, by angle."""
+    x, y = hole.axis
+    return (
+        station("across", x), station("up", y), station("round", hypot(x, y)), station("turn", hole.turn)
+    )  # fmt: skip
+
+
+def nearest(groups: Sequence[Sequence[Station]], placed: Sequence[Station]) -> tuple[Station, Station] | None:
+    """Return the nearest pair of a located station and one of another group."""
+    pairs = ((a, b) for a in placed for group in groups for b in group)
+    return min(pairs, key=lambda pair: (abs(pair[0][1] - pair[1][1]), pair), default=None)

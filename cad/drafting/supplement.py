@@ -1,0 +1,224 @@
+"""Dimensions of what no parameter gives: positions that a model derives; overall lengths for reference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import cos, hypot, radians, sin
+
+from cad.drafting.curves import Point
+from cad.drafting.definition import AXIS, Definition, Station, hole_stations, nearest
+from cad.drafting.measures import Measure, foot
+from cad.drafting.parameter_match import Dimension
+from cad.drafting.parts_features import Hole
+from cad.drafting.views import View
+
+_CLEAR = 1e-4  # [mm, deg]
+_MOST = 60
+"""Dimensions that are added: a sheet with more of them could not be read."""
+
+
+@dataclass(frozen=True)
+class Supplement:
+    """Adds dimensions to a definition until nothing is missing that the two views can show."""
+
+    definition: Definition
+    section: View
+    end: View
+    shown: Sequence[Measure]
+    repeated: Mapping[str, Sequence[Point]]
+
+    def complete(self, taken: Sequence[Dimension]) -> list[Dimension]:
+        """Return the dimensions, those that others give already for reference, and what was missing."""
+        every = [self.judged(one) for one in taken]
+        for measure in self._missing():
+            if len(every) >= len(taken) + _MOST:
+                break
+            if self.definition.add(measure):
+                every.append(Dimension(measure, None))
+        return [*every, *self._overall(every)]
+
+    def judged(self, one: Dimension) -> Dimension:
+        """Add a dimension; return it, in brackets if others give it already and it has no tolerance."""
+        is_new = self.definition.add(one.measure)
+        joined_spans(self.definition, self.repeated.get(one.name or "", ()))
+        return one if is_new or one.limits else replace(one, is_reference=True)
+
+    def _missing(self) -> Iterator[Measure]:
+        yield from self._own()
+        yield from self._round()
+        for direction in ("across", "up"):
+            yield from self._levels(direction)
+        for hole in self.definition.features.holes:
+            yield from self._axis(hole)
+        yield from self._turns()
+        yield from self._levels("along")
+
+    def _own(self) -> Iterator[Measure]:
+        """Yield sizes of features, from what the views show."""
+        for sort, value in self.definition.own:
+            if self.definition.has_own((sort, value)):
+                continue
+            fitting = (m for m in self.shown if m.sort == sort and abs(m.value - value) < _CLEAR)
+            if measure := next((m for m in fitting if self.definition.span(m) is None), None):
+                yield measure
+
+    def _round(self) -> Iterator[Measure]:
+        """Yield radii about the shaft: as a diameter, a wall, a radius, or as a height above the axis."""
+        for group in self.definition.components("round")[1:]:
+            for radius in (at for _, at in group):
+                if self.definition.joined(("round", radius), AXIS):
+                    break
+                found = [m for m in self.shown if self._gives(m, ("round", radius))]
+                order = {("diameter", "up"): 0, ("radius", "arc"): 1, ("gap", "up"): 2}
+                if measure := min(found, key=lambda m: order.get((m.sort, m.form), 3), default=None):
+                    yield measure
+                else:
+                    yield from self._drawn_radius(radius)
+
+    def _gives(self, measure: Measure, wanted: Station) -> bool:
+        span = self.definition.span(measure)
+        if span is None or wanted not in span:
+            return False
+        return any(self.definition.joined(one, AXIS) for one in span)
+
+    def _drawn_radius(self, radius: float) -> Iterator[Measure]:
+        """Yield the height of a line of the section above the axis of the shaft."""
+        features = self.definition.features
+        near = [at for at in features.round_at if abs(at - radius) < _CLEAR]
+        if not near:
+            return
+        z = features.round_at[near[0]]
+        if "groove" in features.round[near[0]]:
+            yield Measure("diameter", 2 * near[0], "section", "up", ((z, -near[0]), (z, near[0])))
+        else:
+            yield Measure("offset", near[0], "section", "up", ((z, 0.0), (z, near[0])))
+
+    def _levels(self, direction: str) -> Iterator[Measure]:
+        """Yield distances that connect groups of planes and axes, the nearest first."""
+        for _ in range(_MOST):
+            groups = self.definition.components(direction)  # type: ignore[arg-type]
+            placed, others = groups[0] if groups else [], groups[1:]
+            if not others:
+                return
+            yield self._between(*(self._mirrored(others) or self._pair(direction, placed, others)))
+
+    def _mirrored(self, others: Sequence[Sequence[Station]]) -> tuple[Station, Station] | None:
+        """Return the widest pair of stations about a centre line that nothing connects with it."""
+        groups = combinations(others, 2)
+        pairs = [
+            (a, b) for one, other in groups for a in one for b in other if self.definition.is_symmetric(a, b)
+        ]
+        return max(pairs, key=lambda pair: abs(pair[0][1] - pair[1][1]), default=None)
+
+    def _pair(
+        self, direction: str, placed: Sequence[Station], others: Sequence[Sequence[Station]]
+    ) -> tuple[Station, Station]:
+        """Return the stations to connect: located ones and a centre line of others, or the nearest."""
+        if direction == "along":
+            on_centre = [
+                [one for one in group if any(abs(one[1] - c) < _CLEAR for c in self.definition.centres)]
+                for group in others
+            ]
+            pair = nearest([group for group in on_centre if group], placed)
+        else:
+            known = (one for one in self.definition.optional if one[0] == direction)
+            located = [one for one in known if self.definition.joined(one, AXIS)]
+            placed, pair = [*placed, *located, (direction, 0.0)], None  # type: ignore[list-item]
+        pair = pair or nearest(others, placed)
+        assert pair is not None
+        return pair
+
+    def _between(self, one: Station, other: Station) -> Measure:
+        low, high = sorted((one[1], other[1]))
+        if one[0] == "along":
+            return self._level(low, high)
+        along = int(other[0] == "up")
+        side = self.end.box[0][1 - along]
+        ends = ((at, self._place(along, at, side)) for at in (low, high))
+        points = tuple((across, at) if along else (at, across) for at, across in ends)
+        return Measure("width", high - low, "end", "up" if along else "across", points)
+
+    def _place(self, along: int, at: float, side: float) -> float:
+        """Return where across its direction a level has its place: at the axis of a hole, or at the side."""
+        axes = [hole.axis for hole in self.definition.features.holes if abs(hole.axis[along] - at) < _CLEAR]
+        return axes[0][1 - along] if axes else side
+
+    def _level(self, low: float, high: float) -> Measure:
+        points = (low, foot(self.section, low)), (high, foot(self.section, high))
+        return Measure("length", high - low, "section", "across", points)
+
+    def _axis(self, hole: Hole) -> Iterator[Measure]:
+        """Yield what locates an axis beside the shaft: its circle and angle, or two heights."""
+        if self.definition.is_located(hole):
+            return
+        across, up, around, turn = hole_stations(hole)
+        alike = {one.axis for one in self.definition.features.holes if one.is_like(hole)}
+        if not self.definition.joined(around, AXIS) and len(alike) > 2:
+            yield Measure("diameter", 2 * hypot(*hole.axis), "end", "circle", ((0.0, 0.0), hole.axis))
+        if self.definition.joined(around, AXIS):
+            if not self.definition.is_located(hole):
+                yield self._turn(turn)
+            return
+        x, y = hole.axis
+        if not self.definition.joined(up, AXIS):
+            yield Measure("offset", abs(y), "end", "up", ((x, min(y, 0.0)), (x, max(y, 0.0))))
+        if not self.definition.joined(across, AXIS):
+            yield Measure("offset", abs(x), "end", "across", ((min(x, 0.0), y), (max(x, 0.0), y)))
+
+    def _turns(self) -> Iterator[Measure]:
+        """Yield angles at the shaft: the step of a pattern, and from centre lines to what is mirrored."""
+        for _ in range(_MOST):
+            loose = [one for group in self.definition.components("turn")[1:] for one in group]
+            if not loose:
+                return
+            pairs = sorted(combinations(loose, 2), key=lambda pair: abs(_apart(*pair)))
+            step = [pair for pair in pairs if abs(abs(_apart(*pair)) - abs(_apart(*pairs[0]))) < _CLEAR]
+            if len(step) > 1:
+                off = (pair for pair in step if not self.definition.is_symmetric(*pair))
+                yield self._angle(*next(off, step[0]), count=len(step))
+                continue
+            mirrored = any(self.definition.is_mirrored(loose[0], other) for other in loose[1:])
+            yield self._turn(loose[0], count=2 if mirrored else 1)
+
+    def _turn(self, one: Station, count: int = 1) -> Measure:
+        """Return the angle of a direction from the nearest one that is located."""
+        known: list[Station] = [("turn", at) for at in (0.0, 90.0, 180.0, 270.0)]
+        others = self.definition.optional if one in self.definition.optional else self.definition.needed
+        if count == 1:
+            known += [o for o in others if o[0] == "turn" and self.definition.joined(o, ("turn", 0.0))]
+        apart = [(abs(_apart(one, other)), other) for other in known if abs(_apart(one, other)) > _CLEAR]
+        return self._angle(min(apart)[1], one, count)
+
+    def _angle(self, one: Station, other: Station, count: int = 1) -> Measure:
+        reach = max(abs(value) for corner in self.end.box for value in corner) / 2
+        legs = [(reach * cos(radians(at)), reach * sin(radians(at))) for _, at in (one, other)]
+        if _apart(one, other) < 0:
+            legs.reverse()
+        points: tuple[Point, ...] = ((0.0, 0.0), *legs)
+        return Measure("angle", abs(_apart(one, other)), "end", "angle", points, count)
+
+    def _overall(self, every: Iterable[Dimension]) -> Iterator[Dimension]:
+        """Yield the overall length, for reference, where no dimension has it."""
+        levels = [at for direction, at in self.definition.needed if direction == "along"]
+        spans = [sorted(x for x, _ in one.measure.points) for one in every
+                 if (one.measure.form, one.measure.place) == ("across", "section")]  # fmt: skip
+        if len(levels) > 2:
+            low, high = min(levels), max(levels)
+            if not any(abs(span[0] - low) + abs(span[-1] - high) < _CLEAR for span in spans):
+                yield Dimension(self._level(low, high), None, is_reference=True)
+
+
+def _apart(one: Station, other: Station) -> float:
+    """Return the angle from one direction to another [deg], within half a turn."""
+    return (other[1] - one[1] + 180) % 360 - 180
+
+
+def joined_spans(definition: Definition, spans: Iterable[Point]) -> None:
+    """Join stations along the shaft that repeated dimensions, or those of other views, connect."""
+    for low, high in spans:
+        one, other = definition.known("along", low), definition.known("along", high)
+        if one and other:
+            definition.join(one, other)
+    definition.settle()

@@ -1,0 +1,76 @@
+"""Each face of a drawn part follows from exactly one path of dimensions (ISO 129-1)."""
+
+from dataclasses import replace
+
+import pytest
+from slow_models import DRAWN, quick_for
+
+from benchmarks.drawing_completeness import faults
+from benchmarks.drawings import SIZES, latest, sized
+from cad.catalogue import models
+from cad.drafting.content import Content, content_of
+from cad.header import read_header
+from cad.model import CadModel
+from cad.regenerate import as_text, regenerate_class
+from cad.step import read_step
+
+
+def content(step: bytes) -> Content:
+    return content_of(read_step(step), read_header(step))
+
+
+def drawn(id: str, **changes: object) -> Content:
+    model = models().get(id, 1)
+    texts = as_text(model.from_quantities({**model.example, **changes}))
+    return content(regenerate_class(model, texts).step)
+
+
+@quick_for(*DRAWN)
+def test_nothing_is_missing_and_nothing_given_twice_at_three_sizes(model: type[CadModel]) -> None:
+    if model not in latest():
+        pytest.skip("an older version")
+    for factor in SIZES:
+        assert faults(content(sized(model, factor).step)) == []
+
+
+SHAPES: list[tuple[str, dict[str, object]]] = [
+    ("thrust_washer", {"washer": "half", "oil_grooves": 4, "pin_hole_diameter": "0 mm"}),
+    ("thrust_washer", {"oil_grooves": 8, "pin_hole_diameter": "0 mm", "lug_width": "0 mm"}),
+    ("crank_throw", {"web_shape": "rectangular", "counterweight_radius": "0 mm"}),
+    ("plain_bearing", {"shells": "pair", "crush_height": "0 mm"}),
+    ("flanged_bush", {"oil_hole_diameter": "0 mm"}),
+    ("connecting_rod", {"pocket_width": "0 mm"}),
+    ("bearing_housing", {"oil_drilling_diameter": "0 mm"}),
+]
+
+
+@pytest.mark.parametrize(("id", "changes"), SHAPES, ids=[f"{id} {min(c)}" for id, c in SHAPES])
+def test_other_shapes_are_complete_too(id: str, changes: dict[str, object]) -> None:
+    assert faults(drawn(id, **changes)) == []
+
+
+@pytest.mark.slow
+def test_six_throws_are_complete() -> None:
+    angles = {"value": [0, 120, 240, 240, 120, 0], "unit": "deg"}
+    radii = {"value": [70] * 12, "unit": "mm"}
+    shaft = drawn("crankshaft", pin_angles=angles, pin_split="0 deg", counterweight_radius=radii)
+    assert faults(shaft) == []
+
+
+def test_the_list_names_a_dimension_that_is_left_out() -> None:
+    rod = drawn("connecting_rod")
+    pocket = next(one for one in rod.dimensions if one.name is None and one.measure.form == "up")
+    left = replace(rod, dimensions=[one for one in rod.dimensions if one is not pocket])
+    assert left.missing() == ["position of a plane of rod upright at 42.5 mm"]
+
+
+def test_a_closed_chain_is_listed_unless_it_is_in_brackets() -> None:
+    bush = drawn("flanged_bush")
+    flange = next(one for one in bush.dimensions if one.name == "flange_thickness")
+    width = next(one for one in bush.dimensions if one.name == "width")
+    ends = flange.measure.points[1], width.measure.points[1]
+    rest = replace(flange, measure=replace(flange.measure, points=ends, value=27.0), name="rest")
+    doubled = replace(bush, dimensions=[*bush.dimensions, rest])
+    assert "rest, 27, is given twice" in faults(doubled)
+    in_brackets = replace(bush, dimensions=[*bush.dimensions, replace(rest, is_reference=True)])
+    assert faults(in_brackets) == []
