@@ -81,7 +81,7 @@ class AssemblyDescription(Description):
         names = ", ".join(one.name for one in self.components)
         own = f"{self.base[0]} is checked as ever. " if self.base else ""
         return (
-            f"lower: {own}Fixed parts ({names}) have the shape of their STEP files, without a formula for "
+            f"lower: {own}Fixed parts ({names}) are the solids of their STEP files, without a formula for "
             "their volume. Their places, clearances and interferences are measured on the finished file"
         )
 

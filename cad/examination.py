@@ -83,12 +83,15 @@ def _rewritten(parts: Sequence[Part], bodies: Sequence[Body]) -> str:
 
 def _loose(sent: Sequence[Body]) -> Iterator[str]:
     """Yield a sentence about faces that belong to no solid."""
+    counts = dict[str, int]()
     for body in sent:
-        solids = body.shape.Solids()
-        if count := len(body.shape.Faces()) - sum(len(solid.Faces()) for solid in solids):
-            where = f"{body.name!r} has" if body.name else "A body without a name has"
-            faces = "1 loose face, which belongs" if count == 1 else f"{count} loose faces, which belong"
-            yield f"{where} {faces} to no solid, and {'is' if count == 1 else 'are'} left out."
+        in_solids = sum(len(solid.Faces()) for solid in body.shape.Solids())
+        if count := len(body.shape.Faces()) - in_solids:
+            counts[body.name] = counts.get(body.name, 0) + count
+    if counts:
+        more = f" and {len(counts) - _MOST_NAMED} more bodies" if len(counts) > _MOST_NAMED else ""
+        listed = ", ".join(f"{name!r} ({count})" for name, count in list(counts.items())[:_MOST_NAMED])
+        yield f"Loose faces, which belong to no solid, are left out; they are of {listed}{more}."
 
 
 def _names(sent: Sequence[Body], drawn: ProgramResult) -> list[tuple[str, tuple[str, ...]]]:

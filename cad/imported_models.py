@@ -219,9 +219,11 @@ class ImportedModel(CadModel):
                 continue
             wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, attribute_of(one.name))))
             per_size, kind = _factor(one), _SIZE[one.role]
-            offered = [size / per_size for size in sizes[f"{kind} {one.side}".rstrip()]]
-            if _has(sizes[kind], wanted * per_size) and not _has(offered, wanted):
-                raise _turned(one, wanted)
+            if one.side:
+                sides = [side for side in _SIDES if _has(sizes[f"{kind} {side}"], wanted * per_size)]
+                if sides and one.side not in sides:
+                    raise _turned(one, wanted)
+            offered = [size / per_size for size in sizes[kind]]
             if not offered:
                 raise LookupError(f"no {one.role} of the solid can be {one.name}")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]

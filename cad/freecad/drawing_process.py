@@ -31,6 +31,7 @@ import struct
 import sys
 import time
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 UNITS = {"Length": "mm", "Angle": "deg"}
@@ -38,6 +39,8 @@ LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
 CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
 MOST_PARAMETERS = 100
 MOST_SOLIDS = 100
+MOST_LEFT_OUT = 20
+"""Sentences about objects that are left out."""
 LARGEST_FILE = 256 * 2**20
 LINKS = ("App::PropertyLink", "App::PropertyXLink")
 PLACING = frozenset(
@@ -485,7 +488,7 @@ def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[byte
         "parameters": listed,
         "parts": [[name, volume] for name, volume, _ in shapes],
         "at_import": there.at_import(),
-        "left_out": list(left_out(document, there)) if describes else [],
+        "left_out": list(islice(left_out(document, there), MOST_LEFT_OUT)) if describes else [],
         "program": "FreeCAD " + ".".join(app.Version()[:2]),
         "seconds": time.monotonic() - begun,
     }

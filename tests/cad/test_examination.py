@@ -84,7 +84,8 @@ def test_a_file_without_a_solid_is_refused():
 
 def test_loose_faces_are_told():
     _, told = examined((FILES / "mixed.step").read_bytes()).findings
-    assert told.endswith("has 1 loose face, which belongs to no solid, and is left out.")
+    assert told.startswith("Loose faces, which belong to no solid, are left out; they are of ")
+    assert told.endswith(" (1).")
 
 
 def test_positions_keep_their_names():
