@@ -87,8 +87,11 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
     may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
 
-    Raises ------ GeometryError `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two
-    parts cannot be compared. The message names the parts.
+    Raises
+    ------
+    GeometryError
+        `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two parts cannot be
+        compared. The message names the parts.
     """
     standing = _standing(bodies, group)
     pairs = _pairs(standing)
