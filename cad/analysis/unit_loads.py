@@ -3,9 +3,9 @@
 There are five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. The throw is held at one end
 face.
 
-`force_1`, `force_2`     act on the pin, along the throw (x) and across it (y), with the two mains as supports:
-                         the loaded end carries its share by the lever rule, so only the torque of force 2
-                         reaches the held end
+`force_1`, `force_2`     act on the pin, along the throw (x) and across it (y), with the two mains as
+                         supports: the loaded end carries its share by the lever rule, so only the torque
+                         of force 2 reaches the held end
 `moment_1`               is a torque about z from the loaded end to the held one
 `moment_2`, `moment_3`   are bending moments about x and y, from end to end
 
