@@ -1,4 +1,4 @@
-"""Build a half shell or a full bush of steel with its lining, about z with the crown at +y; its volumes."""
+"""Build a half shell or a full bush of steel with its lining, with the crown at +y; compute its volumes."""
 
 from __future__ import annotations
 
