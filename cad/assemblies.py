@@ -214,7 +214,7 @@ class AssemblyModel(ImportedModel):
             parts = _solids_of(component, drawn.fixed[component.file])
             count += sum(len(part.places) for part in parts)
             if count > MOST_SOLIDS:
-                detail = f"the fixed parts have more than {MOST_SOLIDS} solids; leave some of them out"
+                detail = f"the fixed parts have more than {MOST_SOLIDS} solids; remove some of them"
                 raise GeometryError("too_large", detail)
             for number, part in enumerate(parts):
                 placed = replace(part, places=tuple(at * place for place in part.places))

@@ -44,14 +44,14 @@ def with_deflection(kind: str, raw: str) -> str:
         If it is not a length above 0, or the kind has no facets.
     """
     if kind not in MESHES:
-        detail = f"only {listed(MESHES)} are made of facets; leave it out for {kind}"
+        detail = f"only {listed(MESHES)} are made of facets; omit it for {kind}"
         raise InvalidInputs([Fault("deflection", "not_offered", detail)])
     try:
         typed = read(raw, _UNIT)
     except FaultyText as error:
         raise InvalidInputs([error.fault("deflection")]) from None
     if typed.tolerance is not None or not isinstance(typed.si, float) or typed.si <= 0:
-        detail = "a deflection is a single length above 0, as in 0.05 mm"
+        detail = "a deflection is a single length above 0, such as `0.05 mm`"
         raise InvalidInputs([Fault("deflection", "out_of_range", detail)])
     asked = float(unit(_UNIT).from_si(typed.si))
     if not LEAST <= asked <= MOST:
@@ -69,7 +69,7 @@ def with_part(kind: str, part: str) -> str:
         If a file of that kind always contains all parts.
     """
     if plain_kind(kind) not in BY_PART:
-        detail = f"only {listed(BY_PART)} can hold one part alone; leave it out for {plain_kind(kind)}"
+        detail = f"only {listed(BY_PART)} can hold one part alone; omit it for {plain_kind(kind)}"
         raise InvalidInputs([Fault("part", "not_offered", detail)])
     return f"{kind}{_OF}{part}"
 

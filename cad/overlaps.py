@@ -103,8 +103,11 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
     may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
 
-    Raises ------ GeometryError `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two
-    parts cannot be compared. The message names the parts.
+    Raises
+    ------
+    GeometryError
+        `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two parts cannot be
+        compared. The message names the parts.
     """
     standing = _standing(bodies, group)
     pairs = _pairs(standing)
@@ -187,7 +190,7 @@ def _require_few(standing: Sequence[_PlacedSolid], pairs: Sequence[_Pair]) -> No
     listed = ", ".join(f"{name} ({count})" for name, count in whose)
     detail = (
         f"{len(meeting)} pairs of solids have boxes that meet, and at most {MOST_MEETING} are compared; the "
-        f"most are of {listed}. Move the components apart, or leave solids out of their files"
+        f"most are of {listed}. Move the components apart, or remove solids from their files"
     )
     raise GeometryError("too_large", detail)
 

@@ -227,7 +227,9 @@ def _plain(error: Any) -> Any:
 
 def _refuse_names(cls: type[Template], level: str | None, outputs: Iterable[str] | None) -> None:
     if outputs is not None:
-        message = "outputs says what a tolerance is about; give a tolerance, or leave outputs out"
+        message = (
+            "`outputs` names the outputs to which `tolerance` applies; give `tolerance`, or omit `outputs`"
+        )
         raise InvalidInputs([Fault("outputs", "no_tolerance", message)])
     if level is not None and level not in cls.levels:
         raise InvalidInputs([unknown_name(level, cls.levels, "level").within("level")])

@@ -62,7 +62,7 @@ def name_group(item):
 
 
 def require_distinct(items):
-    """Refuse tests of one id: pytest-xdist would run the first of them and leave out the others."""
+    """Refuse tests of one id: pytest-xdist would run the first of them and omit the others."""
     shared = [id for id, count in Counter(item.nodeid for item in items).items() if count > 1]
     if shared:
         raise pytest.UsageError(f"{len(shared)} ids belong to several tests: {', '.join(shared[:3])}")

@@ -56,7 +56,7 @@ def require_acknowledgement(
             if step in ACKNOWLEDGING
             else f"{step} needs none"
         )
-        raise Unacknowledged(f"leave out `acknowledged`: {why}")
+        raise Unacknowledged(f"omit `acknowledged`: {why}")
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:

@@ -29,9 +29,7 @@ def _written(text: object) -> object:
     """Return the text; raise ValueError if it has no letter or has control characters."""
     if isinstance(text, str) and not re.search(WRITTEN, text):
         plain = re.search(PLAIN, text)
-        raise ValueError(
-            "the text needs at least one letter" if plain else "leave out the control characters"
-        )
+        raise ValueError("the text needs at least one letter" if plain else "remove the control characters")
     return text
 
 

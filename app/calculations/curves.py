@@ -72,11 +72,13 @@ def _table(file: FileText) -> Table:
         name_here = api_name(words)
         seen[name_here] += 1
         if not name_here or not name_here[0].isalpha() or re.fullmatch(r"column [0-9]+", name):
-            return Fault(name, "missing_name", "the column has no name; write one such as pressure [bar]")
+            return Fault(name, "missing_name", "the column has no name; write one, such as `pressure [bar]`")
         if seen[name_here] == 2:
             return Fault(name, "named_twice", f"two columns are named {name_here}; give them different names")
         if not own and not is_cycle_number(name):
-            detail = f"column {excerpt(name)} has no unit; write it like pressure [bar], or [1] for none"
+            detail = (
+                f"column {excerpt(name)} has no unit; write it like `pressure [bar]`, or with `[1]` for none"
+            )
             return Fault(name, "missing_unit", detail)
         return None
 

@@ -57,7 +57,7 @@ def as_cycle(table: Table) -> Table:
         columns, more = _over_angles(columns, time, pulse, pressure)
     else:
         columns, more = _mean(columns, axis, pressure)
-    volts = [f"{column.name} in volts: its heading may hold a calibration, as in pressure [20 bar/V]"
+    volts = [f"{column.name} in volts: its heading may contain a calibration, such as `pressure [20 bar/V]`"
              for column in columns if column.unit and _measures(column, "V")]  # fmt: skip
     return Table(columns, [*table.assumed, *assumed, *more, *volts])
 

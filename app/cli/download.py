@@ -65,7 +65,7 @@ def _file(
     revision: int | None,
 ) -> File:
     if part is not None and (kind == "zip" or variant is not None):
-        raise click.UsageError("--part names a part of the design itself; leave out --variant and zip")
+        raise click.UsageError("--part names a part of the design itself; omit --variant and zip")
     if kind == "zip":
         return client.download_variants(design, revision, on_progress=_progress)
     if variant is not None:

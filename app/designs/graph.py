@@ -255,7 +255,7 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         elif through.block not in models or not is_measured(
             through, models[through.block], network.blocks[through.block].cls
         ):
-            detail = f"an iteration needs a measurement of a model, such as model.mass, not {through}"
+            detail = f"an iteration needs a measurement of a model, such as `model.mass`, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
 
 

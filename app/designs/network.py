@@ -319,7 +319,7 @@ def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, 
     criterion = Reference.parse(name)
     if criterion.output is None:
         if written.require is None:
-            form = "give `require`, such as film.minimum_film_thickness >= 3 um"
+            form = "give `require`, such as `film.minimum_film_thickness >= 3 um`"
             raise FaultyText("missing", f"a criterion of the design compares two values: {form}")
         return
     block = blocks.get(criterion.block)

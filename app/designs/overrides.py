@@ -39,7 +39,7 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
         yield from unknown_names(absent, list(places(graph)), "parameter or input")
     for name, raw in others.items():
         if name == unknown:
-            yield Fault(name, "conflict", f"{name} is the unknown of `solve`; leave its value out")
+            yield Fault(name, "conflict", f"{name} is the unknown of `solve`; omit its value")
         elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
             yield from _misfit(graph, name, raw)
 

@@ -77,7 +77,7 @@ class BodyLimits:
         return self._counted(receive) if length == b"0" else receive
 
     def _check(self, scope: Scope, length: bytes) -> None:
-        """Refuse a head or a stated length that exceeds the limits."""
+        """Refuse a request whose head or stated length exceeds the limits."""
         headers, query = scope["headers"], scope["query_string"]
         size = sum(map(len, chain.from_iterable(headers))) + len(query) + len(scope.get("raw_path") or b"")
         if size > LONGEST_HEAD:

@@ -410,7 +410,7 @@ NUL = "\0"
 """U+0000, which no text of a request may have: PostgreSQL cannot store it. It is refused where requests are
 read, for both kinds of database, by the name of the field that has it."""
 MOST_NUL_PLACES = 20
-_NUL_DETAIL = "no text may have the character U+0000 (NUL); leave it out: {}"
+_NUL_DETAIL = "no text may contain the character U+0000 (NUL); remove it: {}"
 _ESCAPED_NUL = b"\\u0000"
 _JSON_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
 """It itself in JSON; an escaped backslash may stand before `u0000`."""

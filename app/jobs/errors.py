@@ -3,7 +3,7 @@
 JobError
  ├── JobNotFound    there is no such job
  ├── JobFinished    the job has ended, so it cannot be cancelled
- ├── JobShared      several clients wait for the job, so a further one cannot cancel it
+ ├── JobShared      other clients wait for the job, so this client cannot cancel it
  ├── QueueFull      too many jobs are waiting
  ├── JobLost        the servers or workers that ran the job were lost repeatedly
  ├── JobRests       raised by a handler: the job continues later, after other jobs

@@ -102,7 +102,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
             if restored.end is not None:
-                raise CannotRun(f"The archive continues beyond its end, with {entry.name[:100]!r}.")
+                raise CannotRun(f"The archive has extra data after its end: {entry.name[:100]!r}.")
             file = tar.extractfile(entry) if entry.isreg() else None
             if file is None:
                 raise CannotRun(f"The archive holds {entry.name[:100]!r}, which is not a plain file.")

@@ -1,8 +1,8 @@
 """Draw the crank star: the crankpins of an engine seen from its flywheel, each with its cylinders.
 
-`static/crank_star.js` draws the same in the page. x points up and y to the left, as `engine` 1 counts its
-angles, so the shaft turns anticlockwise. Pins at the same angle share one ray, whichever throws they belong
-to.
+`static/crank_star.js` draws the same star in the page. The angle convention is that of `engine` 1: x points
+up and y to the left. The shaft therefore turns anticlockwise. Pins at the same angle share one ray, whichever
+throws they belong to.
 """
 
 from __future__ import annotations

@@ -121,7 +121,7 @@ def faults(kind: str, options: Options) -> list[Fault]:
     detail = "give either a level or a tolerance, which chooses the level"
     conflicts = [Fault("tolerance", "conflict", detail)] if both else []
     if kind == CHAIN and options.load is not None:
-        detail = f"{CHAIN} answers no stress, and all else is the same under any load: leave load out"
+        detail = f"{CHAIN} answers no stress, and its other results are the same under any load: omit `load`"
         return [*conflicts, Fault("load", "not_offered", detail)]
     return conflicts + ([] if options.load is None else load_faults(options.load))
 
@@ -145,12 +145,12 @@ def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
     """Yield a fault for each option that analyses with tables do not have."""
     why = _OF_TABLES[kind]
     if options.boundary != "free_end":
-        yield Fault("boundary", "not_offered", f"{kind} {why['boundary']}: leave boundary out")
+        yield Fault("boundary", "not_offered", f"{kind} {why['boundary']}: omit `boundary`")
     if options.tolerance is not None:
         detail = f"{kind} {why['tolerance']}: give a level, {', '.join(LEVELS)}"
         yield Fault("tolerance", "not_offered", detail)
     if options.load is not None:
-        yield Fault("load", "not_offered", f"{kind} {why['load']}: leave load out")
+        yield Fault("load", "not_offered", f"{kind} {why['load']}: omit `load`")
 
 
 def load_faults(raw: Raw) -> list[Fault]:

@@ -1,4 +1,4 @@
-"""Validate a request for a study against its design: places with units, rows, objectives."""
+"""Validate a request for a study against its design: paths of values, units, rows, objectives."""
 
 from __future__ import annotations
 
@@ -61,9 +61,11 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
     if not varied and body.method == "table":
         yield Fault("rows", "missing", "give `rows`: columns by name, or a list of rows")
     elif not varied:
-        yield Fault("vary", "missing", 'name the varied parameters, as in {"clearance": {"between": [..]}}')
+        yield Fault(
+            "vary", "missing", 'name the varied parameters, for example `{"clearance": {"between": [..]}}`'
+        )
     if body.vary and body.method == "table":
-        yield Fault("vary", "contradiction", "the columns of the table define what varies; leave `vary` out")
+        yield Fault("vary", "contradiction", "the columns of the table define what varies; omit `vary`")
     if body.method == "sample" and body.points is None:
         yield Fault("points", "missing", "give the number of rows to sample, such as 1024")
     has_goal = bool(body.minimise or body.maximise)
@@ -73,12 +75,14 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
         yield Fault(
             "outputs",
             "missing",
-            "name the outputs to store for each row, such as film.minimum_film_thickness",
+            "name the outputs to store for each row, such as `film.minimum_film_thickness`",
         )
     if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
         yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
     if body.steps is not None and body.method != "grid":
-        yield Fault("steps", "contradiction", f"{body.method} takes no `steps`, only grid does; leave it out")
+        yield Fault(
+            "steps", "contradiction", f"{body.method} takes no `steps`, only `grid` does; omit `steps`"
+        )
     for name in sorted({*body.minimise} & {*body.maximise}):
         yield Fault("maximise", "contradiction", f"{name} cannot be both minimised and maximised")
 
@@ -90,7 +94,7 @@ def _is_local(body: StudyIn) -> bool:
 _WITHOUT_POINTS = {
     "grid": f"grid takes no `points`; give `steps`, at most {MOST_ROWS['grid']} rows in all",
     "table": f"table takes no `points`; it has the rows that you give, at most {MOST_ROWS['table']}",
-    "sensitivity": "local slopes take no `points`; leave it out, or choose `kind` morris or sobol",
+    "sensitivity": "local slopes take no `points`; omit `points`, or choose `kind` `morris` or `sobol`",
 }
 
 

@@ -28,7 +28,7 @@ def document_of(document: JsonObject, variant: str | None) -> JsonObject:
 
 def _unknown(variant: str, names: list[str]) -> str:
     if not names:
-        return f"the design has no variant {excerpt(variant)}; it has none, so leave `variant` out"
+        return f"the design has no variant {excerpt(variant)}; it has none, so omit `variant`"
     return f"the design has no variant {excerpt(variant)}; its variants are {listed(names)}"
 
 

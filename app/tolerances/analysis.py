@@ -200,7 +200,7 @@ class Analysis:
         seconds = self._seconds(rows)
         if seconds > LONGEST:
             levels = ", ".join(f"{step}: {level}" for step, level in self.levels.items())
-            remedy = 'name cheaper ones, as in "levels": {"film": "map"}, or ask for fewer points'
+            remedy = 'name cheaper ones, for example `"levels": {"film": "map"}`, or ask for fewer points'
             detail = f"{rows} rows at these levels ({levels}) take too long to calculate; {remedy}"
             raise_if([Fault("levels", "too_expensive", detail)])
 

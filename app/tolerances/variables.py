@@ -73,6 +73,6 @@ def faults(chosen: Sequence[TolerancedVariable], warnings: Sequence[Warning]) ->
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])
         detail = f"nothing that was asked for follows from a value with a tolerance{others and ': ' + others}"
-        yield Fault("design", "no_tolerance", f"{detail}; write it like 55 ± 5 um")
+        yield Fault("design", "no_tolerance", f"{detail}; write it like `55 ± 5 um`")
     if len(chosen) > MOST:
         yield Fault("design", "too_many", f"{len(chosen)} values vary; an analysis takes at most {MOST}")

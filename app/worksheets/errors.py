@@ -57,7 +57,7 @@ class UnresolvedRegions(OutOfOrder):
     def __init__(self, reasons: Sequence[str]) -> None:
         self.reasons = tuple(reasons)
         count, some = len(self.reasons), "; ".join(self.reasons[:5])
-        remedy = "rewrite or remove the lines imported from them"
+        remedy = "rewrite or remove the lines imported from these regions"
         regions = "region" if count == 1 else "regions"
         super().__init__(f"{count} {regions} of the import unresolved: {some}: {remedy}")
 

@@ -26,7 +26,7 @@ _OTHER = 1.0
 
 
 def width_of(text: str, height: float) -> float:
-    """Return the width of a line of letters of that height, in the same unit."""
+    """Return the width of a line of letters of a given height, in the unit of the height."""
     return sum(_letter(sign) for sign in text) * SIZE * height
 
 

@@ -41,9 +41,11 @@ class BearingAssembly(CadModel):
     intersected pair by pair; the message about an interference names both parts and the volume that they
     share.
 
-    Limits ------ The shells have no groove, tang or relief (`plain_bearing` has them), and the housing is two
-    boxes without bolts (`bearing_housing` has them). The parts are not deformed: the tightened shell and its
-    contact pressure are not calculated.
+    Limits
+    ------
+    The shells have no groove, tang or relief (`plain_bearing` has them), and the housing is two boxes without
+    bolts (`bearing_housing` has them). The parts are not deformed: the tightened shell and its contact
+    pressure are not calculated.
 
     References
     ----------
@@ -179,7 +181,7 @@ class BearingAssembly(CadModel):
 
     @require("block_height", "cap_height", "housing_bore", remedy="make block and cap higher")
     def bore_has_a_roof(self) -> Truth:
-        """Block and cap are each at least 55 % of the bore high."""
+        """The heights of block and cap are each at least 55 % of the bore diameter."""
         return (self.H_b >= 0.55 * self.D_h) & (self.H_c >= 0.55 * self.D_h)
 
     def build(self) -> tuple[Part, ...]:

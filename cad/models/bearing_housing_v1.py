@@ -24,9 +24,11 @@ class BearingHousing(CadModel):
 
     A diameter of 0 omits the bolt holes or the drilling.
 
-    Limits ------ The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels,
-    threads or tang notches. Default sizes are typical of engines and do not come from a standard. The bore
-    has its nominal size; give its tolerance with the parameter.
+    Limits
+    ------
+    The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels, threads or tang
+    notches. Default sizes are typical of engines and do not come from a standard. The bore has its nominal
+    size; give its tolerance with the parameter.
 
     References
     ----------
@@ -103,7 +105,7 @@ class BearingHousing(CadModel):
 
     @require("block_height", "cap_height", "housing_bore", remedy="make block and cap higher")
     def bore_has_a_roof(self) -> Truth:
-        """Block and cap are each at least 55 % of the bore high."""
+        """The heights of block and cap are each at least 55 % of the bore diameter."""
         return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "housing_bore",

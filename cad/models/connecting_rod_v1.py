@@ -23,9 +23,11 @@ class ConnectingRod(CadModel):
 
     A width of 0 omits pockets or bolt holes. Mass and centre of mass are measured on the solids.
 
-    Limits ------ The part is for mating with shells and for its mass; it is not a forging: it has no fillets,
-    tapers, draft, bosses, oil holes, threads or tang notches. Default sizes are typical of engines and do not
-    come from a standard. Bores have their nominal sizes; give tolerances with the parameters.
+    Limits
+    ------
+    The part is for mating with shells and for its mass; it is not a forging: it has no fillets, tapers,
+    draft, bosses, oil holes, threads or tang notches. Default sizes are typical of engines and do not come
+    from a standard. Bores have their nominal sizes; give tolerances with the parameters.
 
     References
     ----------
@@ -166,7 +168,7 @@ class ConnectingRod(CadModel):
 
     @require("shoulder_height", "cap_height", "big_end_bore", remedy="make shoulder and cap higher")
     def bore_has_a_roof(self) -> Truth:
-        """Shoulder and cap are each at least 55 % of the bore high."""
+        """The heights of shoulder and cap are each at least 55 % of the bore diameter."""
         return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
 
     @require("bolt_spacing", "bolt_hole_diameter", "big_end_bore",

@@ -105,7 +105,7 @@ def stacked(items: Sequence[Column]) -> Column:
 
 UNEQUAL = (
     "the length of its curve differs between rows, but all rows of a table need curves of one length: "
-    "leave this output out, or vary something else"
+    "omit this output, or vary something else"
 )
 
 

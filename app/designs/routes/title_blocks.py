@@ -69,10 +69,10 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
         if typed.get(name, signed) == signed:
             continue
         if signed:
-            detail = f"the record of this revision sets {signed!r} here; leave the typed text out"
+            detail = f"the record of this revision sets {signed!r} here; omit the typed text"
             faults.append(Fault(name, "signed_otherwise", detail))
         elif field in _ONLY_SIGNED:
-            detail = "nobody has signed here, and only a step of the approval sets this name; leave it out"
+            detail = "nobody has signed here, and only a step of the approval sets this name; omit it"
             faults.append(Fault(name, "signed_otherwise", detail))
     status = typed.get("document_status", stamp.status)
     if status != stamp.status and (stamp.status in ORDER or _letters(status) in ORDER):

@@ -130,7 +130,9 @@ def _columns(
         place = place_named(heading, units)
         if not place:
             if any(grid.cell(row, at) for row in range(len(grid.rows))):
-                message = "this column has no heading; name a parameter or input, such as film.bearing_width"
+                message = (
+                    "this column has no heading; name a parameter or input, such as `film.bearing_width`"
+                )
                 faults.append(Fault(address(0, at), "missing_name", message))
         elif place not in units:
             unknown.append((address(0, at), place))
@@ -176,7 +178,9 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
     before = len(faults)
     name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
-        faults.append(Fault(where, "missing_name", "this row has no name; name its variant, such as main_1"))
+        faults.append(
+            Fault(where, "missing_name", "this row has no name; name its variant, such as `main_1`")
+        )
     elif not NAME.fullmatch(name):
         message = (
             f"{excerpt(name)} is not a name; begin with a letter, then use letters, digits and _: main_1"

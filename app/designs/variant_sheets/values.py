@@ -83,7 +83,7 @@ def relation(text: str) -> str:
         If it has an equals sign, or is not a relation.
     """
     if text.startswith("="):
-        raise FaultyText("formula", f"write the relation without =: {text.lstrip('= ')[:60]}")
+        raise FaultyText("formula", f"write the relation without `=`: {text.lstrip('= ')[:60]}")
     parse(f"= {text}")
     return f"= {text}"
 

@@ -7,7 +7,7 @@ import re
 BASE = "base"
 """The design without any override; no variant has this name."""
 RESERVED = {
-    BASE: f"{BASE!r} is the design itself; give the variant another name, such as main_1",
+    BASE: f"{BASE!r} is the design itself; give the variant another name, such as `main_1`",
     "report": "'report' is the address of the report of all variants; give the variant another name",
 }
 """Names that a variant must not have, and why."""

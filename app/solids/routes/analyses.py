@@ -1,4 +1,4 @@
-"""`POST /models/{id}/versions/{n}/analyses/{kind}`, its results, and the surface for its picture."""
+"""`POST /models/{id}/versions/{n}/analyses/{kind}`, the results of an analysis, and its surface field."""
 
 from __future__ import annotations
 

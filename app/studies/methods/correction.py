@@ -67,7 +67,7 @@ class CorrectedAnswer:
     """The coarse level over the unit cube, corrected and guarded by the confirmed points."""
 
     def __init__(self, problem: Problem, answer: Answer, scales: Array) -> None:
-        """Set the scale [SI] of each criterion, shape (m,), above zero."""
+        """Set the positive scale [SI] of each criterion; shape (m,)."""
         self.problem, self.answer, self.scales = problem, answer, scales
         self.places: list[Array] = []
         self.coarse: list[Array] = []

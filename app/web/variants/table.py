@@ -1,4 +1,4 @@
-"""The table of variants on the page of a design: their overrides, in fields, and their verdicts."""
+"""The table of variants on the page of a design: overrides in form fields, and verdicts."""
 
 from __future__ import annotations
 

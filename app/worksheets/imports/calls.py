@@ -27,7 +27,7 @@ class Calls(Writer):
             case FailedName(region):
                 raise Unnamed(key, region)
             case Value() | Range() | InlineTerm() | Choice():
-                raise Untranslatable("the called name is not a function", "write a product with *")
+                raise Untranslatable("the called name is not a function", "write a product with `*`")
         if key in functions.REFUSED:
             raise Untranslatable(
                 functions.REFUSED[key], "write the formula by hand, or give its value as an input"
@@ -92,7 +92,9 @@ class Calls(Writer):
                 "the call has a wrong number of arguments", "call it with the arguments of its definition"
             )
         if self.depth >= MOST_INLINED:
-            raise Untranslatable("the function contains functions", "name each step")
+            raise Untranslatable(
+                f"functions call each other at more than {MOST_INLINED} levels", "name each step"
+            )
         parts = [self.argument(part) for part in arguments]
         if not any(part.is_vector and not self.is_vectorised for part in parts):
             name = self.sheet.function(function, parts)

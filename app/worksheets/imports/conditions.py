@@ -101,7 +101,7 @@ class Conditions(Writer):
                 return self._cases(branches, part.parts[0])
             else:
                 raise Untranslatable(
-                    "the program returns several values", "write one formula with if … then … else …"
+                    "the program returns several values", "write one formula with `if … then … else …`"
                 )
         remedy = "add the otherwise case in Mathcad or in the line"
         raise Untranslatable("the condition has no otherwise", remedy)

@@ -30,10 +30,10 @@ REFUSED = {
     "transpose": ("matrix", "write its items as lists"),
     "matcol": ("the formula uses a column of a matrix", "give the column as a separate list"),
     "matrow": ("the formula uses a row of a matrix", "give the row as a separate list"),
-    "product": ("product over an index", "write it out, or as exp(sum(log(x)))"),
+    "product": ("product over an index", "write it out, or as `exp(sum(log(x)))`"),
     "symEval": ("symbolic calculation", "write its result as a formula"),
     "for": ("loop", "write the formula for a list"),
-    "while": ("loop", "write the formula for a list, or solve"),
+    "while": ("loop", "write the formula for a list, or `solve`"),
     "tryCatch": ("try and catch", "state with if when there is a value"),
     "str": ("text", "use a choice, or a check"),
     "imag": ("complex number", "calculate with real and imaginary part"),
@@ -135,7 +135,7 @@ def _meant(key: str, meant: Meant) -> Term:
         case FailedName(region):
             raise Unnamed(key, region)
         case Choice():
-            raise Untranslatable("text", "test the choice, as in law is walther")
+            raise Untranslatable("text", "test the choice, for example `law is walther`")
     raise Untranslatable("the formula uses a function as a value", "call the function with its arguments")
 
 

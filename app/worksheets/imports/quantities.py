@@ -75,7 +75,7 @@ class ScaledNumber:
         if any(exponent.denominator != 1 for _, exponent in self.powers):
             raise Untranslatable(
                 "worksheets cannot take the root of a unit",
-                "write the formula in pure numbers, such as f_ck / 1 MPa",
+                "write the formula in pure numbers, such as `f_ck / 1 MPa`",
             )
         over = [_factor(name, int(power)) for name, power in self.powers if power > 0]
         under = [_factor(name, -int(power)) for name, power in self.powers if power < 0]

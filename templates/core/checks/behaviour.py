@@ -25,7 +25,7 @@ def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
     line = _line_of_example(cls)
     if not isinstance(cls.example, dict):
         yield FileFault(
-            "example", "example is not a dictionary", 'write example = {"speed": "300 rpm"}', line
+            "example", "example is not a dictionary", 'write `example = {"speed": "300 rpm"}`', line
         )
         return
     required = [name for name, declared in cls.inputs.items() if declared.required]

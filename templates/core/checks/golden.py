@@ -46,7 +46,7 @@ def _against(cls: type[Template], file: Path) -> Iterator[FileFault]:
     record = _read(file)
     if record is None or not isinstance(record.get("cases"), list):
         what = f"{file.name} is not a golden record"
-        yield FileFault("golden", what, "write it by crankwright freeze, or take it away")
+        yield FileFault("golden", what, "write it with `crankwright freeze`, or delete it")
         return
     for number, what in enumerate(differences(cls, record)):
         if number == MOST_DIFFERENCES:

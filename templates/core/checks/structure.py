@@ -78,7 +78,9 @@ def _units(cls: type[Template]) -> Iterator[FileFault]:
         except FaultyText as error:
             what = f"{declared.name} is declared in {declared.meaning.unit!r}: {error}"
             line = _lines_of_declarations(cls).get(declared.attribute)
-            yield FileFault("unit", what, "write a unit such as mm, kN, MPa, mPa*s, rpm, degC, or 1", line)
+            yield FileFault(
+                "unit", what, "write a unit, such as `mm`, `kN`, `MPa`, `mPa*s`, `rpm`, `degC`, or `1`", line
+            )
 
 
 def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:

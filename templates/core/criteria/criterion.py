@@ -225,7 +225,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
     sides = _SIGN.split(text)
     if len(sides) != 3 or "=" in sides[0] + sides[2]:
-        form = "write it like film.minimum_film_thickness >= 3 um"
+        form = "write it like `film.minimum_film_thickness >= 3 um`"
         raise FaultyText("syntax", f"a criterion needs exactly one >= or <=; {form}")
     sign: Sign = ">=" if sides[1] == ">=" else "<="
     value, limit = parse(sides[0].strip()), parse(sides[2].strip())

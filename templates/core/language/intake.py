@@ -124,7 +124,7 @@ def _example(declared: Input) -> str:
     if isinstance(declared, Choice):
         return f"; one of {', '.join(declared.options)}"
     scale = declared.meaning.unit
-    return "; give a number" if scale == "1" else f"; give it in {scale} or its like"
+    return "; give a number" if scale == "1" else f"; give it in {scale} or another unit of the same kind"
 
 
 @dataclass(frozen=True)

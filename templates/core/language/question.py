@@ -36,7 +36,7 @@ def read_question(
     *_, faults = read_options(cls, **names)
     declared, formula = _unknown(cls, unknown, faults), None
     if unknown in raw:
-        faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; leave it out"))
+        faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; omit it"))
     ends = _ends(declared, bounds, faults) if declared else (0.0, 1.0)
     wanted = 0.0
     if len(target) != 1:

@@ -81,7 +81,10 @@ def _common_scale(template: Calculation, comparison: Comparison) -> Unit | None:
 
 
 def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
-    """Yield the false comparisons; those of alternatives at the points where none of these holds."""
+    """Yield the false comparisons.
+
+    Comparisons joined as alternatives are yielded only at points where all of them are false.
+    """
     fails = np.asarray(where, dtype=bool) & ~np.asarray(result.value, dtype=bool)
     if not fails.any():
         return

@@ -150,7 +150,7 @@ class Builder:
         try:
             self.names.check_new(name)
         except FaultyText as error:
-            remedy = "choose another name, as in p_max"
+            remedy = "choose another name, such as `p_max`"
             raise statement.refuse(error.code, str(error), at, remedy) from None
 
     def _function(self, statement: ParsedStatement) -> None:
@@ -164,7 +164,7 @@ class Builder:
         name = str(called)[:-1]
         self._check_new(statement, called, name)
         if axis := parameter.children[2]:
-            remedy = "leave out over and the name behind it"
+            remedy = "omit `over` and the name behind it"
             raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis, remedy)
         texts = (parameter.children[1], unit_text)
         along, of = (self.reader.declared_unit(statement, text) for text in texts)
@@ -177,7 +177,7 @@ class Builder:
         name, default, words, options, *clauses = statement.parts
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
-            remedy = "write different words, as in (walther | vogel)"
+            remedy = "write different words, for example `(walther | vogel)`"
             raise statement.refuse("choice", "each option must be one word, given once", options, remedy)
         if default is not None and str(default) not in names:
             message = f"the default {default} is not an option"
@@ -292,7 +292,7 @@ class Builder:
     def _condition(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> tuple[Any, bool]:
         node, sort = self.reader.part(statement, tree)
         if not sort.truth:
-            remedy = "write it like p <= 30 MPa"
+            remedy = "write it like `p <= 30 MPa`"
             raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
         return node, bool(sort.axis)
 

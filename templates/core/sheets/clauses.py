@@ -57,7 +57,7 @@ def _meaning(statement: ParsedStatement, unit_text: str, words: lark.Token, said
         return meaning(unit_text, text, **said.keywords)
     except TypeError:
         message = f"the words {text[:60]!r} make no name: they need a letter first"
-        raise statement.refuse("name", message, words, 'write words like "bearing diameter"') from None
+        raise statement.refuse("name", message, words, 'write words, such as `"bearing diameter"`') from None
 
 
 def words_of(statement: ParsedStatement, words: lark.Token) -> str:
@@ -71,7 +71,7 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
         message = f"words have at most {LONGEST_WORDS} characters"
-        raise statement.refuse("too_large", message, words, "write the rest as prose, after >")
+        raise statement.refuse("too_large", message, words, "write the rest as prose, after `>`")
     if not text:
         raise statement.refuse("name", "the description is missing", words, "describe the quantity")
     return text
@@ -91,7 +91,7 @@ def said_in(
             key, value = _clause(statement, clause, reader, unit_text, accepted)
             if key in keys:
                 message = f"{clause_name(clause)} is given twice"
-                raise statement.refuse("clause", message, clause, "leave out one of the two")
+                raise statement.refuse("clause", message, clause, "omit one of the two")
             keys.add(key)
             if key == "example":
                 said.example = value
@@ -120,7 +120,7 @@ def _clause(
         return "held", True
     if unit_text is None or clause.data == "held":
         message = f"{clause_name(clause)} has no place here"
-        raise statement.refuse("clause", message, clause, 'write (source "…") or (remedy "…")')
+        raise statement.refuse("clause", message, clause, 'write `(source "…")` or `(remedy "…")`')
     numbers = [part for part in clause.children if isinstance(part, lark.Tree)]
     if clause.data == "whole":
         return "integer", True
@@ -144,7 +144,7 @@ def _said(statement: ParsedStatement, clause: lark.Tree[Any]) -> tuple[str, Any]
     if key == "also":
         return "also", tuple(said)
     if len(said) > 1:
-        raise statement.refuse("clause", f"{key} takes one text", clause, "leave out the other texts")
+        raise statement.refuse("clause", f"{key} takes one text", clause, "omit the other texts")
     if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
         remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
         raise statement.refuse("clause", f"{said[0][:40]!a} is not a symbol", clause, remedy)

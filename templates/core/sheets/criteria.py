@@ -30,7 +30,7 @@ def criterion_of(
         With code `check` if it is not a single comparison by <= or >=, or with a code of `read_criterion`.
     """
     at = statement.parts[0]
-    remedy = "write p <= 30 MPa; several conditions are several checks"
+    remedy = "write `p <= 30 MPa`; several conditions are several checks"
     if not (isinstance(node, Apply) and node.operation.sign in ("<=", ">=")):
         raise statement.refuse("check", "a check needs exactly one <= or >=", at, remedy)
     names = {n: d.name for n, d in declared.items() if isinstance(d, Declaration)}

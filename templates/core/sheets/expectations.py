@@ -105,7 +105,9 @@ def _expected(
     tolerance, sort = reader.part(statement, within)
     size = TreeBody(tolerance, statement.chunk.line)
     if size.uses or sort.truth or sort.axis:
-        raise statement.refuse("limit", "a tolerance is one number", within, "write within 0.2 %")
+        raise statement.refuse(
+            "limit", "a tolerance is one number", within, "write one number, for example `within 0.2 %`"
+        )
     text = statement.text_of(within)
     number = float(size(None))
     if text.endswith("%"):
@@ -113,12 +115,12 @@ def _expected(
             number *= float(np.max(np.abs(value)))
     elif is_number(sort.kind) and not is_number(reader.sort_of(declared.meaning.unit).kind):
         message = f"{text} has no unit"
-        raise statement.refuse("limit", message, within, "write within 0.2 %, or within 1 um")
+        raise statement.refuse("limit", message, within, "write `within 0.2 %`, or `within 1 um`")
     elif text != "0":
         is_temperature = unit(declared.meaning.accepted).absolute
         difference = difference_in(declared.meaning.unit) if is_temperature else declared.meaning.unit
         reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
     if not 0 <= number < np.inf:
         message = f"{text} is not a tolerance: it is finite, and not below 0"
-        raise statement.refuse("limit", message, within, "write within 0.2 %")
+        raise statement.refuse("limit", message, within, "write one number, for example `within 0.2 %`")
     return ExpectedResult(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

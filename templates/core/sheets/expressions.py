@@ -73,7 +73,7 @@ class Reader:
         tree, got = part
         if got.truth:
             message = f"{name} is a quantity, but this is a condition"
-            raise statement.refuse("no_truth", message, at, "write if … then … else …")
+            raise statement.refuse("no_truth", message, at, "write `if … then … else …`")
         if mismatch := misfit(got.kind, unit(unit_text), statement.text_of(at)):
             why, remedy = mismatch
             is_declared = str(statement.parts[0]).rstrip("(") == name
@@ -90,7 +90,7 @@ class Reader:
         if got.axis and not axis:
             message = f"{name} is a single value, but this is a list over {got.axis}"
             over = f"over {got.axis}" if " " not in got.axis else "over the name of its axis"
-            raise statement.refuse("axis_mismatch", message, at, f"declare it {over}, or take max(…) of it")
+            raise statement.refuse("axis_mismatch", message, at, f"declare it {over}, or take `max(…)` of it")
         if axis and got.axis != axis and not is_literal(got.axis):
             what = f"a list over {got.axis}" if got.axis else "a single value"
             message = f"{name} is declared over {axis}, but this is {what}"
@@ -112,7 +112,7 @@ class Reader:
         part = self.part(statement, tree)
         constant, sort = part
         if not isinstance(constant, Constant):
-            raise statement.refuse("limit", "a limit is one number", tree, "write it like <= 2 m")
+            raise statement.refuse("limit", "a limit is one number", tree, "write it like `<= 2 m`")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
         accepted = accepted or unit_text
@@ -196,9 +196,13 @@ def is_literal(axis: str) -> bool:
 
 def _given_in(unit_text: str) -> str:
     """Return the advice to write a value in a unit."""
-    return "write it without a unit" if unit_text == "1" else f"write it in {unit_text} or its like"
+    return (
+        "write it without a unit"
+        if unit_text == "1"
+        else f"write it in {unit_text} or another unit of the same kind"
+    )
 
 
 def _along_of(axis: str) -> str:
     """Return the advice to declare a value over an axis, or as a single value."""
-    return f"declare it over {axis}" if axis else "leave out over and the name behind it"
+    return f"declare it over {axis}" if axis else "omit `over` and the name behind it"

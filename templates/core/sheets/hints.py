@@ -6,21 +6,27 @@ import re
 from collections.abc import Collection
 
 _SIGNS = (  # the text before, the text at the fault, and the correct form
-    ("", r"\^", "a power is written **, as in D**2"),
-    (r"\d", r",\d", "decimals take a point, as in 2.5"),
-    ("", r":=", "write =, without a colon"),
-    (r"\d", r"[A-Za-zµ°%]", "put a blank between a number and its unit, as in 25 kN"),
+    ("", r"\^", "a power is written `**`, for example `D**2`"),
+    (r"\d", r",\d", "decimals take a point, for example `2.5`"),
+    ("", r":=", "write `=`, without a colon"),
+    (r"\d", r"[A-Za-zµ°%]", "put a blank between a number and its unit, for example `25 kN`"),
     ("", r"<>|=<|=>|≤|≥|≠", "a comparison is one of < <= > >= == !="),
     ("", r"×|·|÷", "operators are + - * / **"),
 )
 _MISSING = {  # the expected terminal, and how it is written
-    "UNIT": "the unit is missing here: write it in brackets, as in [kN], or [1] for a pure number",
-    "KEY": 'clauses are > 0, <= 2 m, published 1 to 2, example 3 mm, source "…", remedy "…", also "…"',
-    "FROM": 'write bounds, as in from 1 mm to 2 m; of several unknowns each its words, as in "width"',
-    "TEXT": 'words between quotation marks are missing here, as in "bearing diameter"',
-    "ELSE": "every if has its else",
-    "THEN": "behind the condition of an if stands then",
-    "WITHIN": "say how near: within 0.2 %",
+    "UNIT": "the unit is missing here: write it in brackets, such as `[kN]`, or `[1]` for a pure number",
+    "KEY": (
+        "clauses are `> 0`, `<= 2 m`, `published 1 to 2`, `example 3 mm`, "
+        '`source "…"`, `remedy "…"`, `also "…"`'
+    ),
+    "FROM": (
+        "write bounds, such as `from 1 mm to 2 m`; "
+        'with several unknowns write words for each, such as `"width"`'
+    ),
+    "TEXT": 'words between quotation marks are missing here, such as `"bearing diameter"`',
+    "ELSE": "every `if` needs an `else`",
+    "THEN": "write `then` after the condition of `if`",
+    "WITHIN": "write a tolerance, such as `within 0.2 %`",
 }
 _FORMULA = 'p [MPa] = F / (D * B) "projected pressure"'
 _FORMS = {
@@ -55,4 +61,4 @@ def remedy_of(statement: str, before: str, there: str, expected: Collection[str]
     for terminal, remedy in _MISSING.items():
         if terminal in expected:
             return remedy
-    return f"write it as in: {_FORMS.get(word, _FORMULA)}"
+    return f"write it like `{_FORMS.get(word, _FORMULA)}`"

@@ -155,9 +155,9 @@ def system_of(
     node, sort = reader.part(statement, tree)
     if sort.axis:
         message = f"the equations hold a list over {sort.axis}"
-        raise statement.refuse("axis_mismatch", message, tree, "take max(…) or sum(…) of it")
+        raise statement.refuse("axis_mismatch", message, tree, "take `max(…)` or `sum(…)` of it")
     equations = list(_joined(node))
-    remedy = "write as many equations as unknowns, as in x + y == 3 N and x - y == 1 N"
+    remedy = "write as many equations as unknowns, for example `x + y == 3 N and x - y == 1 N`"
     if not all(isinstance(one, Apply) and one.operation.sign == "==" for one in equations):
         raise statement.refuse("equation", "only equations can be joined by `and` here", tree, remedy)
     if len(equations) != len(unknowns):

@@ -22,23 +22,23 @@ _COMMON = (
 _EQUAL = frozenset({"add", "subtract", "compare", "if", "list"})
 _EQUAL_CALLS = frozenset({"min", "max", "atan2"})
 _TRUTHS = {
-    "if": "write a comparison behind if, as in x < 3 mm",
-    "and": "write a comparison on each side, as in x < 3 mm and y > 1 mm",
-    "or": "write a comparison on each side, as in x < 3 mm or y > 1 mm",
-    "not": "write a comparison behind not, as in not x < 3 mm",
+    "if": "write a comparison behind `if`, for example `x < 3 mm`",
+    "and": "write a comparison on each side, for example `x < 3 mm and y > 1 mm`",
+    "or": "write a comparison on each side, for example `x < 3 mm or y > 1 mm`",
+    "not": "write a comparison behind `not`, for example `not x < 3 mm`",
 }
 _AXES = {
-    "item": "write the name without an index, or take a list and one number, as in x[2]",
-    "list": "write single values between the brackets, as in [max(x), 3 mm]",
-    "call": "give a list, as in max([a, b]), or take max(…) of each list first",
+    "item": "write the name without an index, or take a list and one number, for example `x[2]`",
+    "list": "write single values between the brackets, for example `[max(x), 3 mm]`",
+    "call": "give a list, for example `max([a, b])`, or take `max(…)` of each list first",
 }
 _GENERAL = {
     "no_truth": "test a choice by is, and make a quantity of a condition by if … then … else …",
-    "axis_mismatch": "take max(…), mean(…) or an item of one of the lists, or declare both over one name",
+    "axis_mismatch": "take `max(…)`, `mean(…)` or an item of one of the lists, or declare both over one name",
     "index": "count from 1, with a whole number or a name in [1]",
     "unknown_function": "correct the name, or declare the function above this line",
-    "unknown_unit": "write a unit as in kN, mm**2/s, W/(m*K)",
-    "syntax": "write it like log(x), max(a, b), x[2]",
+    "unknown_unit": "write a unit, such as `kN`, `mm**2/s` or `W/(m*K)`",
+    "syntax": "write it like `log(x)`, `max(a, b)` or `x[2]`",
     "not_finite": "write a number below 1e308",
     "too_large": "give its parts names of their own, and call functions less often",
 }
@@ -104,12 +104,12 @@ def _equal(at: lark.Tree[Any], names: Names) -> str:
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"
     if at.data == "power":
-        return "write a plain number as exponent, as in d**2, and divide by a unit first, as in (d / 1 mm)**x"
+        return "write a plain number as exponent, and divide by a unit first, for example `(d / 1 mm)**2`"
     if called in FUNCTIONS and called not in names.functions:
-        return f"divide by a unit first, as in {called}(x / 1 mm)"
+        return f"divide by a unit first, for example `{called}(x / 1 mm)`"
     if called in names.functions:
         return f"give {called} values in the units of its declaration"
-    return "divide by a unit first, as in x / 1 mm"
+    return "divide by a unit first, for example `x / 1 mm`"
 
 
 def _units(at: lark.Tree[Any], names: Names) -> str:

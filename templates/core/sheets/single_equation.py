@@ -134,7 +134,7 @@ def _is_number(value: Any) -> bool:
 
 
 def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
-    """Return the equation after `so that`, which has two equal sides.
+    """Return the equation after `so that`; refuse it unless it has exactly two sides.
 
     Raises
     ------
@@ -143,10 +143,10 @@ def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any]
     """
     node, sort = reader.part(statement, tree)
     if not (isinstance(node, Apply) and node.operation.sign == "=="):
-        raise statement.refuse("equation", "this is not an equation", tree, "write it like F / A == 10 MPa")
+        raise statement.refuse("equation", "this is not an equation", tree, "write it like `F / A == 10 MPa`")
     if sort.axis:
         message = f"the equation holds a list over {sort.axis}"
-        raise statement.refuse("axis_mismatch", message, tree, "take max(…) or sum(…) of it")
+        raise statement.refuse("axis_mismatch", message, tree, "take `max(…)` or `sum(…)` of it")
     if name not in names_in(node):
         raise statement.refuse("equation", f"{name} does not occur in the equation", tree)
     return node

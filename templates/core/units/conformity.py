@@ -44,7 +44,7 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
 
 
 def declared_kind(got: Kind, want: Kind) -> Kind:
-    """Return the kind of a declared value: that of its unit, or for a unit of K that of the value itself."""
+    """Return the kind of a declared value: the kind of its unit or, if the unit is K, of the value."""
     counts = got.temperatures
     if want.temperatures != EITHER or counts is None:
         return replace(want, temperatures=want.temperatures if want.temperatures != EITHER else counts)
@@ -89,9 +89,9 @@ def _counted(text: str) -> str:
 
 
 def _without_minutes(text: str) -> tuple[str, str]:
-    """Return a product without the factor 60 of formulas in minutes, and the advice to leave it out."""
+    """Return a product without the factor 60 of formulas in minutes, and the advice to omit it."""
     bare = _MINUTES.sub("", text) if not re.search(r"[-+,]", text) else text
-    return bare, "leave out 60, which the units hold, and " if bare != text else ""
+    return bare, "omit 60, which the units contain, and " if bare != text else ""
 
 
 def _in_brackets(text: str) -> str:
@@ -116,8 +116,8 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
         return _both_readings(names, want, text)
     if want.turns and is_rate(want.base) and kind.pi < 0:
         return (
-            f"{want.text} only shows a speed that the formula gives in rad/s: leave out the factor that "
-            "makes turns of radians, such as 30/pi"
+            f"{want.text} only shows a speed that the formula gives in rad/s: omit the factor that "
+            "converts radians to turns, such as `30/pi`"
         )
     return ""
 
@@ -130,7 +130,7 @@ def _over(name: str, divisor: str) -> str:
 def _both_readings(names: list[str], want: Unit, text: str) -> str:
     which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
     if radians(want.base):
-        return f"{which}, but in a formula the value is in rad/s already: leave out 2*pi or pi/30"
+        return f"{which}, but in a formula the value is in rad/s already: omit `2*pi` or `pi/30`"
     bare, minutes = _without_minutes(text)
     in_turns = bare
     for name in names:

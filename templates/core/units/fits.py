@@ -70,4 +70,4 @@ def _unknown(zone: str) -> str:
         grades = sorted(int(name.removeprefix(letters)) for name in alike)
         return f"{excerpt(zone)} is not shipped; {letters} has the grades {grades[0]} to {grades[-1]}"
     shipped = " ".join(dict.fromkeys(name.rstrip("0123456789") for name in zones()))
-    return f"{excerpt(zone)} is not a tolerance zone that is shipped; there are {shipped}, as in H7 or g6"
+    return f"{excerpt(zone)} is not an available zone, such as `H7` or `g6`; the letters are {shipped}"

@@ -291,7 +291,9 @@ def _in_si(magnitude: Value, scale: Unit) -> Value:
 
 def _number(raw: Any) -> float:
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText("not_a_number", f"{excerpt(raw)} is not a number; write it like 1.5, without quotes")
+        raise FaultyText(
+            "not_a_number", f"{excerpt(raw)} is not a number; write it like `1.5`, without quotes"
+        )
     try:
         return _finite(float(raw))
     except OverflowError:

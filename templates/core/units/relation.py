@@ -190,7 +190,7 @@ def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
     is_at_end = getattr(getattr(error, "token", None), "type", "") == "$END"
     place = None if is_at_end else getattr(error, "pos_in_stream", None)
     near = body[place : place + 20] if isinstance(place, int) and place >= 0 else ""
-    hint = "write units as in 48 mm, names as in film.bearing_diameter, operators + - * / **"
+    hint = "write units like `48 mm`, names like `film.bearing_diameter`, and operators `+ - * / **`"
     return f"not understood at {excerpt(near)}; {hint}" if near else f"the relation ends too early; {hint}"
 
 
@@ -203,7 +203,7 @@ def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
     forget_units()
     sort = _sort(parse(text).tree, dict(kinds))
     if sort.truth:
-        detail = f"{excerpt(text)} is a condition and no value; write if … then … else …"
+        detail = f"{excerpt(text)} is a condition and no value; write `if … then … else …`"
         raise FaultyText("no_truth", detail)
     return sort.kind
 

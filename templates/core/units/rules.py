@@ -220,7 +220,7 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
     plain = plain_number(arguments[1])
     if plain is None:
         raise FaultyText(
-            "unit_mismatch", "a quantity with a unit takes a plain number as exponent, as in d**2"
+            "unit_mismatch", "a quantity with a unit takes a plain number as exponent, for example `d**2`"
         )
     if not abs(plain) <= MAX_EXPONENT:
         raise FaultyText("unit_mismatch", f"an exponent of a quantity with a unit is at most {MAX_EXPONENT}")
@@ -273,9 +273,12 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return the kind of a rounded pure number; a quantity is refused, because 3.7 mm is 0.0037 m."""
+    """Return the kind of a rounded pure number.
+
+    A quantity with a unit is refused, because its rounded value would depend on the unit.
+    """
     if kinds[0].base != Kind().base:
-        hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
+        hint = f"divide by a unit, for example `{operation.sign}(d / 1 mm)`"
         raise FaultyText(
             "unit_mismatch", f"{operation.sign} takes a pure number, not {in_words(kinds[0])}; {hint}"
         )

@@ -86,21 +86,23 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
     """Return whether the result is a condition; raise an error for operands of the wrong sort."""
     if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
-        raise FaultyText("no_truth", f"a choice is not a quantity: test it, as in law is {words[0]}")
+        raise FaultyText("no_truth", f"a choice is not a quantity: test it, for example `law is {words[0]}`")
     truths = [sort.truth for sort in sorts]
     if operation is IF:
         if not truths[0]:
-            raise FaultyText("no_truth", "`if` needs a condition, such as x < 3 mm, not a quantity")
+            raise FaultyText("no_truth", "`if` needs a condition, such as `x < 3 mm`, not a quantity")
         if truths[1] != truths[2]:
             raise FaultyText("no_truth", "then and else are two quantities or two conditions")
         return truths[1]
     is_logic = operation in LOGIC.values()
     if is_logic and not all(truths):
-        raise FaultyText("no_truth", f"`{operation.sign}` joins conditions, such as x < 3 mm, not quantities")
+        raise FaultyText(
+            "no_truth", f"`{operation.sign}` joins conditions, such as `x < 3 mm`, not quantities"
+        )
     if not is_logic and any(truths):
         raise FaultyText(
             "no_truth",
-            f"{operation.sign} takes quantities, not a condition; write if … then … else …",
+            f"{operation.sign} takes quantities, not a condition; write `if … then … else …`",
         )
     return is_logic or operation is IS or operation in COMPARISONS.values()
 

@@ -188,7 +188,9 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
             raise FaultyText("not_a_quantity", f"{excerpt(raw)} is not a tolerance; write it like 5 {name}")
         return float(match[1].replace("−", "-") + match[2]) * _of_text(match[3], declared).factor
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText("not_a_number", f"{excerpt(raw)} is not a number; write it like 1.5, without quotes")
+        raise FaultyText(
+            "not_a_number", f"{excerpt(raw)} is not a number; write it like `1.5`, without quotes"
+        )
     try:
         return float(raw) * require_same_kind(name, declared).factor
     except OverflowError:
@@ -235,10 +237,11 @@ def _of_zone(
     zone: Any, limits: Mapping[str, float], si: Value, name: str, distribution: Distribution
 ) -> Tolerance:
     if not isinstance(zone, str):
-        raise FaultyText("unknown_zone", f"{excerpt(zone)} is not a tolerance zone; write it like H7")
+        raise FaultyText("unknown_zone", f"{excerpt(zone)} is not a tolerance zone; write it like `H7`")
     if not isinstance(si, float):
         raise FaultyText(
-            "not_single", "a tolerance zone applies to one size; give each item its own, as in 48 mm H7"
+            "not_single",
+            "a tolerance zone applies to one size; give each item its own, for example `48 mm H7`",
         )
     tolerance, _ = in_zone(zone, si, name, distribution)
     if limits and not np.allclose(_ends(limits), deviations(zone, si), rtol=1e-6, atol=1e-12):
@@ -296,7 +299,7 @@ def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
     if not present:
         return None
     if len({one.distribution for one in present}) > 1:
-        raise FaultyText("not_a_tolerance", "the items of a list have one distribution; give all the same")
+        raise FaultyText("not_a_tolerance", "all items of a list must have the same distribution")
     lower, upper = (
         np.array([0.0 if one is None else getattr(one, end) for one in tolerances])
         for end in ("lower", "upper")

@@ -128,7 +128,9 @@ def unit(text: str) -> Unit:
         If the text is not a unit, or Pint does not know the unit.
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
-        raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
+        raise FaultyText(
+            "unknown_unit", f"{text[:60]!a} is not a unit; write it like `kN`, `mm**2/s` or `W/(m*K)`"
+        )
     for word, remedy in _AMBIGUOUS.items():
         if word.search(text):
             raise FaultyText("ambiguous_unit", f"{text} is ambiguous: {remedy}")
@@ -294,7 +296,11 @@ def _of_other_kind(got: Unit, want: Unit) -> str:
 
 
 def _remedy(want: Unit) -> str:
-    return "give it without a unit" if want.text == "1" else f"give it in {want.text} or its like"
+    return (
+        "give it without a unit"
+        if want.text == "1"
+        else f"give it in {want.text} or another unit of the same kind"
+    )
 
 
 def _meant(got: Unit, want: Unit) -> str:

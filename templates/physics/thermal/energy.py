@@ -1,13 +1,13 @@
-r"""The energy equation of a film, around and across, averaged over the width.
+r"""The energy equation of a film, circumferentially and across the film, averaged over the width.
 
 .. math::
     \rho c\,(u\,\partial_x T + v\,\partial_y T) = \partial_y(k\,\partial_y T)
     + \eta\left[(\partial_y u)^2 + (\partial_y w)^2\right]
 
 The temperature is constant along the width, where measured temperatures differ little (Dowson, Hudson,
-Hunter, March 1966). Every term is averaged over the width, so the dissipation equals the power input of
-journal and supply, and the removed heat adds up to it. In a cavity the oil flows in streamers of the film's
-height: every term is multiplied by their share. Circumferential conduction is neglected.
+Hunter, March 1966). Every term is averaged over the width, so dissipation, power input of journal and
+supply, and removed heat are equal. In a cavity the oil flows in streamers of the film's height: every term is
+multiplied by the share of the width that the streamers fill. Circumferential conduction is neglected.
 
 Finite volumes on the strips of `across`: circumferentially upwind, exponential across the film (Scharfetter,
 Gummel; Patankar). The equations are linear in T: one sparse system also gives the temperatures of the groove

@@ -32,7 +32,7 @@ def test_both_judge_each_letter_alike(kind):
 
 @pytest.mark.parametrize(
     ("text", "reason"),
-    [("\t\n", "the text needs at least one letter"), ("a\x01", "leave out the control characters")],
+    [("\t\n", "the text needs at least one letter"), ("a\x01", "remove the control characters")],
 )
 def test_a_refusal_says_what_would_be_right(text, reason):
     with pytest.raises(ValidationError, match=reason):

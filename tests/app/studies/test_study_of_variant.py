@@ -92,9 +92,7 @@ def test_an_unknown_variant_is_refused_with_the_names_that_exist(http, bars):
     estimate = http.post(f"{API}/studies/estimate", json={"design": bars["id"], **GRID, "variant": "lang"})
     assert faults(estimate) == {"variant": "unknown_name"}
     without = {name: value for name, value in DESIGN.items() if name != "variants"}
-    assert (
-        "leave `variant` out" in asked(http, new_design(http, without), **GRID, variant="x").json()["detail"]
-    )
+    assert "omit `variant`" in asked(http, new_design(http, without), **GRID, variant="x").json()["detail"]
     query = {"design": bars["id"], "outputs": OUT, "variant": "lang"}
     media = {"Content-Type": "text/csv"}
     answer = http.post(f"{API}/studies", params=query, content=b"size\nmm\n1\n", headers=media)

@@ -273,7 +273,7 @@ def test_a_design_without_tolerances_is_refused_with_how_to_write_one(http):
     design = created(http, document())
     answer = http.post(f"{DESIGNS}/{design['id']}/tolerance", json={})
     assert faults(answer) == {"design": "no_tolerance"}
-    assert "write it like 55 ± 5 um" in answer.json()["errors"][0]["detail"]
+    assert "write it like `55 ± 5 um`" in answer.json()["errors"][0]["detail"]
     problem(http.post(f"{DESIGNS}/nowhere/tolerance", json={}), 404, "not-found")
 
 

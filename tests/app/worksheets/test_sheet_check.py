@@ -157,7 +157,7 @@ def test_a_text_with_nul_is_refused_as_in_every_request_and_its_place_is_named(h
     assert answer.status_code == 422
     [fault] = answer.json()["errors"]
     assert (fault["name"], fault["code"]) == ("text", "nul")
-    assert fault["detail"] == f"no text may have the character U+0000 (NUL); leave it out: {place}"
+    assert fault["detail"] == f"no text may contain the character U+0000 (NUL); remove it: {place}"
 
 
 def test_doubling_functions_are_refused(http):

@@ -121,7 +121,7 @@ def test_without_a_script_the_analysis_is_a_page(http, toleranced):
 def test_a_design_that_cannot_be_analysed_says_why(http):
     page = http.get(f"{design(http)}/tolerances")
     assert page.status_code == 422
-    assert "write it like 55 ± 5 um" in page.text
+    assert "write it like `55 ± 5 um`" in page.text
 
 
 @pytest.mark.slow

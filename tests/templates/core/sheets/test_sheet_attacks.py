@@ -167,9 +167,9 @@ def test_a_long_chain_in_any_order_is_calculated():
         ('Given F [kN] "x"', 7, "write given in small letters"),
         ('p [MPa] = 25kN "x"', 13, "put a blank between a number and its unit"),
         ('p [mm] = 2,5 mm "x"', 11, "decimals take a point"),
-        ('p [mm**2] = W^2 "x"', 14, "a power is written **"),
-        ('p [mm] = if x > 1 then W "x"', 26, "every if has its else"),
-        ('p [mm] = W + "x"', 14, "write it as in: p [MPa]"),
+        ('p [mm**2] = W^2 "x"', 14, "a power is written `**`"),
+        ('p [mm] = if x > 1 then W "x"', 26, "every `if` needs an `else`"),
+        ('p [mm] = W + "x"', 14, "write it like `p [MPa]"),
     ],
 )
 def test_a_slip_of_the_pen_is_met_with_what_would_be_right(text, column, remedy):

@@ -38,6 +38,9 @@ def test_every_code_is_listed():
 def test_the_limits_are_those_of_the_code():
     limits = " ".join(REFERENCE[REFERENCE.index("## Limits\n") :].split())
     assert f"{MOST_BYTES // 1024} KiB, {MOST_STATEMENTS} statements" in limits
-    assert f"{LONGEST_STATEMENT // 1000} 000 characters, {MOST_PARTS} parts, {MOST_DEPTH} deep" in limits
+    assert (
+        f"{LONGEST_STATEMENT // 1000} 000 characters, {MOST_PARTS} parts, {MOST_DEPTH} nested levels"
+        in limits
+    )
     assert f"{FUEL // 1000} 000" in limits
     assert f"{LONGEST_NAME}, 200 characters" in limits
