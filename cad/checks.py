@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from math import inf, isclose, isfinite
+from math import dist, inf, isclose, isfinite
 
 import numpy as np
 
@@ -55,21 +55,24 @@ def check_box(model: CadModel, measured: Box) -> None:
     """
     wanted = model.bounding_box()
     pairs = zip((*wanted.low, *wanted.high), (*measured.low, *measured.high), strict=True)
-    if not all(isclose(a, b, rel_tol=1e-9, abs_tol=_BOX_TOLERANCE) for a, b in pairs):
+    within = max(_BOX_TOLERANCE, model.rewriting * dist(wanted.low, wanted.high))
+    if not all(isclose(a, b, rel_tol=1e-9, abs_tol=within) for a, b in pairs):
         detail = f"{model.id} should fill the box {_box(wanted)}; it fills {_box(measured)}"
         raise GeometryError("bounding_box", detail, model.inputs)
 
 
 def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
-    """Check that no two mated parts overlap.
+    """Check that no two mated parts overlap, and no solids of an imported model that did not at the import.
 
     Raises
     ------
     GeometryError
         `interference`, naming the parts.
     """
+    if (known := model.known_overlaps()) is None:
+        return
     own = [body for body in bodies if model.component_of(body.name) is None]
-    if model.keeps_apart and (interfering := list(overlaps(own))):
+    if interfering := [one for one in overlaps(own) if frozenset((one.one, one.other)) not in known]:
         detail = f"parts of {model.id} interfere: {'; '.join(map(str, interfering))}"
         raise GeometryError("interference", detail, model.inputs)
 

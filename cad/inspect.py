@@ -102,9 +102,7 @@ def summarise(
 def bounding_box(bodies: Iterable[Body]) -> Box:
     """Return the bounding box of all bodies at their positions [mm], as tight as the kernel computes it."""
     faces = [
-        face.wrapped.Moved(
-            place.wrapped
-        )  # the kernel's method, because CadQuery's checks the types of its arguments
+        face.wrapped.Moved(place.wrapped)  # the kernel's method: CadQuery's checks the types of its arguments
         for body in bodies
         for face in body.shape.Faces()
         for place in body.places

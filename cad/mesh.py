@@ -44,11 +44,12 @@ class Mesh:
     normals: Array  # (n, 3), outwards
     triangles: Integers  # (m, 3), counter-clockwise seen from outside
     faces: Integers  # (m,), the number of the face that a triangle lies on
+    called: tuple[str, ...] = ()  # at its positions, where these have their own names
 
     @property
     def names(self) -> tuple[str, ...]:
         """Return the name of the body at each of its positions, as `cad.model.Part` does."""
-        return names_at(self.name, len(self.places))
+        return names_at(self.name, len(self.places), self.called)
 
 
 def mesh(body: Body, deflection: float | None = None) -> Mesh:
@@ -118,6 +119,7 @@ def _joined(body: Body, pieces: Sequence[tuple[Array, Array, Integers]]) -> Mesh
         normals=np.concatenate([normals for _, normals, _ in pieces]),
         triangles=np.concatenate([t + start for (_, _, t), start in zip(pieces, starts, strict=False)]),
         faces=np.repeat(np.arange(len(pieces)), [len(t) for _, _, t in pieces]),
+        called=body.called,
     )
 
 

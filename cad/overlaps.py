@@ -21,7 +21,6 @@ from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_State
 
 from cad.errors import GeometryError
-from cad.model import names_at
 from cad.step import Body
 
 MOST_CLEARANCES = 200
@@ -50,13 +49,30 @@ class Overlap:
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
     """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap."""
-    standing = [(body.name, body.shape.moved(place)) for body in bodies for place in body.places]
-    for (one, shape), (other, beside) in combinations(standing, 2):
+    for (one, shape), (other, beside) in _meeting(bodies):
         properties = GProp_GProps()
         common = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped).Shape()
         BRepGProp.VolumeProperties_s(common, properties)
         if properties.Mass() > _SPECK:
             yield Overlap(one, other, properties.Mass())
+
+
+def count_meeting(bodies: Sequence[Body]) -> int:
+    """Return the number of pairs of bodies whose boxes meet, which `overlaps` compares."""
+    return sum(1 for _ in _meeting(bodies))
+
+
+def _meeting(bodies: Sequence[Body]) -> Iterator[tuple[tuple[str, Shape], tuple[str, Shape]]]:
+    """Yield each pair of bodies, by name and shape at a position, whose boxes meet."""
+    standing = [
+        (name, body.shape.moved(place))
+        for body in bodies
+        for name, place in zip(body.names, body.places, strict=True)
+    ]
+    boxes = [_box(shape) for _, shape in standing]
+    for i, j in combinations(range(len(standing)), 2):
+        if not boxes[i].IsOut(boxes[j]):
+            yield standing[i], standing[j]
 
 
 @dataclass(frozen=True)
@@ -87,8 +103,11 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
     may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
 
-    Raises ------ GeometryError `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two
-    parts cannot be compared. The message names the parts.
+    Raises
+    ------
+    GeometryError
+        `too_large`, if more than `MOST_MEETING` pairs of boxes meet; `kernel`, if two parts cannot be
+        compared. The message names the parts.
     """
     standing = _standing(bodies, group)
     pairs = _pairs(standing)
@@ -146,7 +165,7 @@ def _standing(bodies: Sequence[Body], group: Group) -> list[_PlacedSolid]:
     return [
         _PlacedSolid(name, group(body.name), body.shape.moved(place))
         for body in bodies
-        for name, place in zip(names_at(body.name, len(body.places)), body.places, strict=True)
+        for name, place in zip(body.names, body.places, strict=True)
     ]
 
 

@@ -7,8 +7,8 @@ A datum is `origin`, the axes of the assembly, or a part and a place on it, such
 - `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of their
   point nearest to the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; if
-several are, the first.
+The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; of
+several equally near axes, the first.
 """
 
 from __future__ import annotations

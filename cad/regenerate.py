@@ -195,7 +195,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         report(0.0, "building")
         parts = model.build()
-        standing = [Body(part.name, part.solid, part.colour, part.places) for part in parts]
+        standing = [Body(part.name, part.solid, part.colour, part.places, part.called) for part in parts]
         require_few_meeting(standing, model.component_of)
         report(0.4, "exporting")
         annotations = _annotations(model, parts)

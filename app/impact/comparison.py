@@ -1,4 +1,4 @@
-"""Compare a design or variant, calculated with its present versions, with the same under a new version."""
+"""Compare a design or variant, calculated with its present versions, with the result under a new version."""
 
 from __future__ import annotations
 

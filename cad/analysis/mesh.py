@@ -154,7 +154,7 @@ def _coordinates(mesh: Any, order: int) -> list[Any]:
     """Return the coordinates in curved elements as finite-element functions."""
     mesh.Curve(order)
     together = ng.GridFunction(ng.H1(mesh, order=order, dim=3))
-    together.Set(ng.CF((ng.x, ng.y, ng.z)))  # setting all at once takes a quarter of the time
+    together.Set(ng.CF((ng.x, ng.y, ng.z)))  # one call takes a quarter of the time
     scalar = ng.H1(mesh, order=order)
     vectors = []
     for values in together.vec.FV().NumPy().reshape(-1, 3).T:

@@ -3,9 +3,10 @@
 The mesh is refined where the stress is high until three successive meshes agree: a small change and then a
 smaller one, since a single small change may be chance. The compared stress is recovered: polynomials of
 neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
-stress is unbounded and each refinement raises it by a quarter, so the analysis gives no value, with that
-reason. The search omits the regions near the ends, where the idealised clamp or load disturbs the field (de
-Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins there.
+stress is unbounded and each refinement raises it by a quarter, so the analysis gives no value, and names the
+corner as the reason. The search omits the regions near the ends, where the idealised clamp or load disturbs
+the field (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins
+there.
 """
 
 from __future__ import annotations
@@ -199,9 +200,7 @@ def recover(response: Response) -> Components:
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
     space = ng.H1(system.grid.mesh, order=system.order - 1)
     together = ng.GridFunction(ng.H1(system.grid.mesh, order=system.order - 1, dim=len(places)))
-    together.Set(
-        ng.CF(tuple(raw[place] for place in places))
-    )  # setting all at once takes a third of the time
+    together.Set(ng.CF(tuple(raw[place] for place in places)))  # one call takes a third of the time
     components = []
     for values in together.vec.FV().NumPy().reshape(-1, len(places)).T:
         component = ng.GridFunction(space)

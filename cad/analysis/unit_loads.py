@@ -3,10 +3,11 @@
 There are five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. The throw is held at one end
 face.
 
-`force_1`, `force_2` on the pin, along the throw (x) and across it (y), with the throw on its two mains as on
-    supports: the loaded end carries its share by the lever rule, so only the torque of force 2 reaches the
-    held end. `moment_1` a torque about z from the loaded end to the held one.
-    `moment_2`, `moment_3` bending moments about x and y, from end to end.
+`force_1`, `force_2`     act on the pin, along the throw (x) and across it (y), with the two mains as
+                         supports: the loaded end carries its share by the lever rule, so only the torque
+                         of force 2 reaches the held end
+`moment_1`               is a torque about z from the loaded end to the held one
+`moment_2`, `moment_3`   are bending moments about x and y, from end to end
 
 A force on the pin is spread over its whole plain cylinder, along z as cos². The real contact pressure of the
 rod differs and is not modelled: only its resultant matters at the fillets (de Saint-Venant). By linear

@@ -45,10 +45,7 @@ _DAMAGES = (
 )  # fmt: skip
 """What `zipfile` raises for bytes that are not ZIP, or no longer one."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-_DIRECTORY, _LARGE_DIRECTORY = (
-    b"PK\x05\x06",
-    b"PK\x06\x07",
-)  # the signatures of the end record in ordinary and in ZIP64 packages
+_DIRECTORY, _LARGE_DIRECTORY = b"PK\x05\x06", b"PK\x06\x07"  # end records of ZIP and of ZIP64
 
 
 def admitted(content: bytes) -> bytes:

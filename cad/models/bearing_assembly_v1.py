@@ -41,9 +41,11 @@ class BearingAssembly(CadModel):
     intersected pair by pair; the message about an interference names both parts and the volume that they
     share.
 
-    Limits ------ The shells have no groove, tang or relief (`plain_bearing` has them), and the housing is two
-    boxes without bolts (`bearing_housing` has them). The parts are not deformed: the tightened shell and its
-    contact pressure are not calculated.
+    Limits
+    ------
+    The shells have no groove, tang or relief (`plain_bearing` has them), and the housing is two boxes without
+    bolts (`bearing_housing` has them). The parts are not deformed: the tightened shell and its contact
+    pressure are not calculated.
 
     References
     ----------

@@ -24,9 +24,11 @@ class BearingHousing(CadModel):
 
     A diameter of 0 omits the bolt holes or the drilling.
 
-    Limits ------ The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels,
-    threads or tang notches. Default sizes are typical of engines and do not come from a standard. The bore
-    has its nominal size; give its tolerance with the parameter.
+    Limits
+    ------
+    The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels, threads or tang
+    notches. Default sizes are typical of engines and do not come from a standard. The bore has its nominal
+    size; give its tolerance with the parameter.
 
     References
     ----------

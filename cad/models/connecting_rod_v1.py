@@ -23,9 +23,11 @@ class ConnectingRod(CadModel):
 
     A width of 0 omits pockets or bolt holes. Mass and centre of mass are measured on the solids.
 
-    Limits ------ The part is for mating with shells and for its mass; it is not a forging: it has no fillets,
-    tapers, draft, bosses, oil holes, threads or tang notches. Default sizes are typical of engines and do not
-    come from a standard. Bores have their nominal sizes; give tolerances with the parameters.
+    Limits
+    ------
+    The part is for mating with shells and for its mass; it is not a forging: it has no fillets, tapers,
+    draft, bosses, oil holes, threads or tang notches. Default sizes are typical of engines and do not come
+    from a standard. Bores have their nominal sizes; give tolerances with the parameters.
 
     References
     ----------

@@ -52,8 +52,10 @@ class CrankThrow(CrankRules):
     pin are plain cylinders without grooves; edges other than at the fillets are sharp; a counterweight spans
     at most half a turn.
 
-    References ---------- Punewale, Khobragade, Chaudhari and Khandre 2015: effect of material on the inclined
-    web faces on stiffness.
+    References
+    ----------
+    Punewale, Khobragade, Chaudhari and Khandre 2015: effect of material on the inclined web faces on
+        stiffness.
     """
 
     example = {

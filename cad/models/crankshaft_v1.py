@@ -52,11 +52,13 @@ class Crankshaft(SplitParameters, EndParameters):
     The rotating couple, the integral of z (x + i y) over the mass, can be calculated from the measurements:
     mass centre_z centre_x - inertia_xz, and mass centre_z centre_y - inertia_yz.
 
-    Limits ------ There are at most 16 throws of one size, all split by the same angle of at least 1 deg; webs
-    are at least 2 % wider than journal and pin with their fillets. Journals, pins, nose and flange are plain
-    cylinders without grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans
-    at most half a turn. Two drillings that end in one journal must not meet, so drillings are refused if
-    neighbouring pins have nearly the same angle. The analysis `unit_loads` does not support split pins.
+    Limits
+    ------
+    There are at most 16 throws of one size, all split by the same angle of at least 1 deg; webs are at least
+    2 % wider than journal and pin with their fillets. Journals, pins, nose and flange are plain cylinders
+    without grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans at most
+    half a turn. Two drillings that end in one journal must not meet, so drillings are refused if neighbouring
+    pins have nearly the same angle. The analysis `unit_loads` does not support split pins.
 
     References
     ----------

@@ -36,13 +36,15 @@ class DeepGrooveBearing(BallRow):
     Dynamic and static capacity are the load ratings of ISO 281 and ISO 76 for the balls in the model. With
     the calculation factor they are inputs of `rolling_bearing_life`.
 
-    Limits ------ The standard leaves the internal geometry to the maker. The default size and number of balls
-    are common proportions; give the maker's values to get the maker's capacities, from which the defaults
-    differ by up to a tenth. There are no seals, shields or snap rings, and no clearance between balls and
-    grooves. Chamfers are proportional, not those of ISO 582. The tables of sizes and factors were compiled
-    without access to the standards. The factors agree with their theory, and with makers' ratings of 16
-    bearings within 1 %. Of the sizes of series 618, only 61800 and 61801 were compared with a maker's
-    catalogue. Compare the sizes with your edition of the standard before you order.
+    Limits
+    ------
+    The standard leaves the internal geometry to the maker. The default size and number of balls are common
+    proportions; give the maker's values to get the maker's capacities, from which the defaults differ by up
+    to a tenth. There are no seals, shields or snap rings, and no clearance between balls and grooves.
+    Chamfers are proportional, not those of ISO 582. The tables of sizes and factors were compiled without
+    access to the standards. The factors agree with their theory, and with makers' ratings of 16 bearings
+    within 1 %. Of the sizes of series 618, only 61800 and 61801 were compared with a maker's catalogue.
+    Compare the sizes with your edition of the standard before you order.
 
     References
     ----------
@@ -65,15 +67,16 @@ class DeepGrooveBearing(BallRow):
 
     designation: str = choice(*SIZES, words="designation")
 
-    @derived("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bore", "shaft diameter"))
+    @derived("mm", "inner diameter", symbol="d", ge=1, le=2000, source="ISO 15",
+             also=("bore", "shaft diameter"))  # fmt: skip
     def d(self) -> Array:
         return bore_by_designation(self.designation)
 
-    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000)
+    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000, source="ISO 15")
     def D(self) -> Array:
         return outside_by_designation(self.designation)
 
-    @derived("mm", "width", symbol="B", ge=0.1, le=2000, also=("bearing width",))
+    @derived("mm", "width", symbol="B", ge=0.1, le=2000, also=("bearing width",), source="ISO 15")
     def B(self) -> Array:
         return width_by_designation(self.designation)
 

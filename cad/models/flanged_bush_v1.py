@@ -83,10 +83,11 @@ class FlangedBush(CadModel):
 
     The bore is the finished bore after pressing in; it must already include the clearance.
 
-    Limits ------ The default proportions are close to ISO 4379, form F (flange about one wall wide and one
-    wall thick). The table of the standard is not included, so give its dimensions if you need them. The model
-    omits the undercut beneath the flange, the chamfers of the flange, and the seam of a wrapped bush of ISO
-    3547.
+    Limits
+    ------
+    The default proportions are close to ISO 4379, form F (flange about one wall wide and one wall thick). The
+    table of the standard is not included, so give its dimensions if you need them. The model omits the
+    undercut beneath the flange, the chamfers of the flange, and the seam of a wrapped bush of ISO 3547.
 
     References
     ----------

@@ -73,9 +73,11 @@ class PlainBearing(ShellRules):
 
     A size of 0 omits a lining, tang, relief, hole, flange, chamfer or groove.
 
-    Limits ------ The features of a shell and their names are those of ISO 3548-1, which gives no sizes for
-    most of them. Default sizes are typical of engines and do not come from a standard: the free spread is 1 %
-    of the bore; Cummins' manual states about 0.64 mm. The wall has a constant thickness (no eccentric bore).
+    Limits
+    ------
+    The features of a shell and their names are those of ISO 3548-1, which gives no sizes for most of them.
+    Default sizes are typical of engines and do not come from a standard: the free spread is 1 % of the bore;
+    Cummins' manual states about 0.64 mm. The wall has a constant thickness (no eccentric bore).
 
     The curvature of a free shell changes uniformly: the model neglects that grooves and flanges change the
     local stiffness, the contact pressure of the seat, and the loss of spread in a hot engine. In the file of

@@ -161,10 +161,11 @@ class ThrustWasher(CadModel):
     joint. The locating lug is at the crown +y and as thick as the washer; the hole for a pin is between two
     grooves of a full ring. A number or size of 0 omits the grooves, the lug or the hole.
 
-    Limits ------ The washer is one solid of copper alloy; a steel back and chamfers are not drawn. The
-    default proportions are typical of makers (outer diameter 1.6 times, thickness 8 % of the inner diameter)
-    and do not come from a standard. A full ring has the features of ISO 6525, a half washer those of ISO
-    6526.
+    Limits
+    ------
+    The washer is one solid of copper alloy; a steel back and chamfers are not drawn. The default proportions
+    are typical of makers (outer diameter 1.6 times, thickness 8 % of the inner diameter) and do not come from
+    a standard. A full ring has the features of ISO 6525, a half washer those of ISO 6526.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Build a half shell or a full bush of steel with its lining, about z with the crown at +y; its volumes."""
+"""Build a half shell or a full bush of steel with its lining, with the crown at +y; compute its volumes."""
 
 from __future__ import annotations
 
@@ -181,7 +181,10 @@ class HalfShell:
 
     def _lip(self, tang: Tang) -> Shape:
         """Return the box of the locating lip, which starts inside the back."""
-        foot = sqrt(self.outside**2 - tang.length**2) - 0.1 * (self.outside - self.lining)
+        edge = sqrt(self.outside**2 - tang.length**2)
+        foot = edge - 0.1 * (self.outside - self.lining)
+        if self.groove and self.groove.bottom >= foot:
+            foot = (edge + self.groove.bottom) / 2  # the lip never fills the groove below it
         lip = Solid.makeBox(
             self.outside + tang.height - foot, tang.length + self.crush, tang.width,
             Vector(foot, -self.crush, tang.z - tang.width / 2),

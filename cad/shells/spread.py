@@ -38,9 +38,10 @@ def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
     width
         W, the width over the joints [m].
 
-    Notes ----- W decreases with the angle up to a quarter turn and is concave, so Newton's method converges
-    monotonically from there. If no angle between 0.5 rad and a quarter turn fits, the result is one of these
-    limits.
+    Notes
+    -----
+    W decreases with the angle up to a quarter turn and is concave, so Newton's method converges monotonically
+    from there. If no angle between 0.5 rad and a quarter turn fits, the result is one of these limits.
     """
     angle = np.full(np.broadcast_shapes(*map(np.shape, (length, wall, crush, width))), pi / 2)
     for _ in range(_STEPS):
