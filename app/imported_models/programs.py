@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 from app.imported_models.assemblies import AssemblyFiles
@@ -76,9 +77,8 @@ class FreeCadDrawing:
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the solids that FreeCAD draws; see `Drawing.draw`."""
         given = [given_to_freecad(one, values[one.name]) for one in _changed(described, values)]
-        return self.warm.ask(
-            described.file, lambda: self._store.read(described.file), "draw", given, cancelled
-        ).drawn
+        content = partial(self._store.read, described.file)
+        return self.warm.ask(described.file, content, "draw", given, cancelled, ends=described.ends).drawn
 
 
 def _changed(described: Description, values: Values) -> list[Parameter]:

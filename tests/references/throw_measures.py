@@ -52,7 +52,7 @@ def throws_measured(
     """
     bodies = read_step(step)
     if len(bodies) != 1:
-        raise GeometryError("not_one_solid", f"a shaft is one solid; this file has {len(bodies)}")
+        raise GeometryError("not_one_solid", f"a shaft must be one solid; the file has {len(bodies)}")
     pieces = cut(bodies[0], planes)
     measured = [_measured(piece, density * 1e-9) for piece in pieces]
     whole, total = measure(bodies[0]).volume * density * 1e-9, sum(one.mass for one in measured)
