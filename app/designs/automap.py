@@ -1,4 +1,4 @@
-"""Propose relations for unset model parameters; each proposal links one to a value of the design.
+"""Propose relations for unset model parameters; each links a parameter to a value of the design.
 
 A proposal is applied only if the user accepts it. A value fits by three tests:
 
@@ -7,6 +7,10 @@ A proposal is applied only if the user accepts it. A value fits by three tests:
 - the *role*: a name of general words only, such as `bore` or `width`, does not identify a part; the bore
 of an engine is the bore of its cylinder. So a value with such a name fits only if it has exactly the name
 of the parameter and the ids of template and model share a word.
+
+A parameter whose default comes from a standard's table, such as the width of a bearing by its designation,
+has its value already. Values of other models are proposed where no step has one: outputs, and parameters that
+are set and do not depend on the target's model.
 """
 
 from __future__ import annotations
@@ -16,7 +20,7 @@ from collections.abc import Iterator
 from app.designs.network import Block, Graph
 from app.designs.schemas.designs import Proposal
 from app.reference import Reference
-from templates.core.language.spec import Choice, Curve, Profile, Table, Text
+from templates.core.language.spec import Choice, Curve, Derived, Profile, Table, Text
 from templates.core.units.conformity import misfit
 from templates.core.units.units import unit
 
@@ -37,7 +41,7 @@ def proposals(graph: Graph) -> list[Proposal]:
 
 def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
     declared = model.cls.inputs[name]
-    if name in model.cells or isinstance(declared, Choice):
+    if name in model.cells or isinstance(declared, Choice) or _is_from_a_table(declared):
         return None
     for called in (name, *declared.meaning.also):
         fitting = [
@@ -61,14 +65,44 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
 
 def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
     """Yield the values with this name: outputs and inputs of steps first, then parameters of the design."""
-    steps = [block for block in graph.blocks.values() if not block.is_model]
     fitting = [
-        step for step in steps if _tells_its_part(called) or (called == name and _share_a_role(step, model))
+        block
+        for block in graph.blocks.values()
+        if not block.is_model
+        and (_tells_its_part(called) or (called == name and _share_a_role(block, model)))
     ]
     yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.formulas)
     yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.inputs)
     if called in graph.parameters and (_tells_its_part(called) or called == name):
         yield Reference(called)
+    if _tells_its_part(called):
+        yield from _of_models(graph, model, called)
+
+
+def _of_models(graph: Graph, model: Block, called: str) -> Iterator[Reference]:
+    """Yield values with a name of models before it in the alphabet: outputs, and parameters that are set."""
+    for _, other in sorted(graph.blocks.items()):
+        if other is model:
+            return  # one direction alone never forms a loop
+        if other.is_model and (called in other.cls.formulas or called in other.cells):
+            if not _depends(graph, other.name, model.name):
+                yield Reference(other.name, None, called)
+
+
+def _depends(graph: Graph, name: str, on: str) -> bool:
+    """Return whether a block or parameter depends on a block, directly or through others."""
+    waiting, seen = [name], set[str]()
+    while waiting:
+        one = waiting.pop()
+        seen.add(one)
+        cells = graph.blocks[one].cells.values() if one in graph.blocks else [graph.parameters[one]]
+        waiting += [used.block for cell in cells for used in cell.uses.values() if used.block not in seen]
+    return on in seen
+
+
+def _is_from_a_table(declared: object) -> bool:
+    """Return whether the default of a parameter comes from a published table."""
+    return isinstance(declared, Derived) and bool(declared.meaning.source)
 
 
 def _tells_its_part(called: str) -> bool:

@@ -67,15 +67,16 @@ class DeepGrooveBearing(BallRow):
 
     designation: str = choice(*SIZES, words="designation")
 
-    @derived("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bore", "shaft diameter"))
+    @derived("mm", "inner diameter", symbol="d", ge=1, le=2000, source="ISO 15",
+             also=("bore", "shaft diameter"))  # fmt: skip
     def d(self) -> Array:
         return bore_by_designation(self.designation)
 
-    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000)
+    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000, source="ISO 15")
     def D(self) -> Array:
         return outside_by_designation(self.designation)
 
-    @derived("mm", "width", symbol="B", ge=0.1, le=2000, also=("bearing width",))
+    @derived("mm", "width", symbol="B", ge=0.1, le=2000, also=("bearing width",), source="ISO 15")
     def B(self) -> Array:
         return width_by_designation(self.designation)
 

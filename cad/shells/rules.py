@@ -164,6 +164,17 @@ class ShellRules(ShellParameters):
         clear = (abs(low - self.w_g / 2) >= off) & (abs(high - self.w_g / 2) >= off)
         return (self.w_t <= 0) | (self.t_g <= 0) | clear
 
+    @require("oil_groove_depth", "tang_length", "tang_width", "oil_groove_width", "oil_groove_angle", "wall",
+             remedy="make the groove shallower or narrower, or the tang shorter")  # fmt: skip
+    def tang_has_a_root_beside_the_groove(self) -> Truth:
+        """Where a groove runs below the tang, 5 % of the steel is left between its bottom and the tang."""
+        R, bottom = self.D / 2, self.d / 2 + self.t_g
+        root = np.sqrt(np.maximum(R**2 - self.l_t**2, 0 * R**2))
+        beside = self.B / 4 - self.w_t / 2 >= self.w_g / 2
+        above = self.d / 2 * np.sin((np.pi - self.phi_g) / 2) >= self.l_t
+        none = (self.w_t <= 0) | (self.t_g <= 0) | beside | above
+        return none | (bottom + 0.05 * self.t_s <= root)
+
     @require("tang_height", "wall", remedy="make the tang lower")
     def tang_is_low(self) -> Truth:
         """The height of the tang is at most the thickness of the wall."""

@@ -34,6 +34,28 @@ def refused(**given: str) -> dict[str, str]:
     return {name: fault.detail for fault in caught.value.faults for name in fault.names}
 
 
+def test_property_a_groove_below_a_tang_is_refused_early_or_drawn() -> None:
+    """A groove that came through the root of the tang was filled by it again, and its volume was wrong."""
+    rng, drawn = np.random.default_rng(seeded(379)), 0
+    for _ in range(25):
+        given = {
+            "oil_groove_width": f"{rng.uniform(10, 16):.6g} mm",
+            "oil_groove_depth": f"{rng.uniform(0.9, 1.9):.6g} mm",
+            "tang_length": f"{rng.uniform(2, 7):.6g} mm",
+            "shells": "upper",
+        }
+        try:
+            texts = as_text(CLS.from_quantities({**BARE, "tang_width": "3 mm", **given}))
+        except InvalidInputs:
+            continue
+        assert regenerate_class(CLS, texts).step
+        drawn += 1
+    assert 5 < drawn < 25
+    deep = {**BARE, "oil_groove_width": "14 mm", "oil_groove_depth": "1.9 mm", "tang_width": "4 mm"}
+    message = refused(**{**deep, "tang_length": "5 mm", "shells": "upper"})["oil_groove_depth"]
+    assert "Where a groove runs below the tang" in message
+
+
 @pytest.mark.parametrize("wall", [2.4, 30.0])
 @pytest.mark.parametrize("lining", ["0 mm", "0.6 mm"])
 def test_analytic_a_bare_bush_is_a_ring(wall: float, lining: str) -> None:

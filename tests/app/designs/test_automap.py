@@ -29,10 +29,35 @@ def step(http, id, version=1):
 
 def test_the_papers_bearing_is_tied_to_its_film(http):
     document = {**PAPER, "name": "to map", "model": {"id": "ball_bearing", "version": 1}}
-    assert proposed(http, document) == {
-        "model.inner_diameter": "= film.bearing_diameter",
-        "model.width": "= film.bearing_width",
+    assert proposed(http, document) == {"model.inner_diameter": "= film.bearing_diameter"}
+
+
+def test_the_table_of_a_standard_is_not_overruled(http):
+    document = {**PAPER, "name": "6210", "model": {"id": "deep_groove_bearing", "version": 1,
+                "parameters": {"designation": "6210"}}}  # fmt: skip
+    assert (
+        not {"model.inner_diameter", "model.outer_diameter", "model.width"} & proposed(http, document).keys()
+    )
+
+
+def test_a_model_takes_the_value_of_an_earlier_one_but_never_in_a_loop(http):
+    document = {
+        "name": "rod and shaft",
+        "models": {
+            "crank": {
+                "id": "crank_throw",
+                "parameters": {"journal_diameter": "50 mm", "pin_length": "30 mm"},
+            },
+            "shaft": {"id": "crankshaft", "parameters": {"pin_angles": {"value": [0, 180], "unit": "deg"}}},
+        },
     }
+    relations = proposed(http, document)
+    assert relations["shaft.pin_length"] == "= crank.pin_length"
+    assert relations["shaft.journal_diameter"] == "= crank.journal_diameter"
+    assert "shaft.web_width" not in relations  # the throw's is not set
+    assert not [target for target in relations if target.startswith("crank.")]
+    document["models"]["crank"]["parameters"]["fillet"] = "= shaft.fillet"
+    assert not [target for target in proposed(http, document) if target.startswith("shaft.")]
 
 
 @pytest.mark.parametrize("engine", ["flywheel", "bearing_load"])
