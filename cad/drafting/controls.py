@@ -100,7 +100,8 @@ class Controls:
         x, y = self._place(target, lambda x, y: (x - _ROUND, y - _ROUND, x + _ROUND, y + _ROUND), 0.0)
         size = dist((x, y), target)
         foot = x + (target[0] - x) * _ROUND / size, y + (target[1] - y) * _ROUND / size
-        self.page.symbol(Symbol(lines=[[target, foot]], circles=[((x, y), _ROUND), (target, 0.5)]))
+        drawn = Symbol(lines=[[target, foot]], circles=[((x, y), _ROUND), (target, 0.5)])
+        self.page.symbol(drawn, "DIMENSIONS")
         self.page.write(number, x - width_of(number, TEXT) / 2, y - TEXT / 2, TEXT)
         self.room.add_line([target, foot], is_drawn=True)
 

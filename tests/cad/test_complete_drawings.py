@@ -3,8 +3,8 @@
 import io
 from dataclasses import replace
 
-import ezdxf
 import pytest
+from ezdxf.filemanagement import read
 from slow_models import DRAWN, quick_for
 
 from benchmarks.drawing_completeness import faults
@@ -97,7 +97,7 @@ def test_each_part_has_a_complete_sheet_and_the_first_sheet_lists_them(model: ty
 
 
 def words_of(dxf: bytes) -> set[str]:
-    space = ezdxf.read(io.StringIO(dxf.decode())).modelspace()
+    space = read(io.StringIO(dxf.decode())).modelspace()
     return {text.dxf.text for text in space.query("TEXT")}
 
 
