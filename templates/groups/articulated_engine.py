@@ -87,7 +87,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def wall(self) -> Array:
-        """Return the wall force of each piston [N], including the reaction of articulated rods on their master."""
+        """Return the wall force of each piston [N], with the reaction of articulated rods on their master."""
         return walls_with_articulated(self.own_wall, self.motion, self.links)
 
     @shared
