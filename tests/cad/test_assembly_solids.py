@@ -1,4 +1,4 @@
-"""Fixed parts beside a model, without the service: clearances and interferences by a second method."""
+"""Clearances and interferences of fixed parts agree with a second method, without the service."""
 
 import hashlib
 from math import hypot, pi

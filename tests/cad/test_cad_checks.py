@@ -1,4 +1,4 @@
-"""Wrong solids that the kernel calls valid are refused: each check, with a wrong shape."""
+"""The checks refuse wrong solids that the kernel calls valid, one wrong shape for each check."""
 
 from collections.abc import Callable
 from dataclasses import replace

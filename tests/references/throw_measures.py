@@ -1,4 +1,4 @@
-"""Measures of a shaft of many throws: its rotating couple, and its throws apart, cut at mid-mains.
+"""Measures a shaft of several throws: its rotating couple, and each throw cut out at mid-mains.
 
 Mass moments are complex, x + i y. The unbalance of a throw is ∫ (x + i y) dm, its couple ∫ z (x + i y) dm
 about z = 0: over ω² the force and the couple with which it shakes its bearings. Both are additive, as is the

@@ -1,4 +1,4 @@
-"""Verdicts against hand calculations: each of the four, edges, arrays, curves, expressions, temperatures."""
+"""Verdicts agree with hand calculations: each verdict, edges, arrays, curves, expressions, temperatures."""
 
 import math
 
