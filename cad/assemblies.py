@@ -9,7 +9,7 @@ This module imports the kernel only when it builds a shape.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from cad.catalogue import models
 from cad.errors import GeometryError, UnreadableStep
 from cad.imported_models import Description, ImportedModel, Parameter, attribute_of, parts_of_step
-from cad.model import BETWEEN, Box, CadModel, Dimension, Part, names_at
+from cad.model import BETWEEN, Box, CadModel, Dimension, Part
 from cad.shaft import STEEL_DENSITY
 from templates.core.errors import listed, plain
 from templates.core.nearest import nearest
@@ -33,8 +33,8 @@ MOST_SOLIDS = 300
 FARTHEST = 1e5
 """A fixed part stands within this distance of its datum, along each axis [mm]."""
 SHIFTS, TURNS = ("x", "y", "z"), ("turn_x", "turn_y", "turn_z")
-_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
-_WITHIN = ":"  # between the name of a fixed part and that of one of its solids
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
+_WITHIN = ":"  # separates the name of a fixed part from that of one of its solids
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Component:
     may_overlap: tuple[str, ...] = ()  # names of parts and components
     density: float = STEEL_DENSITY  # [kg/m³]
     material: str = ""
-    holds: tuple[str, ...] = ()  # ids of the models that it is made of
+    holds: tuple[str, ...] = ()  # ids of the models from which it is built
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
         """Return the position of the part as parameters of the assembly, with default values."""
@@ -81,7 +81,7 @@ class AssemblyDescription(Description):
         names = ", ".join(one.name for one in self.components)
         own = f"{self.base[0]} is checked as ever. " if self.base else ""
         return (
-            f"lower: {own}Fixed parts ({names}) have the shape of their STEP files, without a formula for "
+            f"lower: {own}Fixed parts ({names}) are the solids of their STEP files, without a formula for "
             "their volume. Their places, clearances and interferences are measured on the finished file"
         )
 
@@ -135,6 +135,10 @@ class AssemblyModel(ImportedModel):
         }
         return {name: unit for name, unit in measures.items() if name not in {*cls.inputs, *cls.formulas}}
 
+    def known_overlaps(self) -> Collection[frozenset[str]] | None:
+        """Return the pairs of solids of the base model that may overlap; None if all may."""
+        return CadModel.known_overlaps(self)
+
     def may_overlap(self, one: str, other: str) -> bool:
         """Return whether the description allows two of its solids to overlap."""
         return self._allows(one, other) or self._allows(other, one)
@@ -158,7 +162,7 @@ class AssemblyModel(ImportedModel):
         component = next((c for c in self.imported.components if c.name == name), None)
         if component is None:
             return False
-        parts = (part.name for part in self.build() if other in names_at(part.name, len(part.places)))
+        parts = (part.name for part in self.build() if other in part.names)
         return not {other, self.component_of(other), *parts}.isdisjoint(component.may_overlap)
 
     def _require_known(self, parts: Sequence[Part]) -> None:
@@ -174,28 +178,28 @@ class AssemblyModel(ImportedModel):
         wanted = {name: one.name for one in self.imported.components for name in one.may_overlap}
         known = dict.fromkeys(one.name for one in self.imported.components)
         for part in parts:
-            known |= dict.fromkeys((part.name, *names_at(part.name, len(part.places))))
+            known |= dict.fromkeys((part.name, *part.names))
         if not (unknown := wanted.keys() - known.keys()):
             return
         if self.imported.base:
             cls = base_of(self.imported.base)
             for part in cls.from_quantities(cls.example).build():
-                unknown -= {part.name, *names_at(part.name, len(part.places))}
+                unknown -= {part.name, *part.names}
         if not unknown:
             return
         name = min(unknown)
         near = nearest(name, list(known))
         meant = f"Did you mean {', '.join(near)}? " if near else ""
         there = listed([part.name for part in parts])
-        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
-        raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
+        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is not a part"
+        raise GeometryError("may_overlap", f"{wrong}. {meant}The parts are {there}")
 
     def _built(self) -> Iterator[Part]:
         from cad.placement import frame_of
 
         drawn = vars(self).get(_DRAWN)
         if drawn is None:
-            raise GeometryError("kernel", f"{self.id} has not been given its fixed parts", self.inputs)
+            raise GeometryError("kernel", f"{self.id} needs its fixed parts before it is built", self.inputs)
         there = dict[str, Part]()
         if self.imported.base:
             for part in super(ImportedModel, self).build():
@@ -215,7 +219,7 @@ class AssemblyModel(ImportedModel):
             for number, part in enumerate(parts):
                 placed = replace(part, places=tuple(at * place for place in part.places))
                 there[part.name] = placed
-                if number == 0:  # a datum may name the component
+                if number == 0:  # a datum may refer to the whole component
                     there[component.name] = placed
                 yield placed
 
@@ -238,13 +242,19 @@ def _solids_of(component: Component, step: bytes) -> list[Part]:
     """Return the solids of a fixed part: a single one under its name, several under separate names."""
     try:
         parts = list(parts_of_step(step))
-    except UnreadableStep as error:
+    except (UnreadableStep, GeometryError) as error:
         raise GeometryError("no_solid", f"{component.name} ({component.origin}): {error}") from None
-    if not parts:
-        raise GeometryError("no_solid", f"{component.name} ({component.origin}) has no solid")
-    names = [component.name if len(parts) == 1 else f"{component.name}{_WITHIN}{one.name}" for one in parts]
     made_of = {"density": component.density, "material": component.material}
-    return [replace(one, name=name, **made_of) for name, one in zip(names, parts, strict=True)]  # type: ignore[arg-type]
+    is_single = len(parts) == 1 and len(parts[0].places) == 1
+    return [
+        replace(
+            one,
+            name=component.name if len(parts) == 1 else f"{component.name}{_WITHIN}{one.name}",
+            called=() if is_single else tuple(f"{component.name}{_WITHIN}{name}" for name in one.called),
+            **made_of,  # type: ignore[arg-type]
+        )
+        for one in parts
+    ]
 
 
 def base_of(base: tuple[str, int]) -> type[CadModel]:

@@ -32,7 +32,7 @@ STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 """Of deflections, within a decade."""
 
 _AT, _OF, _UNIT = "@", "#", "mm"
-_SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
+_SAME = 1e-9  # relative; so 0.1 mm and 100 um are the same step
 
 
 def with_deflection(kind: str, raw: str) -> str:

@@ -63,8 +63,14 @@ def material_named(name: str, density: float) -> str:
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
-def names_at(name: str, places: int) -> tuple[str, ...]:
-    """Return the name of a part at each of its positions; the plain name if there is only one position."""
+def names_at(name: str, places: int, called: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return the name of a part at each of its positions.
+
+    These are the names of the positions, if they have their own (`called`); otherwise the name of the part,
+    with a number if there are several positions.
+    """
+    if called:
+        return called
     return (name,) if places == 1 else tuple(f"{name}_{i}" for i in range(1, places + 1))
 
 
@@ -86,8 +92,9 @@ class Part:
     density: float = STEEL_DENSITY  # [kg/m³]
     places: tuple[Location, ...] = field(default_factory=_at_origin)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
-    shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
-    material: str = ""  # its name, such as "CuSn8"; steel, if it does not say and has the density of steel
+    shaped_by: tuple[str, ...] = ()  # parameters to name if the part fails; all parameters if empty
+    material: str = ""  # name such as "CuSn8"; steel if empty and the density is that of steel
+    called: tuple[str, ...] = ()  # names at its positions, if each position has its own name
 
     @property
     def solid(self) -> Shape:
@@ -100,7 +107,7 @@ class Part:
         """
         solids = self.shape.Solids()
         if len(solids) != 1:
-            detail = f"{self.name} should be one solid; it is {len(solids)}"
+            detail = f"{self.name} must be one solid, not {len(solids)}"
             raise GeometryError("not_one_solid", detail, self.shaped_by)
         return solids[0]
 
@@ -112,7 +119,7 @@ class Part:
     @property
     def names(self) -> tuple[str, ...]:
         """Return the name of the part at each of its positions, such as `ball_1` and `ball_2`."""
-        return names_at(self.name, len(self.places))
+        return names_at(self.name, len(self.places), self.called)
 
 
 @dataclass(frozen=True)
@@ -143,6 +150,10 @@ class CadModel(TolerancedTemplate):
     keeps_apart: ClassVar[bool] = False
     """Whether its parts are mated as in a machine, so that no two may overlap."""
 
+    rewriting: ClassVar[float] = 0.0
+    """By how much the box of the file may differ from that of the parts, relative to its diagonal: solids of
+    other kernels change when they are written again."""
+
     def build(self) -> tuple[Part, ...]:
         """Return the parts, built from the parameters alone."""
         raise NotImplementedError
@@ -162,6 +173,10 @@ class CadModel(TolerancedTemplate):
     def further_measures(cls) -> Mapping[str, str]:
         """Return additional measures with their units, such as `seal_clearance` of a seal in an assembly."""
         return {}
+
+    def known_overlaps(self) -> Collection[frozenset[str]] | None:
+        """Return the pairs of its own solids that may overlap; None if all may."""
+        return () if self.keeps_apart else None
 
     def may_overlap(self, one: str, other: str) -> bool:
         """Return whether two solids may overlap; at least one of them belongs to a fixed part."""
@@ -227,7 +242,7 @@ def arrays_of_points(model: CadModel) -> list[Fault]:
         takes_list = isinstance(declared, Curve)
         if np.ndim(values.get(declared.attribute, 0.0)) > int(takes_list):
             wanted = "one list of numbers" if takes_list else "a single value, not an array"
-            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}"))
+            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words} must be {wanted}"))
     return faults
 
 

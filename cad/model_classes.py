@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import Any
 
 from cad.assemblies import assembly_of
-from cad.imported_models import Description, ImportedModel, Parameter, attribute_of
+from cad.imported_models import NOTHING, Description, Ends, ImportedModel, Parameter, attribute_of
 from templates.core.catalogue.modules import IMPORTED
 from templates.core.language.declare import given
 from templates.core.paper.mathml import named_symbol
@@ -23,9 +23,21 @@ def description_of(text: str) -> Description:
     """Return the description parsed from the text of `Description.text`."""
     read = json.loads(text)
     read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
+    if "ends" in read:
+        read["ends"] = Ends.of(read["ends"])
+    if "overlapping" in read:
+        read["overlapping"] = tuple((str(one), str(other)) for one, other in read["overlapping"])
+    read["findings"] = tuple(read.get("findings", ()))
     if read["program"] == "assembly":
         return assembly_of(read)
     return Description(**read)
+
+
+def _words(one: Parameter) -> str:
+    """Return the words of a parameter, with what a trial at the import showed of a number without a unit."""
+    if one.moves == NOTHING:
+        return f"{one.words} (moves nothing)"
+    return f"{one.words} ({one.role} in mm)" if one.role and one.unit == "1" else one.words
 
 
 class ImportedClass(type):
@@ -39,7 +51,7 @@ def class_of(text: str, id: str, version: int) -> type[ImportedModel]:
     declared = {
         attribute_of(one.name): given(
             one.unit,
-            one.words,
+            _words(one),
             name=one.name,
             symbol=named_symbol(one.name),
             default={"value": one.value, "unit": one.unit},

@@ -21,19 +21,18 @@ from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_State
 
 from cad.errors import GeometryError
-from cad.model import names_at
 from cad.step import Body
 
 MOST_CLEARANCES = 200
 """Pairs of parts of which the distance is measured, those with the closest boxes first."""
 MOST_MEETING = 2000
 """Pairs of solids with boxes that meet: two plain ones take 10 ms, two filleted bolts 250 ms."""
-_SHOWN_EVERY = 0.1  # [s]; a pair may take less than that
-_MOST_NAMED = 3  # of the fixed parts with the most pairs
+_SHOWN_EVERY = 0.1  # [s] between progress reports; a pair may take less
+_MOST_NAMED = 3  # number of fixed parts with the most pairs that are named
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap
 _OFF = 1e-3  # [mm]; a corner that is closer to a face lies on it
-_MOST_CORNERS = 500  # of a part that are tried
-_SPECK = 1e-6  # [mm³]; touching faces have less in common
+_MOST_CORNERS = 500  # largest number of a part's corners that are tried
+_SPECK = 1e-6  # [mm³]; touching faces share less volume
 
 
 @dataclass(frozen=True)
@@ -50,13 +49,30 @@ class Overlap:
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
     """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap."""
-    standing = [(body.name, body.shape.moved(place)) for body in bodies for place in body.places]
-    for (one, shape), (other, beside) in combinations(standing, 2):
+    for (one, shape), (other, beside) in _meeting(bodies):
         properties = GProp_GProps()
         common = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped).Shape()
         BRepGProp.VolumeProperties_s(common, properties)
         if properties.Mass() > _SPECK:
             yield Overlap(one, other, properties.Mass())
+
+
+def count_meeting(bodies: Sequence[Body]) -> int:
+    """Return the number of pairs of bodies whose boxes meet, which `overlaps` compares."""
+    return sum(1 for _ in _meeting(bodies))
+
+
+def _meeting(bodies: Sequence[Body]) -> Iterator[tuple[tuple[str, Shape], tuple[str, Shape]]]:
+    """Yield each pair of bodies, by name and shape at a position, whose boxes meet."""
+    standing = [
+        (name, body.shape.moved(place))
+        for body in bodies
+        for name, place in zip(body.names, body.places, strict=True)
+    ]
+    boxes = [_box(shape) for _, shape in standing]
+    for i, j in combinations(range(len(standing)), 2):
+        if not boxes[i].IsOut(boxes[j]):
+            yield standing[i], standing[j]
 
 
 @dataclass(frozen=True)
@@ -149,7 +165,7 @@ def _standing(bodies: Sequence[Body], group: Group) -> list[_PlacedSolid]:
     return [
         _PlacedSolid(name, group(body.name), body.shape.moved(place))
         for body in bodies
-        for name, place in zip(names_at(body.name, len(body.places)), body.places, strict=True)
+        for name, place in zip(body.names, body.places, strict=True)
     ]
 
 

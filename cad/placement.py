@@ -7,8 +7,8 @@ A datum is `origin`, the axes of the assembly, or a part and a place on it, such
 - `axis_1`, `axis_2`, …: the axes of the part's cylinders, in ascending order of x, then y, then z of their
   point nearest to the middle of the box; that point is the origin, and z points along the axis.
 
-The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; if
-several are, the first.
+The x axis of a datum is the axis of the assembly that is most nearly perpendicular to the datum's z axis; of
+several equally near axes, the first.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from cad.surfaces import AXES, X, Y, Z, look
 ORIGIN = "origin"
 _SIDE = re.compile(r"(low|high)_([xyz])")
 _AXIS = re.compile(r"axis_([1-9][0-9]{0,3})")
-_DIGITS = 6  # [mm], to which points of axes are compared
+_DIGITS = 6  # decimals [mm] to which points of axes are compared
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,9 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     part_name, _, place = datum.rpartition(".")
     part = parts.get(part_name)
     if part is None:
-        raise _no_datum(name, f"there is no part {part_name!r} before it; there are {', '.join(parts)}")
+        raise _no_datum(
+            name, f"no earlier part is named {part_name!r}; the earlier parts are {', '.join(parts)}"
+        )
     box = box_of([part.solid.moved(part.places[0])])
     middle = Vector(*((low + high) / 2 for low, high in zip(box.low, box.high, strict=True)))
     if place == "centre":

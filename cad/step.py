@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,7 +28,7 @@ from OCP.XSControl import XSControl_WorkSession
 
 from cad.errors import UnreadableStep
 from cad.header import Header
-from cad.model import STEEL, Colour, Part
+from cad.model import STEEL, Colour, Part, names_at
 from cad.on_demand import once_loaded
 from cad.pmi import Annotations, Product, annotate
 from cad.properties import properties_of
@@ -36,8 +37,8 @@ from templates.core.arrays import Array
 
 
 def _set_up() -> None:
-    STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
-    Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
+    STEPCAFControl_Controller.Init_s()  # the writer's settings exist only after this call
+    Message.DefaultMessenger_s().ChangePrinters().Clear()  # errors are raised, not printed
 
 
 once_loaded(_set_up)
@@ -51,6 +52,12 @@ class Body:
     shape: Shape
     colour: Colour
     places: tuple[Location, ...]
+    called: tuple[str, ...] = ()  # at its positions, where these have their own names
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Return the name of the body at each of its positions, as `cad.model.Part` does."""
+        return names_at(self.name, len(self.places), self.called)
 
 
 def write_step(
@@ -101,7 +108,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise UnreadableStep("this is not a STEP file")
     if not reader.Transfer(document):
-        raise UnreadableStep("this STEP file holds no shape")
+        raise UnreadableStep("this STEP file contains no shape")
     return tuple(_bodies(document))
 
 
@@ -152,7 +159,7 @@ def _placed(solid: Shape, place: Location) -> Shape:
 
 
 def _named(label: TDF_Label, name: str) -> TDF_Label:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # as UTF-8
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # stores the name in UTF-8
     return label
 
 
@@ -163,25 +170,45 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
     shapes.GetFreeShapes(roots)
     names: dict[Shape, str] = {}
     places: dict[Shape, list[Location]] = {}
+    called: dict[Shape, list[str]] = {}
     for root in roots:
-        for label, place in _instances(root, TopLoc_Location()):
+        for label, place, instance in _instances(root, TopLoc_Location(), ""):
             shape = Shape.cast(XCAFDoc_ShapeTool.GetShape_s(label))
             names[shape] = _name(label)
             places.setdefault(shape, []).append(Location(place))
+            called.setdefault(shape, []).append(instance)
     for shape, name in names.items():
-        yield Body(name, shape, _colour(colours, shape), tuple(places[shape]))
+        yield Body(
+            name, shape, _colour(colours, shape), tuple(places[shape]), _own_names(name, called[shape])
+        )
 
 
-def _instances(label: TDF_Label, place: TopLoc_Location) -> Iterator[tuple[TDF_Label, TopLoc_Location]]:
-    """Yield the products below a label that are not assemblies, once for each use."""
+def _instances(
+    label: TDF_Label, place: TopLoc_Location, name: str
+) -> Iterator[tuple[TDF_Label, TopLoc_Location, str]]:
+    """Yield the products below a label that are not assemblies, with position and name, once for each use."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
-        yield label, place
+        yield label, place, name
         return
     for component in components:
         product = TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(component, product)
-        yield from _instances(product, place * XCAFDoc_ShapeTool.GetLocation_s(component))
+        at = place * XCAFDoc_ShapeTool.GetLocation_s(component)
+        yield from _instances(product, at, _name(component))
+
+
+_NO_NAME = re.compile(r"(?:NAUO)?[0-9 ]*|=>\[[0-9:]*\]")
+
+
+def _own_names(name: str, instances: list[str]) -> tuple[str, ...]:
+    """Return the names of a body's instances; empty if they say no more than the name and a number.
+
+    An instance without a name of its own gets the name of the body.
+    """
+    own = tuple(name if _NO_NAME.fullmatch(one) else one for one in instances)
+    says_nothing = {one.casefold() for one in own} == {name.casefold()} or own == names_at(name, len(own))
+    return () if says_nothing else own
 
 
 def _name(label: TDF_Label) -> str:

@@ -13,9 +13,11 @@ from itertools import pairwise
 from math import cos, sin
 from typing import Any, Literal, Self
 
+from cadquery import Face as Face3d
 from cadquery import Shape, Vector
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_SurfaceType as _Kind
+from OCP.TopAbs import TopAbs_Orientation
 
 from cad.on_demand import constant
 from templates.core.arrays import Array
@@ -26,7 +28,7 @@ Z = constant(lambda: Vector(0, 0, 1))
 AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector(0, 0, 1)})
 """The directions by their letters; one stand-in where the kernel is postponed, which loading it replaces."""
 
-_COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
+_COINCIDENT = 1e-6  # [mm], also used as the sine of an angle: ten times the kernel's own precision
 
 
 Face = tuple[str, int]
@@ -110,7 +112,7 @@ class Size(float):
         if not known:
             return value
         places = dict.fromkeys(place for one in known for place in one.places)
-        if known[0].kind != "distance":  # all faces of a diameter are one feature
+        if known[0].kind != "distance":  # all faces of a diameter form one feature
             places = {Place(tuple(dict.fromkeys(face for place in places for face in place.first))): None}
         return Size(value, known[0].kind, *places)
 
@@ -125,7 +127,7 @@ def alike(values: Iterable[float], what: str) -> float:
     """
     found = [float(value) for value in values]
     if not found or max(found) - min(found) > 2 * _COINCIDENT:
-        raise LookupError(f"all {what} must have one size; the file has {found}")
+        raise LookupError(f"all {what} must have the same size; the file has {found}")
     return sum(found) / len(found)
 
 
@@ -155,6 +157,8 @@ class Surface:
         The part and the number of its face.
     middle
         Of a plane: the centre of area of its face.
+    is_reversed
+        Whether the material is outside a cylinder, or on the side of a plane to which its normal points.
     form
         What it is.
     """
@@ -168,6 +172,7 @@ class Surface:
     face: Face = field(default=("", -1), compare=False)
     middle: Vector | None = field(default=None, compare=False)
     form: Form = field(default="plane", compare=False)
+    is_reversed: bool = field(default=False, compare=False)
 
     def along(self, axis: Vector) -> bool:
         """Return whether the surface's direction is parallel to the axis."""
@@ -197,7 +202,10 @@ class Surface:
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
-        return replace(self, direction=-self.direction, reach=(-high, -low))
+        flips = self.form == "plane"
+        return replace(
+            self, direction=-self.direction, reach=(-high, -low), is_reversed=self.is_reversed != flips
+        )
 
 
 @dataclass(frozen=True)
@@ -289,7 +297,8 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
         kind = adaptor.GetType()
         if read := _READERS.get(kind):
             middle = face.Center() if kind == _Kind.GeomAbs_Plane else None
-            of[kind].append(replace(read(adaptor), face=(part, number), middle=middle))
+            surface = replace(read(adaptor), face=(part, number), middle=middle)
+            of[kind].append(replace(surface, is_reversed=_is_reversed(face, adaptor, kind)))
     return PartSurfaces(
         count,
         planes=tuple(of[_Kind.GeomAbs_Plane]),
@@ -298,6 +307,15 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
         tori=tuple(of[_Kind.GeomAbs_Torus]),
         cones=tuple(of[_Kind.GeomAbs_Cone]),
     )
+
+
+def _is_reversed(face: Face3d, adaptor: BRepAdaptor_Surface, kind: Any) -> bool:
+    """Return whether the outward normal of a face is against that of a plane or cylinder, else False."""
+    if kind not in (_Kind.GeomAbs_Plane, _Kind.GeomAbs_Cylinder):
+        return False
+    surface = adaptor.Plane() if kind == _Kind.GeomAbs_Plane else adaptor.Cylinder()
+    is_turned = face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+    return bool(is_turned == surface.Position().Direct())
 
 
 def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:

@@ -1,4 +1,4 @@
-"""`crankwright impact`: show how a new version of a template would change the designs that use another."""
+"""`crankwright impact`: show how a new version of a template would change the designs with an old one."""
 
 from __future__ import annotations
 

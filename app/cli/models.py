@@ -44,6 +44,8 @@ def import_command(file: Path, id: str, url: str | None, data: Path | None) -> N
     click.echo(f"{model.id} version {model.version}: {plain(model.title)}")
     for one in origin.parameters:
         click.echo(plain(f"  {_line(one)}"))
+    for finding in origin.findings:
+        click.echo(plain(f"found: {finding}", 2000))
     click.echo(plain(f"trust: {origin.trust}", 2000))
 
 
@@ -65,7 +67,9 @@ def original_command(id: str, version: int, folder: Path, url: str | None, data:
 
 def _line(one: ImportedParameter) -> str:
     read = f"read back as a {one.read_back}" if one.read_back else "not read back"
-    return f"{one.name} = {one.value:g}{'' if one.unit == '1' else ' ' + one.unit}  ({one.source}; {read})"
+    moves = f"; moves {one.moves}" if one.moves else ""
+    value = f"{one.value:g}{'' if one.unit == '1' else ' ' + one.unit}"
+    return f"{one.name} = {value}  ({one.source}; {read}{moves})"
 
 
 def _progress(done: float, text: str) -> None:

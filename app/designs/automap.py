@@ -1,4 +1,4 @@
-"""Propose relations for unset model parameters; each proposal links one to a value of the design.
+"""Propose relations for unset model parameters; each links a parameter to a value of the design.
 
 A proposal is applied only if the user accepts it. A value fits by three tests:
 

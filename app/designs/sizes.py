@@ -1,4 +1,4 @@
-"""Convert radial sizes to diametral ones and vice versa, where a template declares the other one.
+"""Convert radial sizes to diametral ones and vice versa, if the template declares the other kind.
 
 A document stores a size under the name that the template declares: `radial_clearance` of 30 um becomes
 `diametral_clearance` of 60 um, and a relation is multiplied by 2. If a document gives both, both are kept,

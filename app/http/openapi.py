@@ -3,8 +3,8 @@
 FastAPI derives the document from the routes. Four points are corrected here: a parameter of a path, query or
 header cannot be null; a change needs If-Match; a name that does not fit the pattern of names is refused;
 `itemSchema` belongs to OpenAPI 3.2. Some parts are rewritten in a form that client generators understand.
-The problems that follow from an operation's parameters and body are added here too; a route declares only the
-others.
+The problems that follow from an operation's parameters and body are added here too; a route declares only its
+other problems.
 
 FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
 """

@@ -1,4 +1,4 @@
-"""Path parameters that are ids, as distinct from fixed words in the same place as `/worksheets/check`."""
+"""Path parameters that are ids; a fixed word in their place, as in `/worksheets/check`, is no id."""
 
 from __future__ import annotations
 

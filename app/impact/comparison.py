@@ -1,4 +1,4 @@
-"""Compare a design or variant, calculated with its present versions, with the same under a new version."""
+"""Compare a design or variant, calculated with its present versions, with the result under a new version."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SAME = 1e-9
 INFINITE = float("inf")
 
 UNREMARKABLE = {(None, "met"), (None, "not_checked"), ("not_checked", None)}
-"""Criteria that come or go with a version, without anything to do about them."""
+"""Changes of criteria between versions that require no action."""
 
 
 @dataclass(frozen=True)

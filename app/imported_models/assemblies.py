@@ -6,10 +6,11 @@ designs of its parts no longer exist.
 
 from __future__ import annotations
 
+import hashlib
 import io
 import zipfile
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -36,15 +37,29 @@ _BEGINNING_OF_TIME = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True)
 class _Source:
-    """The source of a fixed part: its file, its origin in words, and its component models."""
+    """The source of a fixed part: its file, its origin in words, and its component models.
+
+    The file is a stored one, or that of an imported model, which its program draws.
+    """
 
     sha: str
     origin: str
     holds: tuple[str, ...]
+    drawn: tuple[str, Description] | None = None  # id and description of the imported model
+
+
+Build = Callable[[str, Description], bytes]
+"""Return the STEP file of an imported model of an id, with the values of its own file."""
 
 
 def described_assembly(
-    content: bytes, id: str, file_name: str, database: Database, store: Artifacts, catalogues: Catalogues
+    content: bytes,
+    id: str,
+    file_name: str,
+    database: Database,
+    store: Artifacts,
+    catalogues: Catalogues,
+    build: Build,
 ) -> AssemblyDescription:
     """Return the description of an assembly, and store the package of its fixed parts.
 
@@ -54,6 +69,8 @@ def described_assembly(
         If the manifest is wrong, or names a missing part.
     ArtifactMissing, ArtifactDamaged
         If the file of a part is lost.
+    GeometryError
+        If an imported model cannot be drawn.
     """
     manifest = read(content)
     base = _base(manifest.base, catalogues)
@@ -66,7 +83,11 @@ def described_assembly(
             raise UnreadableModel(
                 "cycle", f"{fixed.name}: {there.origin} contains {id} itself; choose another part"
             )
-        if there.sha not in files:
+        if there.drawn:
+            step = build(*there.drawn)
+            there = replace(there, sha=hashlib.sha256(step).hexdigest())
+            files[there.sha] = step
+        elif there.sha not in files:
             files[there.sha] = store.read(there.sha)
         if sum(map(len, files.values())) > LARGEST:
             detail = f"the STEP files of the components have more than {LARGEST // 2**20} MiB together"
@@ -146,12 +167,16 @@ def _of_model(session: Session, fixed: FixedPart) -> _Source:
         detail = f"{fixed.name}: there is no model {id} {there_is if numbers else nothing}"
         raise UnreadableModel("component", detail)
     about = description_of(repository.version(session, id, number).description)
-    if about.program != "step":
+    origin, holds = f"model {id} version {number}", (id, *_held(session, id, number))
+    if about.program == "step":
+        return _Source(about.file, origin, holds)
+    if isinstance(about, AssemblyDescription) and about.base:
         detail = (
-            f"{fixed.name}: {id} is no STEP file; put it into a design, and name that design and its revision"
+            f"{fixed.name}: a design sets the sizes of {id}, which are those of {about.base[0]}; put {id} "
+            "into a design, and name that design and its revision"
         )
         raise UnreadableModel("component", detail)
-    return _Source(about.file, f"model {id} version {number}", (id,))
+    return _Source("", origin, holds, (id, about))
 
 
 def _of_design(session: Session, fixed: FixedPart) -> _Source:

@@ -29,13 +29,17 @@ class Base(Bounded):
 
 
 class FixedPart(Bounded):
-    """A fixed part: an imported STEP file, or a model of a design at one of its revisions."""
+    """A fixed part: an imported model with the values of its file, or a model of a design at a revision."""
 
     model_config = STRICT
 
     name: str = Field(max_length=40, pattern=NAME)
     model: str | None = Field(
-        None, max_length=64, pattern=NAME, description="id of an imported STEP file or assembly"
+        None,
+        max_length=64,
+        pattern=NAME,
+        description="id of an imported model: a STEP file, a FreeCAD file, a model in Creo, or an assembly "
+        "without a base",
     )
     version: int | None = Field(None, ge=1, le=10**6, description="version of `model`; default: the newest")
     design: str | None = Field(None, min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")
@@ -68,7 +72,7 @@ class FixedPart(Bounded):
             If the part names no source or both, or a number is invalid.
         """
         if (self.model is None) == (self.design is None):
-            raise ValueError("give either `model`, an imported STEP file, or `design`")
+            raise ValueError("give either `model`, an imported model, or `design`")
         if self.model and (self.revision or self.part):
             raise ValueError("`revision` and `part` belong to `design`")
         if self.design and self.version:

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from math import isfinite
 
 from app.imported_models.creo.manifest import read
 from app.imported_models.names import parameter_name
 from app.imported_models.programs import Programs, given_to_freecad
-from app.imported_models.warm_up import WarmProcesses
 from app.jobs.context import JobContext
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
 from cad.errors import GeometryError, UnreadableModel
+from cad.examination import examine
 from cad.freecad.admission import admitted
-from cad.imported_models import Description, Parameter, ProgramResult, Role, role_of, shows, trial_sizes
+from cad.imported_models import (
+    NOTHING,
+    Description,
+    Ends,
+    Parameter,
+    ProgramResult,
+    Trial,
+    role_of,
+    shows,
+    tried,
+)
 
 READING = Limits(deadline=20.0, memory_mb=512)
 
@@ -56,14 +67,14 @@ class Deadline:
 
 
 TRIAL = 1.01
-"""By how much a trial changes a length; other than 1 % only where FreeCAD refuses."""
+"""By how much a trial changes a parameter; down only where FreeCAD refuses the value."""
 MOST_TRIALS = 30
 _BOUNDS: Mapping[str, float] = {"mm": 1e5, "deg": 360.0, "1": 1e6}
-"""The largest parameter by unit: 100 m, a full turn, a million."""
+"""Largest value of a parameter by unit: 100 m, a full turn, a million."""
 
 
 def described_freecad(
-    content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
+    content: bytes, id: str, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
     """Return the description of a `.FCStd` file, and store the file in the form that FreeCAD opens.
 
@@ -77,23 +88,40 @@ def described_freecad(
     file = store.put(context.run(admitted, content, limits=READING))
     warm, cancelled = programs.freecad.warm, context.cancelled
     context.progress(0.1, "FreeCAD opens the file")
-    deadline = Deadline(warm.limits)
+    deadline, content_of = Deadline(warm.limits), partial(store.read, file)
     with deadline.kept():
-        answered = warm.ask(file, lambda: store.read(file), "describe", [], cancelled, deadline.left())
-        parameters = _parameters(answered.about["parameters"])
-        roles = _trials(parameters, answered.drawn, warm, file, store, context, deadline)
-    return Description(
-        program="freecad",
-        file=file,
-        file_name=file_name,
-        title=_stem(file_name),
-        made_with=answered.about["program"],
-        parameters=tuple(replace(one, role=roles.get(one.name, "")) for one in parameters),
-    )
+        answered = warm.ask(file, content_of, "describe", [], cancelled, deadline.left())
+        about, ends = answered.about, Ends.of(answered.about["at_import"])
+
+        def ask(given: list[list[str | float]]) -> ProgramResult:
+            return warm.ask(file, content_of, "draw", given, cancelled, deadline.left(), ends).drawn
+
+        parameters = _tried(_parameters(about["parameters"]), answered.drawn, ask, context, deadline)
+        described = Description(
+            program="freecad",
+            file=file,
+            file_name=file_name,
+            title=_stem(file_name),
+            made_with=about["program"],
+            parameters=tuple(parameters),
+            ends=ends,
+            findings=tuple(f"{sentence}." for sentence in about["left_out"]),
+        )
+        return _examined(described, id, answered.drawn, context, deadline.limits)
+
+
+def _examined(
+    described: Description, id: str, drawn: ProgramResult, context: JobContext, limits: Limits | None = None
+) -> Description:
+    """Return a description with what the examination of its solids found; raises as `examine` does."""
+    context.progress(0.85, "the solids are written and read back")
+    found = context.run(examine, described.text, id, drawn, limits=limits)
+    findings = (*described.findings, *found.findings)
+    return replace(described, findings=findings, overlapping=found.overlapping)
 
 
 def described_creo(
-    content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
+    content: bytes, id: str, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
     """Return the description of a model in Creo by a manifest, after Creo has drawn the stored model once.
 
@@ -106,26 +134,27 @@ def described_creo(
     context.progress(0.1, "Creo draws the model")
     drawn = programs.drawn(described, {}, context.cancelled)
     context.progress(0.7, "the solid is examined")
-    sizes = context.run(trial_sizes, drawn)
+    sizes = context.run(tried, drawn).sizes
     for one in described.parameters:
         if one.role and not shows(one, sizes):
             raise UnreadableModel(
                 "check", f"{one.name}: the solid has no {one.role} of {one.value:g} {one.unit}"
             )
-    return described
+    return _examined(described, id, drawn, context)
 
 
-def described_step(content: bytes, file_name: str, store: Artifacts, context: JobContext) -> Description:
+def described_step(
+    content: bytes, id: str, file_name: str, store: Artifacts, context: JobContext
+) -> Description:
     """Return the description of a STEP file as a fixed part.
 
     Raises
     ------
     UnreadableStep, GeometryError, DeadlineExceeded, MemoryExceeded
-        If it contains no solid.
+        If it contains no solid, or its solids cannot be built.
     """
-    context.progress(0.1, "reading the STEP file")
-    context.run(trial_sizes, ProgramResult(step=content))
-    return Description("step", store.put(content), file_name, f"Fixed part {_stem(file_name)}", "STEP")
+    described = Description("step", store.put(content), file_name, f"Fixed part {_stem(file_name)}", "STEP")
+    return _examined(described, id, ProgramResult(step=content), context)
 
 
 def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
@@ -149,31 +178,62 @@ def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
     return list(parameters.values())
 
 
-def _trials(
+def _tried(
     parameters: list[Parameter],
     base: ProgramResult,
-    warm: WarmProcesses,
-    file: str,
-    store: Artifacts,
+    ask: Callable[[list[list[str | float]]], ProgramResult],
     context: JobContext,
     deadline: Deadline,
-) -> dict[str, Role]:
-    """Find how each length shows on the solid: change only this length, draw, and compare the sizes."""
-    before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
-    lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
-    for number, one in enumerate(lengths):
-        context.progress(0.2 + 0.7 * number / len(lengths), f"how {one.words} shows on the solid")
-        value = float(f"{one.value * TRIAL:.12g}")
+) -> Iterator[Parameter]:
+    """Yield each parameter with what it moves: change only this one, draw, and compare the solids."""
+    before = context.run(tried, base, limits=deadline.limits)
+    for number, one in enumerate(parameters):
+        if number >= MOST_TRIALS:
+            yield one
+            continue
+        context.progress(0.2 + 0.6 * number / len(parameters), f"what {one.words} moves")
+        shown = one
+        for step in _steps(one):
+            if shown.moves in ("", NOTHING):
+                shown = _after_step(one, step, before, ask, context, deadline)
+        yield shown
+
+
+def _after_step(
+    one: Parameter,
+    step: float,
+    before: Trial,
+    ask: Callable[[list[list[str | float]]], ProgramResult],
+    context: JobContext,
+    deadline: Deadline,
+) -> Parameter:
+    """Return a parameter with what a step up moves, or a step down where FreeCAD refuses the one up."""
+    refused = ""
+    for value in (float(f"{one.value + sign * step:.12g}") for sign in (1, -1)):
         try:
-            given = [given_to_freecad(one, value)]
-            drawn = warm.ask(
-                file, lambda: store.read(file), "draw", given, context.cancelled, deadline.left()
-            ).drawn
-            sizes = context.run(trial_sizes, drawn, limits=deadline.limits)
-            roles[one.name] = role_of(one.value, value, before, sizes)
-        except GeometryError:
-            continue  # no size of the solid shows this length unambiguously
-    return roles
+            after = context.run(tried, ask([given_to_freecad(one, value)]), limits=deadline.limits)
+        except GeometryError as error:
+            refused = refused or f"not known: {value:g} is refused ({error.code})"
+            continue
+        role, side = role_of(one.value, value, before.sizes, after.sizes) if _is_size(one) else ("", "")
+        moves = before.moved(after)
+        moves = moves if moves == NOTHING else f"{one.value:g} → {value:g}: {moves}"
+        return replace(one, role=role, side=side, moves=moves)
+    return replace(one, moves=refused)
+
+
+def _is_size(one: Parameter) -> bool:
+    return one.unit != "deg" and one.value > 0
+
+
+def _steps(one: Parameter) -> list[float]:
+    """Return the steps of the trials of a parameter, tried until one moves something.
+
+    A whole number may be a count, which moves nothing before it is one more.
+    """
+    step = one.value * (TRIAL - 1) or 1.0
+    is_count = one.unit == "1" and one.value.is_integer() and step != 1
+    return [step, 1.0] if is_count else [step]
 
 
 def _stem(file_name: str) -> str:

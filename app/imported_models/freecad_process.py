@@ -18,9 +18,9 @@ import tempfile
 import threading
 import time
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, TypedDict
+from typing import IO, Any, TypedDict
 
 from app.imported_models.freecad import FreeCad, missing
 from app.workers.base import Limits
@@ -28,13 +28,13 @@ from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
 from app.workers.lifeline import Lifeline
 from cad.errors import GeometryError
 from cad.freecad import drawing_process
-from cad.imported_models import DrawnPart, ProgramResult
+from cad.imported_models import DrawnPart, Ends, ProgramResult
 
 STARTING = 60.0
-"""Time in which FreeCAD has to start [s]; it takes 3 s."""
+"""Longest time for FreeCAD to start [s]; it usually takes 3 s."""
 LARGEST_ANSWER = 512 * 2**20
 _ENDING = 1.0
-"""Time in which a process that no longer answers has to end [s]."""
+"""Longest time for a process that no longer answers to end [s]."""
 _GLANCE = 0.05  # [s]
 _LEAST = 0.1  # shortest time given to a drawing, even if less is left [s]
 _PIECE = 2**20
@@ -49,6 +49,8 @@ class About(TypedDict, total=False):
     parameters: list[list[str | float]]  # object, kind, key, value, unit, label
     parts: list[tuple[str, float]]  # name, volume [mm³]
     program: str
+    at_import: dict[str, Any]  # the ends, as `cad.imported_models.Ends` reads them
+    left_out: list[str]  # sentences about what becomes no part
     sizes: list[int]
 
 
@@ -93,8 +95,11 @@ class FreeCadProcess:
         given: list[list[str | float]],
         cancelled: threading.Event,
         seconds: float = math.inf,
+        ends: Ends | None = None,
     ) -> FreeCadAnswer:
         """Let FreeCAD open the file again, set some parameters and draw, within this number of seconds.
+
+        A drawing must have these ends; without them, those of the file at its own values.
 
         Raises
         ------
@@ -110,7 +115,10 @@ class FreeCadProcess:
             self._started(cancelled)
         seconds = max(min(seconds, self._limits.deadline), _LEAST)
         end = time.monotonic() + seconds
-        question = {"do": do, "file": str(self._file), "set": given, "seconds": seconds}
+        at_import = None if ends is None else asdict(ends)
+        question = {
+            "do": do, "file": str(self._file), "set": given, "seconds": seconds, "at_import": at_import,
+        }  # fmt: skip
         text = json.dumps(question).encode()
         try:
             self._to.write(struct.pack("!I", len(text)) + text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 from app.imported_models.assemblies import AssemblyFiles
@@ -20,7 +21,7 @@ from cad.errors import GeometryError, ProgramMissing, UnreadableModel
 from cad.imported_models import Description, ImportedModel, Parameter, Program, ProgramResult
 
 Values = dict[str, float]
-"""By API name, in the unit of each parameter; those that are as in the file may be left out."""
+"""Values by API name, in the unit of each parameter; values that equal those in the file may be omitted."""
 
 
 class Drawing(Protocol):
@@ -76,9 +77,8 @@ class FreeCadDrawing:
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the solids that FreeCAD draws; see `Drawing.draw`."""
         given = [given_to_freecad(one, values[one.name]) for one in _changed(described, values)]
-        return self.warm.ask(
-            described.file, lambda: self._store.read(described.file), "draw", given, cancelled
-        ).drawn
+        content = partial(self._store.read, described.file)
+        return self.warm.ask(described.file, content, "draw", given, cancelled, ends=described.ends).drawn
 
 
 def _changed(described: Description, values: Values) -> list[Parameter]:

@@ -17,6 +17,11 @@ class ImportedParameter(Answer):
     read_back: str | None = Field(
         description="`diameter`, `radius` or `distance`: the size of every solid that is compared with it"
     )
+    moves: str | None = Field(
+        None,
+        description="what a trial at the import changed on the solids; `nothing` if it changed none; null if "
+        "there was no trial",
+    )
 
 
 class ModelOrigin(Answer):
@@ -27,6 +32,14 @@ class ModelOrigin(Answer):
     sha256: str = Field(description="SHA-256 of the original file, which is kept")
     made_with: str = Field(description="program and version that examined the file")
     trust: str = Field(description="which checks its solids pass, and which are not made")
+    findings: list[str] = Field(
+        [],
+        description="what the examination at the import found, as sentences: changes of volume, loose faces, "
+        "overlaps, new names, and what was left out",
+    )
+    ends: list[str] = Field(
+        [], description="objects of a FreeCAD document that are its parts; every drawing must have the same"
+    )
     author: str | None = None
     created: str
     parameters: list[ImportedParameter]

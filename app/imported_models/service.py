@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
 from sqlalchemy.orm import Session
@@ -25,6 +26,7 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
+from cad.examination import examine
 from cad.imported_models import Description
 from cad.model_classes import class_of
 from templates.core.errors import TemplateError
@@ -35,7 +37,7 @@ FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
     MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
 )  # fmt: skip
-"""Errors that a file causes."""
+"""Errors that are caused by a file."""
 
 
 class ModelImports:
@@ -113,12 +115,19 @@ class ModelImports:
 
     def _described(self, kind: Kind, content: bytes, id: str, name: str, context: JobContext) -> Description:
         if kind == "assembly":
-            return described_assembly(content, id, name, self.database, self.store, self.catalogues)
+            about = self.database, self.store, self.catalogues
+            return described_assembly(content, id, name, *about, partial(self._build, context))
         if kind == "step":
-            return described_step(content, name, self.store, context)
+            return described_step(content, id, name, self.store, context)
         if kind == "creo":
-            return described_creo(content, name, self.store, self.programs, context)
-        return described_freecad(content, name, self.store, self.programs, context)
+            return described_creo(content, id, name, self.store, self.programs, context)
+        return described_freecad(content, id, name, self.store, self.programs, context)
+
+    def _build(self, context: JobContext, id: str, described: Description) -> bytes:
+        """Return the STEP file of an imported model with the values of its file; raises as `examine` does."""
+        context.progress(0.1, f"drawing {id}")
+        drawn = self.programs.drawn(described, {}, context.cancelled)
+        return context.run(examine, described.text, id, drawn).step
 
 
 def kind_of(content: bytes) -> Kind:

@@ -25,6 +25,8 @@ def origin(database: Database, id: str, number: int) -> ModelOrigin:
             sha256=row.sent_sha256,
             made_with=described.made_with,
             trust=described.trust,
+            findings=list(described.findings),
+            ends=[name for name, _ in described.ends.parts] if described.ends else [],
             author=row.author,
             created=row.created,
             parameters=[
@@ -34,6 +36,7 @@ def origin(database: Database, id: str, number: int) -> ModelOrigin:
                     value=one.value,
                     source=one.source,
                     read_back=one.role or None,
+                    moves=one.moves or None,
                 )
                 for one in described.parameters
             ],

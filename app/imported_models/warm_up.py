@@ -17,6 +17,7 @@ from app.imported_models.freecad_process import FreeCadAnswer, FreeCadProcess
 from app.workers.base import Limits
 from app.workers.errors import JobCancelled
 from cad.errors import GeometryError
+from cad.imported_models import Ends
 
 MOST_WARM = 3
 MOST_DRAWINGS = 100
@@ -39,11 +40,12 @@ class WarmProcesses:
         given: list[list[str | float]],
         cancelled: threading.Event,
         seconds: float = math.inf,
+        ends: Ends | None = None,
     ) -> FreeCadAnswer:
         """Send a request to the process of a file, with a time limit; raises like `FreeCadProcess.ask`."""
         process = self._taken(sha, content)
         try:
-            return process.ask(do, given, cancelled, seconds)
+            return process.ask(do, given, cancelled, seconds, ends)
         except GeometryError:
             if self._is_closed:  # the process was killed
                 raise JobCancelled from None

@@ -1,4 +1,4 @@
-"""Convert between the text in an input field and its value; `static/typed.js` does the same."""
+"""Convert between the text in an input field and its value; `static/typed.js` does it in the browser."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Numbers and units as a worksheet shows them: five significant digits, aligned at the point, the unit once.
 
-`app/web/shared/numbers.js` does the same while a user types; `tests/app/web` compares the two.
+`app/web/shared/numbers.js` formats numbers in the same way while a user types; `tests/app/web` compares the
+two.
 """
 
 from __future__ import annotations

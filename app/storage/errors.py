@@ -6,7 +6,7 @@ StorageError
  ├── DatabaseNewer         the database was written by a newer program
  ├── DatabaseClosed        a unit of work came after `close`
  ├── CommitFailed          a unit of work ran, but it could not be made durable
- │    └── CommitUnknown  … and whether it was is unknown
+ │    └── CommitUnknown    it is unknown whether the unit was made durable
  ├── DatabaseUnavailable   the database server cannot be reached, or refuses work at present
  ├── NotForTeams           the settings do not let several servers share the data
  ├── DatabaseDamaged       pages or rows of the database cannot be read as they were written

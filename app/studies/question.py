@@ -1,4 +1,4 @@
-"""Validate a request for a study against its design: places with units, rows, objectives."""
+"""Validate a request for a study against its design: paths of values, units, rows, objectives."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Fork servers that the server forks from itself before it has threads, so that they need no imports.
 
 They share the memory pages of all imported modules. The first request for the same modules takes one of them;
-later requests get a new process, which imports the modules. If a fork server dies, such a process replaces
+later requests get a new process, which imports the modules. If a fork server dies, a new process replaces
 it.
 """
 

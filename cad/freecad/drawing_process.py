@@ -7,8 +7,8 @@ memory limit [MiB].
 It reads requests from its standard input and answers on its standard output. Each message is a length
 followed by a JSON object; an answer is followed by the shapes whose sizes it lists.
 
-    {"do": "describe"}                    every parameter of the file, and its solids
-    {"do": "draw", "set": [...]}          the solids for some values
+    {"do": "describe"}                    every parameter of the file, its ends and its solids
+    {"do": "draw", "set": [...]}          the solids for some values, if the ends are those `at_import`
     both with "file", "seconds"           the path of the file, and the processor time it may take
 
 Each request opens the file again, so the same values always give the same solids. Before the first request
@@ -31,6 +31,7 @@ import struct
 import sys
 import time
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 UNITS = {"Length": "mm", "Angle": "deg"}
@@ -38,7 +39,19 @@ LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
 CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
 MOST_PARAMETERS = 100
 MOST_SOLIDS = 100
+MOST_LEFT_OUT = 20
+"""Sentences about objects that are left out."""
 LARGEST_FILE = 256 * 2**20
+LINKS = ("App::PropertyLink", "App::PropertyXLink")
+PLACING = frozenset(
+    {
+        "AttachmentSupport", "Axis", "AxisLink", "Context", "Direction", "ExternalGeometry", "MirrorPlane",
+        "ReferenceAxis", "Spine", "Support", "UpToFace", "UpToShape",
+    }
+)  # fmt: skip
+"""Links by which an object is only placed or directed; its shape is not made of theirs."""
+BINDERS = ("PartDesign::ShapeBinder", "PartDesign::SubShapeBinder")
+REPEATING = ("App::Link", "App::LinkGroup", "App::LinkElement")
 
 DENIED = {
     # socket connect bind listen execve execveat ptrace process_vm_readv process_vm_writev kill tkill
@@ -102,12 +115,13 @@ def deny_calls(libc: ctypes.CDLL) -> None:
     load, equal, at_least, has, answer, first = 0x20, 0x15, 0x35, 0x45, 0x06, 16
     refused, missing, killed, allowed = 0x00050000 | 1, 0x00050000 | 38, 0x80000000, 0x7FFF0000
     lines = [(load, 0, 0, 4), (equal, 1, 0, audited), (answer, 0, 0, killed), (load, 0, 0, 0)]
-    lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # the numbers of x32
+    lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # system call numbers of x32
     for number in denied:
         lines += [(equal, 0, 1, number), (answer, 0, 0, refused)]
-    lines += [(equal, 0, 1, CLONE3), (answer, 0, 0, missing)]  # its flags are out of reach: clone stands in
+    # The filter cannot read the flags of clone3. If it is missing, programs use clone.
+    lines += [(equal, 0, 1, CLONE3), (answer, 0, 0, missing)]
     firsts = ((signal_one, equal, os.getpid()), (limit_one, equal, 0), (clone, has, CLONE_THREAD))
-    for number, test, wanted in firsts:  # by the lower half of the first argument
+    for number, test, wanted in firsts:  # compares the lower half of the first argument
         lines += [(equal, 0, 4, number), (load, 0, 0, first), (test, 0, 1, wanted)]
         lines += [(answer, 0, 0, allowed), (answer, 0, 0, refused)]
     lines.append((answer, 0, 0, allowed))
@@ -145,8 +159,8 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
     create, add, restrict, reading, of_a_file = 444, 445, 446, 0b1101, 0b101
     rules = libc.syscall(create, None, 0, 1)
     if rules < 1:
-        return  # a kernel without Landlock; the other walls stand
-    everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels rule links and shortening too
+        return  # the kernel has no Landlock; the other restrictions still apply
+    everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels also restrict links and truncation
     ruled = libc.syscall(create, ctypes.byref(FileAccess(everything)), ctypes.sizeof(FileAccess), 0)
     places = {place: reading if os.path.isdir(place) else of_a_file for place in READABLE}
     for place, access in {**places, writable: everything}.items():
@@ -240,7 +254,9 @@ def parameters(app: Any, document: Any) -> list[list[Any]]:
         elif thing.TypeId == "Sketcher::SketchObject":
             listed += [[thing.Name, "constraint", *one, thing.Label] for one in constraints(thing)]
     if len(listed) > MOST_PARAMETERS:
-        raise Refused("too_large", f"it has {len(listed)} parameters; a model has at most {MOST_PARAMETERS}")
+        raise Refused(
+            "too_large", f"it has {len(listed)} parameters; a model may have at most {MOST_PARAMETERS}"
+        )
     return listed
 
 
@@ -261,7 +277,7 @@ def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
                 left.append(one)
         if len(left) == len(waiting):
             names = [f"{one[0]}.{one[2]}" for one in left]
-            raise Refused("not_solved", f"FreeCAD does not take {', '.join(names)}: {failed}", names)
+            raise Refused("not_solved", f"FreeCAD does not accept {', '.join(names)}: {failed}", names)
         waiting = left
 
 
@@ -286,55 +302,210 @@ def recompute(document: Any) -> None:
 
 def is_drawn(thing: Any) -> bool:
     """Return whether an object has solids of its own, and is neither a reference nor a group."""
+    return count_solids(thing) > 0
+
+
+def count_solids(thing: Any) -> int:
+    """Return the number of solids of an object; 0 for references and groups."""
     try:
-        return not thing.TypeId.startswith("App::") and bool(thing.Shape.Solids)
+        refers = thing.TypeId.startswith("App::") or thing.TypeId in BINDERS
+        return 0 if refers else len(thing.Shape.Solids)
+    except Exception:
+        return 0
+
+
+def is_visible(thing: Any) -> bool:
+    """Return whether the file shows an object."""
+    return bool(getattr(thing, "Visibility", True))
+
+
+def is_empty(thing: Any) -> bool:
+    """Return whether a feature of Part or PartDesign has a shape without any content."""
+    try:
+        if not thing.isDerivedFrom("Part::Feature") or thing.isDerivedFrom("Part::Part2DObject"):
+            return False
+        return bool(thing.Shape.isNull() or not thing.Shape.Vertexes)
     except Exception:
         return False
 
 
-def finished(document: Any) -> list[Any]:
-    """Return the objects that no other object uses; hidden ones only if all are hidden."""
-    drawn = [thing for thing in document.Objects if is_drawn(thing)]
-    names = {thing.Name for thing in drawn}
-    ends = [t for t in drawn if not any(user.Name in names and user is not t for user in t.InListRecursive)]
-    visible = [thing for thing in ends if getattr(thing, "Visibility", True)]
-    return visible or ends
+def sources(thing: Any) -> set[str]:
+    """Return the names of the objects from whose shapes an object makes its own.
+
+    Expressions and attachments do not count: they move an object or set its sizes.
+    """
+    names = set[str]()
+    for name in thing.PropertiesList:
+        kind = thing.getTypeIdOfProperty(name)
+        if kind.startswith(LINKS) and "Hidden" not in kind and name not in PLACING:
+            names.update(linked(getattr(thing, name)))
+    return names - {thing.Name}
 
 
-def solids(document: Any) -> list[tuple[str, float, bytes]]:
-    """Return every solid of the finished objects at its position: name, volume [mm³], shape as text."""
+def linked(value: Any) -> Iterator[str]:
+    """Yield the names of the objects in the value of a link property."""
+    if isinstance(value, (list, tuple)):
+        for one in value:
+            yield from linked(one)
+    elif hasattr(value, "TypeId"):
+        yield value.Name
+
+
+class Census:
+    """The objects of a drawn document that have solids, and those among them that are its ends.
+
+    An end is an object from which no other one is made; hidden ones count only if all are hidden.
+    """
+
+    def __init__(self, document: Any) -> None:
+        drawn = [thing for thing in document.Objects if is_drawn(thing)]
+        empty = [thing for thing in document.Objects if is_empty(thing)]
+        made_of = {thing.Name: sources(thing) for thing in (*drawn, *empty)}
+        used = set[str]().union(*(made_of[thing.Name] for thing in drawn))
+        ends = [thing for thing in drawn if thing.Name not in used]
+        shown = [thing for thing in ends if is_visible(thing)]
+        self.ends = shown or ends
+        self.hidden = [thing for thing in ends if thing not in self.ends]
+        self.inner = [thing for thing in drawn if thing.Name in used]
+        names = {thing.Name for thing in self.ends}
+        self.failed = [
+            thing for thing in empty if made_of[thing.Name] & names and (is_visible(thing) or not shown)
+        ]
+
+    def require_solids(self) -> None:
+        """Refuse a document without an end, or one whose last feature comes out empty."""
+        for thing in self.failed:
+            left = ", ".join(one.Label for one in self.ends if one.Name in sources(thing))
+            what = f"{thing.Label} comes out empty, and is made of {left}"
+            raise Refused("no_solid", f"{what}: correct {thing.Label}, or delete it and save the file")
+        if not self.ends:
+            remedy = "make a Body or a Part with a solid visible, and save it"
+            raise Refused("no_solid", f"the file contains no visible solid: {remedy}")
+
+    def at_import(self) -> dict[str, Any]:
+        """Return what later drawings are compared with: ends with their numbers of solids, other solids."""
+        return {
+            "parts": [[thing.Name, count_solids(thing)] for thing in self.ends],
+            "inner": [thing.Name for thing in self.inner],
+        }
+
+
+def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -> None:
+    """Refuse a drawing whose ends, or the numbers of their solids, are not those at the import."""
+    wanted = dict(at_import["parts"])
+    for name in (*wanted, *at_import["inner"]):
+        thing = document.getObject(name)
+        if not is_drawn(thing):
+            said = f"{thing.Label if thing else name} has no solid at these values"
+            raise Refused("no_solid", f"{said}; at the import it had one")
+    there.require_solids()
+    found = {thing.Name: count_solids(thing) for thing in there.ends}
+    for name, count in found.items():
+        label = document.getObject(name).Label
+        if name not in wanted:
+            raise Refused("other_ends", f"{label} is a part at these values; at the import it was none")
+        if count != wanted[name]:
+            said = f"{label} has {count} solids at these values; at the import it had {wanted[name]}"
+            raise Refused("other_ends", said)
+    for name in wanted:
+        if name not in found:
+            said = f"{document.getObject(name).Label} is no part at these values"
+            raise Refused("other_ends", f"{said}; at the import it was one")
+
+
+def left_out(document: Any, there: Census) -> Iterator[str]:
+    """Yield a sentence about each visible or solid object of a document that becomes no part."""
+    for thing in there.hidden:
+        yield f"{thing.Label} is hidden and left out"
+    for thing in there.ends:
+        if loose := len(thing.Shape.Faces) - sum(len(solid.Faces) for solid in thing.Shape.Solids):
+            yield f"{thing.Label} has faces that belong to no solid; they are left out ({loose})"
+    used = set[str]().union(*map(sources, document.Objects))
+    for thing in document.Objects:
+        if not is_visible(thing) or thing.Name in used:
+            continue
+        if thing.TypeId in REPEATING:
+            yield f"{thing.Label} is a link to another object; it is left out: copy the object instead"
+        elif not is_drawn(thing) and faces_of(thing):
+            yield f"{thing.Label} has faces, but no solid; it is left out"
+
+
+def faces_of(thing: Any) -> int:
+    """Return the number of faces of an object that is neither a sketch, a datum nor a reference."""
+    try:
+        if thing.TypeId.startswith("App::") or thing.TypeId in BINDERS:
+            return 0
+        if thing.isDerivedFrom("Part::Part2DObject") or thing.isDerivedFrom("Part::Datum"):
+            return 0
+        return len(thing.Shape.Faces)
+    except Exception:
+        return 0
+
+
+def solids(there: Census) -> list[tuple[str, float, bytes]]:
+    """Return every solid of the ends where it stands: name, volume [mm³], shape as text."""
     listed = []
-    for thing in finished(document):
+    for thing in there.ends:
         shape = thing.Shape.copy()
         shape.Placement = thing.getGlobalPlacement()
         for number, solid in enumerate(shape.Solids):
             name = thing.Label if len(shape.Solids) == 1 else f"{thing.Label} {number + 1}"
             listed.append((name, solid.Volume, solid.exportBrepToString().encode()))
-    if not listed:
-        remedy = "make a Body or a Part with a solid visible, and save it"
-        raise Refused("no_solid", f"the file contains no visible solid: {remedy}")
     if len(listed) > MOST_SOLIDS:
-        raise Refused("too_large", f"it has {len(listed)} solids; a model has at most {MOST_SOLIDS}")
+        raise Refused("too_large", f"it has {len(listed)} solids; a model may have at most {MOST_SOLIDS}")
     return listed
+
+
+def opened(app: Any, file: str) -> Any:
+    """Return the document of a file, and close all others."""
+    for name in list(app.listDocuments()):
+        app.closeDocument(name)
+    return app.openDocument(file, True)
+
+
+def as_saved(app: Any, file: str) -> dict[str, Any]:
+    """Return the ends of a file at its own values, for models imported before ends were recorded."""
+    document = opened(app, file)
+    recompute(document)
+    there = Census(document)
+    there.require_solids()
+    return there.at_import()
 
 
 def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
     """Return the answer to one request, with the shapes that follow it."""
-    for name in list(app.listDocuments()):
-        app.closeDocument(name)
-    begun = time.monotonic()
-    document = app.openDocument(request["file"], True)
-    listed = parameters(app, document) if request["do"] == "describe" else []
+    begun, file = time.monotonic(), request["file"]
+    describes = request["do"] == "describe"
+    at_import = None if describes else request.get("at_import") or _first_use(app, file)
+    document = opened(app, file)
+    listed = parameters(app, document) if describes else []
     give(app, document, request.get("set", ()))
     recompute(document)
-    shapes = solids(document)
+    there = Census(document)
+    if at_import is None:
+        there.require_solids()
+    else:
+        require_same_ends(document, there, at_import)
+    shapes = solids(there)
     about = {
         "parameters": listed,
         "parts": [[name, volume] for name, volume, _ in shapes],
+        "at_import": there.at_import(),
+        "left_out": list(islice(left_out(document, there), MOST_LEFT_OUT)) if describes else [],
         "program": "FreeCAD " + ".".join(app.Version()[:2]),
         "seconds": time.monotonic() - begun,
     }
     return about, [shape for _, _, shape in shapes]
+
+
+def _first_use(app: Any, file: str) -> dict[str, Any]:
+    """Return `as_saved` of a file, determined once: a process serves one file."""
+    if file not in _saved:
+        _saved[file] = as_saved(app, file)
+    return _saved[file]
+
+
+_saved: dict[str, dict[str, Any]] = {}
 
 
 def refusal(error: BaseException) -> dict[str, Any]:
@@ -360,18 +531,18 @@ def main(lifeline: int, folder: str, modules: str, memory: int) -> None:
     requests, out = os.fdopen(os.dup(0), "rb"), os.dup(1)
     null = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1, 2):
-        os.dup2(null, standard)  # FreeCAD prints
+        os.dup2(null, standard)  # FreeCAD prints messages
     hang_on(lifeline)
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(38, 1, 0, 0, 0) != 0:  # no new privileges
         raise OSError("the Linux kernel refuses `no_new_privs`")
     keep_to_files(libc, folder)
     sys.path[:0] = [place for place in modules.split(os.pathsep) if place]
-    import FreeCAD  # the first: the others crash without it
+    import FreeCAD  # must be imported first: the other modules crash without it
 
     for name in ("Part", "Sketcher", "Spreadsheet", "_PartDesign"):
-        importlib.import_module(name)  # what a file needs, before much is denied
-    sys.modules["PartDesign"] = sys.modules["_PartDesign"]  # its package stands in a folder of workbenches
+        importlib.import_module(name)  # imports what a file needs before most access is denied
+    sys.modules["PartDesign"] = sys.modules["_PartDesign"]  # its package lies in a folder of workbenches
     deny_calls(libc)
     limit(resource.RLIMIT_CORE, 0)
     limit(resource.RLIMIT_FSIZE, LARGEST_FILE)

@@ -16,7 +16,7 @@ from cad.imported_models import (
     ProgramResult,
     parts_of,
     role_of,
-    trial_sizes,
+    tried,
 )
 from cad.model import Part
 from cad.model_classes import class_of, description_of
@@ -99,12 +99,15 @@ def test_a_volume_other_than_the_program_says_is_refused(tmp_path):
 
 
 def test_a_size_that_follows_a_trial_is_the_role(tmp_path):
-    before, after = (trial_sizes(ring(bore, tmp_path)) for bore in (20, 20.2))
-    assert before == {"diameter": [20, 40], "distance": [8]}
-    assert role_of(20, 20.2, before, after) == "diameter"
-    assert role_of(10, 10.1, before, after) == "radius"
-    assert role_of(8, 8.08, before, after) == ""
-    assert role_of(20, 20.2, after, after) == ""
+    before, after = (tried(ring(bore, tmp_path)).sizes for bore in (20, 20.2))
+    assert before == {
+        "diameter": [20, 40], "diameter inside": [20], "diameter outside": [40],
+        "distance": [8], "distance inside": [], "distance outside": [8],
+    }  # fmt: skip
+    assert role_of(20, 20.2, before, after) == ("diameter", "inside")
+    assert role_of(10, 10.1, before, after) == ("radius", "inside")
+    assert role_of(8, 8.08, before, after) == ("", "")
+    assert role_of(20, 20.2, after, after) == ("", "")
 
 
 def test_trust_names_what_is_read_back_and_what_is_not():

@@ -1,4 +1,4 @@
-"""The columns of a table of variants: every parameter or input that at least one of them overrides."""
+"""The columns of a table of variants: every parameter or input that at least one variant overrides."""
 
 from __future__ import annotations
 

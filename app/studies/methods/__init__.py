@@ -13,5 +13,5 @@ polish          local search for the nearest optimum, by SLSQP
 search          the optimum at one level: scan, then polish
 confirmation    the coarse level's prediction compared with the fine level's result
 optimise        explore at the coarse level, confirm at the fine one, correct, repeat
-front           the same for several objectives, by NSGA-II of pymoo
+front           the same steps for several objectives, by NSGA-II of pymoo
 """

@@ -1,6 +1,6 @@
 """The page of one revision of a design, and its differences from another revision.
 
-If one of its templates or models cannot be used now, the page shows the stored results and the reason.
+If a template or model of the revision cannot be used now, the page shows the stored results and the reason.
 """
 
 from __future__ import annotations

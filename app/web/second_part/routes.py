@@ -22,13 +22,13 @@ from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id
 from app.web.shared.responses import go, show
 from app.web.shared.services import PageServices, Refused, ThePageServices
+from cad.imported_models import imported_description
 
 PATIENCE = 15.0
-"""Time that the page waits for the import, which draws nothing [s]."""
+"""Time that the page waits for the import, which draws imported models that are no STEP files [s]."""
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
-_FIXED = "Fixed part "  # the title of an imported STEP file begins with this
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
 
@@ -148,6 +148,13 @@ async def _form(
 
 
 async def _bought(services: PageServices) -> list[TemplateSummary]:
-    """Return the newest version of each imported STEP file."""
+    """Return the newest version of each imported model with a file of its own, which is no assembly."""
     items = (await services.run(list_models, services.catalogues, limit=500)).items
-    return [item for item in items if item.latest and item.title.startswith(_FIXED)]
+    models = services.catalogues.models
+    return [
+        item
+        for item in items
+        if item.latest
+        and (about := imported_description(models.get(item.id, item.version))) is not None
+        and about.program != "assembly"
+    ]

@@ -5,7 +5,7 @@ parameter of a model, `film@level` for an option of a step, `film@limits.permiss
 these names are distinct, and differ from fields of the form itself (`note`) and from properties of HTML's
 forms (`length`).
 
-`shared/typed.js` does the same in the browser; `tests/app/web` compares the two.
+`shared/typed.js` does this conversion in the browser; `tests/app/web` compares the two.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ By the force method of `crank_supports`, the reactions are R = R₀ + B x, with 
 displacements of the shaft d(R), of the supports R/k + c R/|R|, and the offsets o of the bores are compatible:
 Bᵀ(d + R/k + c R/|R| − o) = 0. This is the minimum of a convex energy, which damped Newton steps find at all
 crank angles at once. |R| is replaced by √(R² + ε²), with ε reduced to 1e-7 of the loads: a main without
-contact then carries only that much.
+contact then carries only a force of that order.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """A journal bearing under static load with elastic liner and housing, at every level.
 
     rigid    the converged Swift–Stieber film of `film_map`
-    liner    the same with the liner as columns
-    housing  the same with the liner, and with the housing as a ring under the axial mean of the pressure
+    liner    that film with the liner as columns
+    housing  that film with the liner, and the housing as a ring under the axial mean of the pressure
 
 The effect of elasticity is the difference of two finite-volume solutions on the same mesh, compliant and
 rigid, and is applied to the film of the map. A rigid bearing therefore has the map's film exactly, and the

@@ -1,7 +1,7 @@
 """The fit of DIN 31652-2 / ISO 7902-2 to the converged film of 1976: load and attitude, 1/8 ≤ B/D ≤ 1.
 
-Within its range the error of So is 2.4 % (median) and 6.8 % (largest), that of the attitude 0.7° and 2.4°.
-Outside its range it is badly wrong (+221 % at B/D 1.5, tenfold at 2), so values there are refused.
+Within its range the error of So is 2.4 % (median) and 6.8 % (largest); the error of the attitude is 0.7° and
+2.4°. Outside its range it is badly wrong (+221 % at B/D 1.5, tenfold at 2), so values there are refused.
 Boundary condition: P = 0 at the ends and at the widest gap, Swift–Stieber rupture.
 
 References

@@ -3,7 +3,8 @@
 References
 ----------
 R. Holmes, J. Mech. Eng. Sci. 2, 1960, p. 337; E. Krämer, Dynamics of Rotors and Foundations, 1993,
-section 3.4. Their y is along the load; here x is, with y ahead of x in the sense of rotation.
+section 3.4. In these sources y is along the load; here x is along the load, and y ahead of x in the sense
+of rotation.
 """
 
 import numpy as np

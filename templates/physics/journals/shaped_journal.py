@@ -3,7 +3,7 @@
 A plain, aligned bearing has the levels of `static_journal`. `shaped_balance` solves a bore with lobes or bell
 mouth, a tilted journal, and a plain bearing with grooves or supply pressure: at level `reynolds` with
 Swift–Stieber rupture, at level `mass_conserving` with mass-conserving cavities. Everything is dimensionless
-as there, based on the smallest clearance; angles are measured from the load.
+as in `static_journal`, based on the smallest clearance; angles are measured from the load.
 """
 
 from __future__ import annotations

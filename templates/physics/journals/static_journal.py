@@ -5,7 +5,7 @@ Levels, cheapest first. Each states its boundary condition in `BOUNDARY` and its
     short_bearing    Ocvirk's closed form
     fit              DIN 31652-2 / ISO 7902-2
     map              the converged Swift–Stieber film, precomputed (`film_map`)
-    reynolds         the same film, solved on two meshes and extrapolated
+    reynolds         the Swift–Stieber film, solved on two meshes and extrapolated
     mass_conserving  cavities after Jakobsson, Floberg and Olsson; grooves and supply pressure
 
 Everything is dimensionless, P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Results are NaN at

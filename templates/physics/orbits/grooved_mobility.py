@@ -7,8 +7,8 @@ around the load's direction that the groove covers. M is the mobility of the fin
 With s = 1 this is exact: two adjacent bearings, each as wide as a land, carry half the load each. For s
 between 0 and 1 the formula is a blend.
 
-The film is always full of oil, so starvation cannot occur. `benchmarks/film_cycle_ensemble.py` compares it
-with level `supplied`.
+The film is always full of oil, so starvation cannot occur. `benchmarks/film_cycle_ensemble.py` compares
+level `mobility_grooved` with level `supplied`.
 """
 
 from dataclasses import dataclass, replace

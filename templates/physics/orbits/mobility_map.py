@@ -8,9 +8,9 @@ are those of `film_mobility`, with rotation and squeeze solved together; directi
 `benchmarks/mobility_map.py` computes and measures the map from solutions extrapolated by Richardson. Measured
 at 800 places, the error of M is at most 7e-4 of its magnitude up to eps 0.999 at B/D 0.1 … 4 (median 5e-5),
 and at most 3e-3 anywhere; the error of P_max is 2 % and largest where the journal separates; `mobility_error`
-returns it for each place. Range: eps 0 … 1 − 1e-6, B/D 0.02 … 10, every direction; values outside are
-refused. Velocity of the centre: d(eps)/dt = M F psi²/(B D eta) + omega_bar × eps, omega_bar the mean speed of
-journal and sleeve.
+returns the errors near each place. Range: eps 0 … 1 − 1e-6, B/D 0.02 … 10, every direction; values outside
+are refused. Velocity of the centre: d(eps)/dt = M F psi²/(B D eta) + omega_bar × eps, omega_bar the mean
+speed of journal and sleeve.
 
 References
 ----------

@@ -4,9 +4,9 @@ r"""The average Reynolds equation of rough surfaces after Patir and Cheng, solve
     \partial_x(\phi_x h^3\partial_x p) + \partial_z(\phi_x h^3\partial_z p)
     = 6\,\eta\,U\,\partial_x(\bar h_T + \sigma\Phi_s)
 
-phi_x is that of isotropic roughness (gamma = 1) in both directions. Phi_s is (sigma_1/sigma)² phi_s of the
-moving surface minus (sigma_2/sigma)² phi_s of the other, so it vanishes for surfaces of equal roughness. The
-mean gap h_T of a normal distribution is h where the surfaces do not touch. Below h/sigma = 0.5, where the
+phi_x is the factor of isotropic roughness (gamma = 1) in both directions. Phi_s is (sigma_1/sigma)² phi_s of
+the moving surface minus (sigma_2/sigma)² phi_s of the other, so it vanishes for surfaces of equal roughness.
+The mean gap h_T of a normal distribution is h where the surfaces do not touch. Below h/sigma = 0.5, where the
 tables end, the factors are constant.
 
 The tables' numbers were taken from the source code of foam-extend 4.0 (flowFactorsPatirCheng.C), which quotes

@@ -4,7 +4,7 @@ The levels compute orbit, pressure, power loss and flow:
 
     mobility_short    Booker's closed form (1971) of the short bearing's half film; ignores the supply
     mobility          the finite bearing's mobility from its map; ignores the supply
-    mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands carry it
+    mobility_grooved  `mobility` with a groove in the sleeve: two lands carry a load that acts at the groove
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
                       nowhere else; ignores groove, hole and supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; case after case

@@ -2,7 +2,7 @@
 
 The train is undamped. With K = Dᵀ k D, where D gives the twists from the free angles and M is diagonal, the
 angular frequencies are the singular values of k^(1/2) D M^(-1/2): forming K would lose the small ones. Shafts
-without stiffness, such as that of a viscous damper's ring, give modes at 0.
+without stiffness, such as the shaft of a viscous damper's ring, give modes at 0.
 """
 
 from __future__ import annotations

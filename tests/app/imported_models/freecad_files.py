@@ -1,5 +1,6 @@
 """Files of FreeCAD for tests, drawn by FreeCAD itself; without FreeCAD such tests are skipped."""
 
+import json
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -47,3 +48,16 @@ def imported(http, id, content, **query):
     job = ended(http, post(http, id, content, **query))
     assert job["state"] == "done", job
     return job["result"]
+
+
+def documents(wanted):
+    """The files of documents of `draw_ends.py` by name; wanted are the kind and the sizes of each."""
+    program = find()
+    with TemporaryDirectory(prefix="crankwright-drawn-") as folder:
+        script = Path(__file__).with_name("draw_ends.py")
+        listed = json.dumps([[name, kind, sizes] for name, (kind, sizes) in wanted.items()])
+        command = [program.python, "-I", str(script), program.modules, folder, listed]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=180)
+        files = {name: Path(folder, f"{name}.FCStd") for name in wanted}
+        assert all(file.exists() for file in files.values()), done.stderr
+        return {name: file.read_bytes() for name, file in files.items()}

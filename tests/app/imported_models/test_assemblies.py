@@ -243,7 +243,7 @@ def test_a_component_that_makes_no_sense_is_refused_by_name(http, bolt, componen
         (manifest(below(), base="no_such"), "no_such"),
         (manifest(below(), base="m8_bolt"), "is no model of this program"),
         ({**manifest(below()), "more": 1}, "more"),
-        (manifest(below(name="origin")), "origin is a datum"),
+        (manifest(below(name="origin")), "`origin` is the name of a datum"),
     ],
 )
 def test_a_manifest_that_makes_no_sense_is_refused_with_the_reason(http, bolt, said, why):

@@ -202,10 +202,8 @@ def test_a_design_drives_creo_and_keeps_its_last_good_model(http, driven):
 def test_a_volume_other_than_creo_says_is_refused(http, driven):
     driven.wrong["massprops"] = json.dumps({"status": {"error": False}, "data": {"volume": 1000.0}})
     job = ended(http, post(http, "creo_other", CONTENT))
-    assert job["state"] == "done"  # the import compares sizes; each build compares the volume
-    body = {"parameters": {}, "artifacts": ["step"]}
-    answer = http.post(f"{job['result']}/build", json=body, headers={"Prefer": "wait=60"})
-    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "volume")
+    assert job["state"] == "failed"
+    assert (job["problem"]["status"], job["problem"]["errors"][0]["code"]) == (422, "volume")
 
 
 def test_without_creo_it_is_said_what_to_set(http):

@@ -33,7 +33,7 @@ def test_a_step_file_becomes_a_part_of_the_same_measures(http, model, bearing):
     high = [bearing.measures[f"high_{axis}"] for axis in "xyz"]
     assert measured["bounding_box"]["high"]["value"] == pytest.approx(high, abs=1e-6)
     assert measured["dimensions"] == {}
-    assert measured["trust"].startswith("lower: the shape is that of the STEP file")
+    assert measured["trust"].startswith("lower: the shape is that of the solids in the STEP file")
 
 
 def test_it_says_where_it_comes_from(http, model, bearing):

@@ -10,8 +10,10 @@ from app.imported_models.descriptions import described_freecad
 from app.imported_models.freecad_process import FreeCadAnswer
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
-from cad.imported_models import ProgramResult
+from cad.examination import Examination, examine
+from cad.imported_models import ProgramResult, Trial, sizes_of
 
+NO_SIZES = sizes_of([])
 LENGTHS = [[f"Sheet{n}", "cell", f"length{n}", 10.0 + n, "mm", "Sheet"] for n in range(30)]
 
 
@@ -24,12 +26,16 @@ class SlowWarm:
     def find(self):
         pass
 
-    def ask(self, sha, content, do, given, cancelled, seconds):
+    def ask(self, sha, content, do, given, cancelled, seconds, ends=None):
         self.asked += 1
         time.sleep(min(self.takes, seconds))
         if self.takes > seconds:
             raise DeadlineExceeded(seconds)
-        return FreeCadAnswer({"parameters": LENGTHS, "program": "FreeCAD 1"}, ProgramResult())
+        about = {
+            "parameters": LENGTHS, "program": "FreeCAD 1", "left_out": [],
+            "at_import": {"parts": [["Body", 1]], "inner": []},
+        }  # fmt: skip
+        return FreeCadAnswer(about, ProgramResult())
 
 
 class Context:
@@ -42,13 +48,13 @@ class Context:
         if function.__name__ == "admitted":
             return b"file"
         assert limits.deadline > 0
-        return {"diameter": [], "distance": []}
+        return Examination((), (), b"") if function is examine else Trial(NO_SIZES, 1.0, 6 * (0.0,))
 
 
 def described(warm):
     store = SimpleNamespace(put=lambda content: "sha", read=lambda sha: b"file")
     programs = SimpleNamespace(freecad=SimpleNamespace(warm=warm))
-    return described_freecad(b"file", "a.FCStd", store, programs, Context())
+    return described_freecad(b"file", "a", "a.FCStd", store, programs, Context())
 
 
 def test_many_slow_drawings_have_one_deadline_together():

@@ -72,7 +72,7 @@ def test_the_command_imports_shows_and_gives_back(served, washer, tmp_path):
     done = run(served, "import", file, "--id", "axial_washer")
     assert done.exit_code == 0, done.output
     assert "axial_washer version 1: Fixed part axial" in done.output
-    assert "trust: lower: the shape is that of the STEP file" in done.output
+    assert "trust: lower: the shape is that of the solids in the STEP file" in done.output
     folder = tmp_path / "back"
     folder.mkdir()
     back = run(served, "original", "axial_washer", "--version", 1, "--folder", folder)
