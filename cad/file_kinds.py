@@ -20,7 +20,7 @@ from templates.core.units.units import unit
 
 MESHES = ("glb", "stl", "3mf")
 """Kinds of files that are triangles, of which a user may choose the deflection."""
-BY_PART = (*MESHES, "brep")
+BY_PART = (*MESHES, "brep", "drawing.svg", "dxf")
 """Kinds of files that can hold one part alone, in its own coordinates."""
 
 FINEST, COARSEST = 1e-4, 0.1
