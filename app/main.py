@@ -112,11 +112,9 @@ ROUTERS = (
     approvals,
     audit,
 )
-"""They are tried one after another; those that are called most are the first: `evaluate`, then saves.
-
-Reports come before variants: `…/variants/report.pdf` is not a variant. Imports of models come before models:
-`/models/import` is not one.
-"""
+"""The routers are tried in this order; the most frequently used ones come first: `evaluate`, then saves.
+Reports precede variants, because `…/variants/report.pdf` is not a variant. Imports of models precede
+models, because `/models/import` is not a model."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:

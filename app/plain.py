@@ -12,7 +12,7 @@ Json = Any
 """A JSON value of any shape: a number, a text, a list of any depth, an object."""
 
 JsonObject = dict[str, Json]
-"""A JSON object, such as a column of the database holds."""
+"""A JSON object, such as the content of a JSON column of the database."""
 
 Raw = object
-"""A value as its user typed it: untrusted; the language of templates reads it and says what is wrong."""
+"""A value as the user typed it. It is untrusted; the language of templates reads it and reports faults."""

@@ -240,7 +240,7 @@ def content_of(
         "largest of its four; of the film at the viscosity used; null: not measured, or refused",
         "relative_to": {name: size for name, size in RELATIVE_TO.items() if name in cls.formulas},
         "cost": "processor seconds a point, of all measures of the film but stiffness and damping",
-        "cost_of_all": 3.0,  # with stiffness and damping, which take twice as long as all the rest
+        "cost_of_all": 3.0,  # with stiffness and damping, which take twice as long as all other outputs
         "axes": axes,
         "levels": levels,
     }

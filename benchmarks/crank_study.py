@@ -32,7 +32,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "crank_study.md", DOCS / "pictures" / "crank_study.png"
 
 LEVEL = "fine"
-WIDTH = 118  # of a line of the page
+WIDTH = 118  # length of a line of the page
 SHEAR = 210 / 2.6  # [GPa]
 HEADS = (
     "change", "K", "paper: K", "mass", "K per mass", "√(K/I)", "torsional mode", "paper: frequency",
@@ -89,10 +89,10 @@ class State:
     """One variant of the shaft, from one revision of the design."""
 
     stiffness: float  # [N m/rad], by finite elements
-    error: float  # of that, relative, as estimated
-    frequency: float  # [Hz], of stiffness and measured inertia, as the paper takes it
+    error: float  # estimated relative error of the stiffness
+    frequency: float  # [Hz], from stiffness and measured inertia, as in the paper
     mode: float  # [Hz], the first torsional mode of the solid by finite elements
-    recommended: float  # [N m/rad], of the throw alone in closed form
+    recommended: float  # [N m/rad], of the throw alone by the closed form
     mass: float  # [kg]
     inertia: float  # [kg m²], about the shaft's axis
 

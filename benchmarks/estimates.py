@@ -40,10 +40,10 @@ from templates.core.units.quantity import read_any
 from templates.door import built_in
 
 SEED, COUNT, ROWS = 36, 12, 4
-SPREAD = 0.4  # of the logarithm of each factor
+SPREAD = 0.4  # standard deviation of the logarithm of each factor
 WITHIN = 3.0
 MOST_DRAWN = 200
-LONGEST = 40.0  # estimated time of a study that is measured [s]
+LONGEST = 40.0  # longest estimated time of a study that is measured [s]
 STUDIES = (
     {"method": "sample", "points": 64},
     {"method": "sample", "points": 2000},
@@ -93,7 +93,7 @@ def levels(wanted: Collection[str]) -> None:
         measured = accuracy(cls) if not wanted or cls.id in wanted else None
         for level in cls.levels if measured else ():
             if (cls.id, level) == ("oil_film_cycle", "supplied"):
-                continue  # the marches that are kept
+                continue  # these marches are kept
             report(f"{cls.id} {cls.version} {level}, alone", list(_ratios(cls, level, "", random)))
             if cls.most_points.get(level, ROWS) >= ROWS:
                 listed = _listed(cls, level, random)
@@ -126,7 +126,7 @@ def _ratios(cls: type[Template], level: str, listed: str, random: np.random.Gene
             evaluate(cls, inputs, level=level, outputs=outputs)
         except TemplateError:
             continue
-        if count:  # the first one loads what is loaded once
+        if count:  # the first run also loads modules
             yield expected / (time.process_time() - begun)
         count += 1
         if count > COUNT:

@@ -31,8 +31,8 @@ from benchmarks.function_calls import PACKAGES, WARM_UP, Bench, Calls
 
 ROOT = Path(__file__).parents[1]
 API = "/api/v1"
-COUNTS = 6  # requests of which each must enter a file
-PAUSE = 0.1  # [s] before each of them, so that what the start left to do ends meanwhile
+COUNTS = 6  # number of requests, each of which must enter a file
+PAUSE = 0.1  # [s] before each request, so that work left over from the start ends
 QUIET = {"If-Match": "*", "Prefer": "wait=60"}
 
 

@@ -116,7 +116,7 @@ def finer_march(duty: RandomDuty, marched: SuppliedOrbit) -> list[float | None] 
     near = NEAR_HOLES if marched.under_load > STAYS else ()
     last = near[-1] if near else FINE
     thin = MORE_ROWS if marched.least_gap < THIN else 0
-    across = round(FINER * (last.across + thin)) - thin  # the orbit adds them
+    across = round(FINER * (last.across + thin)) - thin  # the orbit adds `thin` rows
     finest = replace(last, around=round(FINER * marched.around), across=across, step=last.step / FINER,
                      cells=FINER * last.cells)  # fmt: skip
     meshes = (COARSE, FINE, *near, finest)

@@ -201,7 +201,7 @@ def product_of(one: float | None, other: float | None) -> float | None:
 
 
 NONE = Law(NULL, {}, {})
-FEWEST_TIMED = 9  # duties of a band whose times have a median of their own
+FEWEST_TIMED = 9  # smallest number of duties in a band for a median time
 Laws = dict[str, dict[str, dict[str, Law]]]
 
 
@@ -263,7 +263,7 @@ def powers_of(places: Array, errors: Array) -> dict[str, float]:
     Koenker, Bassett: Econometrica 46, 1978, p. 33; here with rounded kinks and a penalty on large exponents.
     """
     middle, width = places.mean(axis=0), places.std(axis=0)
-    width = np.where(width > 1e-9, width, np.inf)  # what is the same for all has no power
+    width = np.where(width > 1e-9, width, np.inf)  # a constant quantity separates no duties
     z, y = (places - middle) / width, np.log(np.clip(errors, LEAST, 1e3))
 
     def loss(w: Array) -> tuple[float, Array]:

@@ -26,7 +26,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 PACKAGES = ("app", "cad", "templates")
-WARM_UP = 3  # changes before the one that is counted
+WARM_UP = 3  # changes before the counted one
 BACKGROUND = (
     *("jobs-", "leases", "progress", "operation-clock"),
     *("audit-sealer", "retention", "worksheets", "imported models"),
@@ -127,10 +127,10 @@ class Bench:
         from app.workers.inline import Inline
 
         job = self.jobs.get(saved.job)
-        has_keeper = "keep" in signature(JobContext).parameters  # older programs stored progress themselves
+        has_keeper = "keep" in signature(JobContext).parameters  # older versions stored progress themselves
         keep: Any = _forget if has_keeper else self.database
         context: Any = JobContext(job, keep, Inline(), Limits(), self.jobs.events, threading.Event())
-        context._stored = float("inf")  # a slow machine would store progress, every half second
+        context._stored = float("inf")  # on a slow machine, progress would be stored every half second
         self.database.write(self.regeneration(job, context))
         return saved
 

@@ -39,7 +39,7 @@ from templates.physics.films.reynolds import static_film
 
 RESULTS, PICTURE = Path("benchmarks/results/growth.json"), Path("docs/pictures/growth.svg")
 POINTS = (1, 10, 100, 1_000, 10_000, 100_000, 1_000_000)
-MESHES = (64, 128, 256, 512)  # cells around; an eighth of them across
+MESHES = (64, 128, 256, 512)  # circumferential cells; an eighth of them axially
 DESIGNS = (10, 100, 1_000, 3_000)
 STEPS = (1, 3, 10, 30, 100)
 VARIANTS = (1, 3, 10, 30, 100)
@@ -121,7 +121,7 @@ def serving() -> Iterator[Served]:
         crankwright(Path(folder)) as server,
         httpx.Client(base_url=server.url, timeout=300, trust_env=False) as http,
     ):
-        time.sleep(4)  # it forks its first processes
+        time.sleep(4)  # the service forks its first processes
         yield Served(server, http)
 
 

@@ -23,7 +23,7 @@ import pytest
 
 from benchmarks.processor_time import used
 
-FILE = "CRANKWRIGHT_TEST_COSTS"  # names the file to which workers append
+FILE = "CRANKWRIGHT_TEST_COSTS"  # names the file to which workers append costs
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

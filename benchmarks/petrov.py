@@ -98,7 +98,7 @@ def measure() -> None:
 
 def draw() -> None:
     """Draw film friction over Petrov's against eccentricity."""
-    plt.rcParams.update({"svg.hashsalt": "crankwright", "svg.fonttype": "none"})  # the same bytes again
+    plt.rcParams.update({"svg.hashsalt": "crankwright", "svg.fonttype": "none"})  # reproducible bytes
     gap = np.geomspace(1e-3, 1, 400)
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
     for ratio in (0.1, 0.5, 1.0, 2.0, 10.0):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _TICK = 1 / os.sysconf("SC_CLK_TCK")  # s
-_PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of a `stat` behind the name of its program
+_PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of `stat` after the program's name
 
 
 def environment() -> dict[str, str]:
@@ -85,5 +85,5 @@ def _fields(place: Path) -> list[int]:
     """Return the numbers of a process; none if it has ended."""
     with suppress(OSError):
         text = (place / "stat").read_text().rpartition(")")[2].split()
-        return [0, *(int(field) for field in text[1:20])]  # the first is a letter, its state
+        return [0, *(int(field) for field in text[1:20])]  # the first field is a letter, the state
     return []

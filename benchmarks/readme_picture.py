@@ -25,7 +25,7 @@ TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "link.png"
 SHOWN = ("sommerfeld_number", "relative_eccentricity", "minimum_film_thickness")
 SCALES = ("1", "1.25")
 UNITS = {"1": "", "um": "µm"}
-WIDEST = 116  # of what is shown of a part [mm]
+WIDEST = 116  # largest size of a part in the picture [mm]
 
 
 def main() -> None:

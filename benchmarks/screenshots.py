@@ -21,9 +21,9 @@ from templates.examples.index import examples as worksheets
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SCREENS = {"wide": (1440, 900), "narrow": (390, 844)}
 EXAMPLE = worksheets()[0]  # the paper's worksheet
-COLOURS = 256  # of a picture: enough for the eye, and small
+COLOURS = 256  # colours of a picture: enough for the eye, and small files
 MOST_BYTES = 300_000
-LONGEST = 120_000  # ms, for a part to be built and analysed
+LONGEST = 120_000  # ms that a part may take to be built and analysed
 
 
 def main() -> None:
@@ -92,7 +92,7 @@ def _seen(page: Page, address: str, painted: Callable[[Page], None] | None) -> b
     answer = page.goto(address, wait_until="networkidle")
     assert answer is not None
     assert answer.ok, f"{address} answers {answer.status}"
-    page.wait_for_timeout(1500)  # pictures that appear are drawn after the network is silent
+    page.wait_for_timeout(1500)  # charts appear only after the network is idle
     if painted:
         painted(page)
     return page.screenshot()

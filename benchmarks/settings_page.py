@@ -39,7 +39,7 @@ def page() -> str:
 
 
 def _row(variable: str, name: str, field: FieldInfo) -> str:
-    meaning = field.description or OF_THE_COMMAND[name]  # a new setting has a description
+    meaning = field.description or OF_THE_COMMAND[name]  # every setting must have a description
     cells = (f"`{variable}`", _type(field), _default(field), meaning)
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
 

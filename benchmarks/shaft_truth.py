@@ -43,10 +43,10 @@ Found = dict[str, float]
 
 RESULTS = Path("benchmarks/results/shaft_truth.json")
 MESH = Fineness(size=0.6, curvature=0.55, turn=pi / 3)
-SHARP_MESH = Fineness(size=0.8, curvature=0.4, turn=pi / 3, sharp=0.35)  # before layers are cut off
+SHARP_MESH = Fineness(size=0.8, curvature=0.4, turn=pi / 3, sharp=0.35)  # before layers are removed
 LAYERS, THINNER = 2, 0.15
 ORDERS, SHARP_ORDERS = (2, 3, 4), (2, 3)
-RATIO = 0.15  # of the changes from order 3 to 4 and from 2 to 3, with sharp edges: 0.175 and 0.126 in RESULTS
+RATIO = 0.15  # change from order 3 to 4 over change from 2 to 3 with sharp edges: 0.175 and 0.126 in RESULTS
 KEY = (
     f"{MESH} in orders {ORDERS}, or {SHARP_MESH} with {LAYERS} layers by {THINNER} in orders {SHARP_ORDERS}; "
     f"ngsolve {ng.__version__}"
@@ -63,8 +63,8 @@ OUTPUTS = (*ASKED, FREQUENCY)
 
 _RESIDUAL = 1e-4
 _STEPS = 1000
-_SOLUTIONS = 4  # beyond the static one, for the mode
-_SAMPLES = 200  # of an edge
+_SOLUTIONS = 4  # solutions for the mode, beyond the static one
+_SAMPLES = 200  # number of points on an edge
 
 
 def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:

@@ -87,7 +87,7 @@ def truth_of(loaded: BearingCase, balanced: Balance) -> dict[str, Array]:
     finest = shaped_balance.stable_film(loaded, fine.lie.e, mesh, fine.film)
     settled = shaped_balance.SETTLED
     try:
-        shaped_balance.SETTLED = np.inf  # the truth is extrapolated, whatever the steps are
+        shaped_balance.SETTLED = np.inf  # steps of any size may be extrapolated to the true value
         return values_of(measured_film(Balance(balanced.coarse, fine, finest), loaded.bore, loaded.tilt, 1.0))
     finally:
         shaped_balance.SETTLED = settled

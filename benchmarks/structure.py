@@ -21,7 +21,7 @@ from benchmarks import files_entered
 ROOT = Path(__file__).parents[1]
 APP = ROOT / "app"
 PACKAGES = ("app", "cad", "templates")
-SHORT = 60  # lines; a shorter module that one other imports belongs into that one
+SHORT = 60  # lines; a shorter module with a single importer belongs into that importer
 RESOURCE = frozenset({"routes", "schemas", "bodies", "views", "repository", "service", "tasks", "tables"})
 """The files of a resource: the same names in each folder, however short."""
 
@@ -49,7 +49,7 @@ def layers() -> tuple[frozenset[str], ...]:
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     (drawn,) = (one["layers"] for one in contracts if one["name"] == "the layers of app")
     parts = [frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn]
-    place = parts.index(frozenset({"api"}))  # what routes share is right beneath them
+    place = parts.index(frozenset({"api"}))  # modules shared by routes lie directly below them
     return (*parts[:place], frozenset({"routes"}), *parts[place:])
 
 

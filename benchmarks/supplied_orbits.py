@@ -97,7 +97,7 @@ def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Ro
     """Return a stored duty continued for more cycles, then with more cells and steps."""
     base = replace(FINE, around=kept["around"])
     across = cells * base.across
-    if kept["least_gap"] < THIN:  # the orbit adds as many rows to every mesh
+    if kept["least_gap"] < THIN:  # the orbit adds as many rows to each mesh
         across += (cells - 1) * MORE_ROWS
     orbit, seconds = marched(
         duty, (COARSE, base, MeshSettings(cells * base.around, across, base.step / steps, base.most))
@@ -151,7 +151,7 @@ def run(what: str, duties: int) -> None:
     """Calculate the duties that are not stored yet."""
     kept = results()
     rows = kept["duties"]
-    marched(random_duty(SEED, 1))  # compiles
+    marched(random_duty(SEED, 1))  # compiles the kernels
     for number in sorted(range(duties), key=lambda n: not missed(rows.get(str(n), {}))):
         duty, own = random_duty(SEED, number), rows.get(str(number))
         if what == "ensemble" and own is None:

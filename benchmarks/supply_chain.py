@@ -24,7 +24,7 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "docs" / "requirements.lock"
 LICENCES, BILL = ROOT / "docs" / "licences.md", ROOT / "docs" / "sbom.cdx.json"
-LONGEST = 60  # letters; longer "licences" are the text of one
+LONGEST = 60  # letters; a longer "licence" is the text of one
 
 HEAD = """# Licences
 
@@ -110,7 +110,7 @@ EXTRAS = {
     "websockets",
     "python-dotenv",
     "pyyaml",
-}  # of uvicorn[standard]
+}  # dependencies of uvicorn[standard]
 
 
 OFFERED = ("study", "team", "traces")  # extras that a user may install

@@ -38,7 +38,8 @@ from templates.core.errors import InvalidInputs
 RESULTS = Path("benchmarks/results/torsion_levels.json")
 COUNT, SEED = 12, 20261121
 
-# Of the journal's diameter: throws of engines and compressors, with overlap of pin and journal and without.
+# Ratios to the journal's diameter: throws of engines and compressors, with and without overlap of pin and
+# journal.
 RANGES = {
     "journal_length": (0.5, 1.0), "pin_diameter": (0.7, 1.05), "pin_length": (0.4, 0.9),
     "web_thickness": (0.25, 0.5), "web_width": (1.35, 1.8), "throw": (0.5, 1.1), "fillet": (0.02, 0.08),

@@ -33,8 +33,8 @@ MOST_SOLIDS = 300
 FARTHEST = 1e5
 """A fixed part stands within this distance of its datum, along each axis [mm]."""
 SHIFTS, TURNS = ("x", "y", "z"), ("turn_x", "turn_y", "turn_z")
-_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
-_WITHIN = ":"  # between the name of a fixed part and that of one of its solids
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
+_WITHIN = ":"  # separates the name of a fixed part from that of one of its solids
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Component:
     may_overlap: tuple[str, ...] = ()  # names of parts and components
     density: float = STEEL_DENSITY  # [kg/m³]
     material: str = ""
-    holds: tuple[str, ...] = ()  # ids of the models that it is made of
+    holds: tuple[str, ...] = ()  # ids of the models from which it is built
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
         """Return the position of the part as parameters of the assembly, with default values."""
@@ -191,15 +191,15 @@ class AssemblyModel(ImportedModel):
         near = nearest(name, list(known))
         meant = f"Did you mean {', '.join(near)}? " if near else ""
         there = listed([part.name for part in parts])
-        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
-        raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
+        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is not a part"
+        raise GeometryError("may_overlap", f"{wrong}. {meant}The parts are {there}")
 
     def _built(self) -> Iterator[Part]:
         from cad.placement import frame_of
 
         drawn = vars(self).get(_DRAWN)
         if drawn is None:
-            raise GeometryError("kernel", f"{self.id} has not been given its fixed parts", self.inputs)
+            raise GeometryError("kernel", f"{self.id} needs its fixed parts before it is built", self.inputs)
         there = dict[str, Part]()
         if self.imported.base:
             for part in super(ImportedModel, self).build():
@@ -219,7 +219,7 @@ class AssemblyModel(ImportedModel):
             for number, part in enumerate(parts):
                 placed = replace(part, places=tuple(at * place for place in part.places))
                 there[part.name] = placed
-                if number == 0:  # a datum may name the component
+                if number == 0:  # a datum may refer to the whole component
                     there[component.name] = placed
                 yield placed
 

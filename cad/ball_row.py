@@ -27,12 +27,12 @@ INWARDS, OUTWARDS = -1, 1
 class Ring:
     """Cross-section of a ring [mm]: `s` runs from the pitch circle to the back, `z` from mid-width."""
 
-    shoulder: float  # s of the shoulder
-    back: float  # s of the bore or the outside
+    shoulder: float  # coordinate s of the shoulder
+    back: float  # coordinate s of the bore or outside surface
     width: float
     chamfer: float  # of the edges at the back
     groove_radius: float
-    groove_centre: float  # s of the centre of the groove's arc; the groove touches the ball at z = 0
+    groove_centre: float  # coordinate s of the arc's centre; the groove touches the ball at z = 0
 
     @property
     def _half_angle(self) -> float:

@@ -17,7 +17,7 @@ from cad.surfaces import PartSurfaces
 
 MOST_NAMED = 20
 """Of interferences in a refusal."""
-_BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are good to some 1e-7
+_BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are accurate to about 1e-7
 _DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
 _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
 
@@ -37,7 +37,7 @@ def check_bodies(
     if wanted != counted:
         raise GeometryError(
             "not_one_solid",
-            f"{model.id} should have the parts {wanted}; the file has {counted}",
+            f"{model.id} must have the parts {wanted}; the file has {counted}",
             model.inputs,
         )
     by_name = {part.name: part for part in parts}
@@ -134,7 +134,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
     GeometryError
         `place`.
     """
-    if is_single(parts):  # its coordinates have its place in them
+    if is_single(parts):  # the coordinates of a single part include its position
         return
     standing = {body.name: body.places for body in bodies}
     for part in parts:
@@ -190,7 +190,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
         return GeometryError(code, f"{part.name} of {model.id} {detail}", part.shaped_by or model.inputs)
 
     if one.solids != 1:
-        raise refuse("not_one_solid", f"should be one solid; it is {one.solids}")
+        raise refuse("not_one_solid", f"must be one solid, not {one.solids}")
     if not one.valid:
         raise refuse("invalid_solid", "is not a valid solid: its faces do not close or cross each other")
     if not (isfinite(one.volume) and isfinite(part.volume)):
@@ -198,7 +198,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
             "not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)"
         )
     if not isclose(one.volume, part.volume, rel_tol=part.tolerance):
-        raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
+        raise refuse("volume", f"must have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:

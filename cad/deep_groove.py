@@ -51,7 +51,7 @@ STATIC = np.array([
 ])  # fmt: skip
 """f_0 of ISO 76, table 1, radial contact groove ball bearings."""
 MATERIAL = 1.3  # b_m of ISO 281, table 1: contemporary, commonly used steel
-LARGE_BALL = 25.4  # [mm] from which capacity grows with the power 1.4 instead of 1.8
+LARGE_BALL = 25.4  # [mm], diameter from which capacity grows with the power 1.4 instead of 1.8
 
 
 @units(None, returns="m")

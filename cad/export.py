@@ -59,13 +59,17 @@ def derive(step: bytes, kind: str) -> bytes:
     """
     if kind == VALIDATED:
         return with_validation(step)
-    bodies, header = bodies_of(kind, read_step(step)), read_header(step)
+    whole, header = read_step(step), read_header(step)
+    bodies = bodies_of(kind, whole)
+    if (write := _DRAWERS.get(plain_kind(kind))) is not None:
+        return write(bodies, header, whole)
     if (deflection := deflection_of(kind, bodies)) is None:
         return _WRITERS[plain_kind(kind)](bodies, header)
     return _MESH_WRITERS[plain_kind(kind)](bodies, header, deflection)
 
 
 Writer = Callable[[Sequence[Body], Header | None], bytes]
+Drawer = Callable[[Sequence[Body], Header | None, Sequence[Body]], bytes]
 MeshWriter = Callable[[Sequence[Body], Header | None, float | None], bytes]
 
 
@@ -99,14 +103,16 @@ _WRITERS: dict[str, Writer] = {
     "stl": _write_stl,
     "3mf": _write_3mf,
     "brep": _write_brep,
-    "drawing.svg": write_drawing,
     "svg": lambda bodies, _header: write_svg(bodies),
     "png": lambda bodies, _header: write_png([mesh(body) for body in bodies]),
+}
+_DRAWERS: dict[str, Drawer] = {
+    "drawing.svg": write_drawing,
     "dxf": write_dxf,
-    "drawing.pdf": lambda bodies, header: as_pdf(write_drawing(bodies, header)),
+    "drawing.pdf": lambda bodies, header, whole: as_pdf(write_drawing(bodies, header, whole)),
 }
 
-DERIVED = (VALIDATED, *_WRITERS)
+DERIVED = (VALIDATED, *_WRITERS, *_DRAWERS)
 """The kinds that are derived from the STEP file."""
 
 

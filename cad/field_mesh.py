@@ -39,7 +39,7 @@ class Field:
     title: str
     unit: str
     values: Array
-    low: float  # of the scale of colours
+    low: float  # lower end of the colour scale
     high: float
 
     def colours(self) -> Array:
@@ -100,7 +100,7 @@ class Glb:
 
     def painted(self, field: Field) -> bytes:
         """Return the GLB file with the colours of a field; its root node states their meaning."""
-        linear = (field.colours() ** 2.2).astype(np.float32)  # glTF wants linear light
+        linear = (field.colours() ** 2.2).astype(np.float32)  # glTF needs linear colour values
         about = json.loads(json.dumps(self.about))
         data = linear.tobytes()
         start = len(self.binary)

@@ -20,7 +20,7 @@ from templates.core.units.units import unit
 
 MESHES = ("glb", "stl", "3mf")
 """Kinds of files that are triangles, of which a user may choose the deflection."""
-BY_PART = (*MESHES, "brep")
+BY_PART = (*MESHES, "brep", "drawing.svg", "dxf")
 """Kinds of files that can hold one part alone, in its own coordinates."""
 
 FINEST, COARSEST = 1e-4, 0.1
@@ -32,7 +32,7 @@ STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 """Of deflections, within a decade."""
 
 _AT, _OF, _UNIT = "@", "#", "mm"
-_SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
+_SAME = 1e-9  # relative; so 0.1 mm and 100 um are the same step
 
 
 def with_deflection(kind: str, raw: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
-LONGEST = 120  # of a design's name in UTF-8 [bytes]: file systems take 255 for all
+LONGEST = 120  # limit of a design's name in UTF-8 [bytes]: file systems allow 255 for the whole file name
 NAMELESS = "design"
 _OTHER = re.compile(r"[^A-Za-z0-9.-]+")
 

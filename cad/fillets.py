@@ -13,7 +13,7 @@ import numpy as np
 
 from templates.core.arrays import Array, Integers
 
-_MARGIN = 0.1  # of its radius: a fillet is looked at so far beyond its ends
+_MARGIN = 0.1  # relative to its radius: the search for a fillet extends this far beyond its ends
 _SECTORS = 24
 
 

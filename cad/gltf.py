@@ -17,7 +17,7 @@ from cad.step import rigid
 
 _FLOAT, _UINT = 5126, 5125  # component types
 _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
-_Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # column by column
+_Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # matrix in column order
 
 
 def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
@@ -93,7 +93,7 @@ def _mesh(one: Mesh, material: int, buffers: _Buffers) -> dict[str, Any]:
 
 
 def _material(one: Mesh) -> dict[str, Any]:
-    # glTF wants linear light, colours are given as on a screen (sRGB, here with its usual exponent).
+    # glTF needs linear colour values; colours here are in sRGB, approximated by its usual exponent.
     linear = [round(channel**2.2, 6) for channel in one.colour]
     metal = {"baseColorFactor": [*linear, 1.0], "metallicFactor": 0.6, "roughnessFactor": 0.35}
     return {"name": one.name, "pbrMetallicRoughness": metal}

@@ -17,7 +17,7 @@ from cad.part21 import description, plain, quoted
 LONGEST_HEADER = 65536
 """Part of a file that is searched for its header [bytes]; what `write_header` writes is a few thousand."""
 
-_LONGEST_PART = 180  # of a value in one string, beside its name
+_LONGEST_PART = 180  # longest part of a value in one string, after its name
 _NO_TIME = "1970-01-01T00:00:00"
 _TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8})")
 

@@ -50,7 +50,7 @@ MOST_PLANES = 300
 LONGEST_NAME = 100
 """Of a part, in letters."""
 
-_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ class Parameter:
     name: str
     words: str
     unit: str
-    value: float  # in the file as it was sent
-    source: str  # where it stands there: "Spreadsheet.bore", "Sketch.Constraints.width", "d12"
+    value: float  # value in the file as it was uploaded
+    source: str  # location in the file: "Spreadsheet.bore", "Sketch.Constraints.width", "d12"
     low: float | None = None
     high: float | None = None
     role: Role = ""
@@ -98,7 +98,7 @@ class Description:
     file: str  # SHA-256 of the file that the program opens, or of the manifest
     file_name: str
     title: str
-    made_with: str  # the program's version at the import
+    made_with: str  # version of the program at the time of the import
     parameters: tuple[Parameter, ...] = ()
     ends: Ends | None = None  # of a FreeCAD document; None if it was imported before they were recorded
     overlapping: tuple[tuple[str, str], ...] | None = None  # solids that overlap; None if not examined
@@ -159,7 +159,7 @@ class DrawnPart:
 
     name: str
     brep: bytes
-    volume: float | None = None  # [mm³]; None where the program states none
+    volume: float | None = None  # [mm³]; None if the program states none
 
 
 @dataclass(frozen=True)
@@ -168,8 +168,8 @@ class ProgramResult:
 
     parts: tuple[DrawnPart, ...] = ()
     step: bytes = field(default=b"", repr=False)
-    mass_volume: float | None = None  # [mm³] of all solids, where a program states it with a STEP file
-    fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # of an assembly: STEP files by hash
+    mass_volume: float | None = None  # [mm³] of all solids, if the program states it with a STEP file
+    fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # STEP files of fixed parts by hash
 
 
 class ImportedModel(CadModel):
@@ -187,7 +187,7 @@ class ImportedModel(CadModel):
         if _PARTS not in vars(self):
             drawn: ProgramResult | None = vars(self).get(_DRAWN)
             if drawn is None:
-                raise GeometryError("kernel", f"{self.id} has not been drawn by its program", self.inputs)
+                raise GeometryError("kernel", f"{self.id} must be drawn by its program first", self.inputs)
             parts = tuple(parts_of(drawn))
             _require_stated_volume(self, parts, drawn.mass_volume)
             vars(self)[_PARTS] = parts
@@ -225,7 +225,7 @@ class ImportedModel(CadModel):
                     raise _turned(one, wanted)
             offered = [size / per_size for size in sizes[kind]]
             if not offered:
-                raise LookupError(f"no {one.role} of the solid can be {one.name}")
+                raise LookupError(f"the solid has no {one.role}, so {one.name} cannot be measured")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
         return read
 
@@ -415,7 +415,7 @@ def _part(name: str, drawn: DrawnPart) -> Part:
     shape = Shape.importBrep(io.BytesIO(drawn.brep))
     solids = shape.Solids()
     if len(solids) != 1:
-        raise GeometryError("not_one_solid", f"{name} should be one solid; it is {len(solids)}")
+        raise GeometryError("not_one_solid", f"{name} must be one solid, not {len(solids)}")
     part = _measured(name, solids[0], STEEL)
     if drawn.volume is not None and not isclose(part.volume, drawn.volume, rel_tol=VOLUME_TOLERANCE):
         detail = f"{name} has {part.volume:.9g} mm³; the program that drew it says {drawn.volume:.9g} mm³"
@@ -434,7 +434,7 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
         raise GeometryError("inside_out", detail)
     if not volume > 0:
         raise GeometryError(
-            "not_finite", f"{name} has a volume of {volume:.6g} mm³; a solid needs a volume above 0"
+            "not_finite", f"{name} has a volume of {volume:.6g} mm³; the volume of a solid must be above 0"
         )
     return Part(name, solid, volume, colour, tolerance=VOLUME_TOLERANCE, **more)
 
@@ -449,7 +449,7 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
     """
     measured = sum(part.volume * len(part.places) for part in parts)
     if stated is not None and not isclose(measured, stated, rel_tol=VOLUME_TOLERANCE):
-        detail = f"the STEP file holds {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
+        detail = f"the STEP file contains {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
         raise GeometryError("volume", detail, model.inputs)
 
 

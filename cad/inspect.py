@@ -54,8 +54,9 @@ def measure(body: Body) -> BodyMeasures:
     """Return the mass properties of one body in its own coordinates."""
     shape = body.shape.wrapped
     properties = GProp_GProps()
-    # Shape.Volume() integrates to no stated accuracy and is off by 5e-5 on a half shell. The accuracy here is
-    # that of the volume: at 1e-6 the inertia of a ring was still off by 9e-6, at 1e-11 it is within 1e-8.
+    # Shape.Volume() does not integrate to a given accuracy and is off by 5e-5 on a half shell. The accuracy
+    # here applies to the volume: at 1e-6 the inertia of a ring was still off by 9e-6, at 1e-11 it is within
+    # 1e-8.
     BRepGProp.VolumeProperties_s(shape, properties, 1e-11, False)
     centre, inertia = properties.CentreOfMass(), properties.MatrixOfInertia()
     return BodyMeasures(
@@ -101,7 +102,7 @@ def summarise(
 def bounding_box(bodies: Iterable[Body]) -> Box:
     """Return the bounding box of all bodies at their positions [mm], as tight as the kernel computes it."""
     faces = [
-        face.wrapped.Moved(place.wrapped)  # the kernel's own, for CadQuery's asks the types of its arguments
+        face.wrapped.Moved(place.wrapped)  # the kernel's method: CadQuery's checks the types of its arguments
         for body in bodies
         for face in body.shape.Faces()
         for place in body.places
@@ -111,7 +112,8 @@ def bounding_box(bodies: Iterable[Body]) -> Box:
         BRepBndLib.Add_s(face, around, False)
     extents = [around.SquareExtent() for around in loose]
     whole, room = Bnd_Box(), Bnd_Box()
-    # The close box of a torus takes 10 ms, its loose one 10 µs: find it only where it can matter.
+    # The tight box of a torus takes 10 ms, its loose box 10 µs: compute the tight box only where it can
+    # matter.
     for n in sorted(range(len(faces)), key=extents.__getitem__, reverse=True):
         if room.IsVoid() or room.IsOut(loose[n].CornerMin()) or room.IsOut(loose[n].CornerMax()):
             BRepBndLib.AddOptimal_s(faces[n], close := Bnd_Box(), False, False)

@@ -31,5 +31,5 @@ def listed(raw: Any) -> Any:
     try:
         numbers = [float(item) for item in match[1].split(",")]
     except ValueError:
-        return raw  # whoever reads it says what is wrong with it
+        return raw  # the caller reports what is wrong with it
     return {"value": numbers, "unit": match[2].strip() or "1"}

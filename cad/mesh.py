@@ -24,10 +24,10 @@ from cad.step import Body, rigid
 from templates.core.arrays import Array, Integers
 
 ANGULAR_TOLERANCE = 0.2  # [rad] between neighbouring facets; 0.1 takes five times as long
-RELATIVE_TOLERANCE = 1e-3  # of the size of the body: the greatest distance of a facet from the true surface
+RELATIVE_TOLERANCE = 1e-3  # largest distance of a facet from the true surface, over the size of the body
 _ATTEMPTS = 3
-_WIDE_ANGLE = 0.5  # [rad] between neighbouring facets where a deflection is asked for, which rules then
-_SAFETY = 0.5  # the kernel's facets lay off by up to 1.73 times of what it was asked for, on spheres
+_WIDE_ANGLE = 0.5  # [rad] between neighbouring facets if a given deflection determines the mesh
+_SAFETY = 0.5  # on spheres, the kernel's facets deviate by up to 1.73 times the requested deflection
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
         one = _triangulated(body, finer / 4**attempt, ANGULAR_TOLERANCE / 2**attempt)
     if is_closed(one):
         return one
-    raise GeometryError("open_mesh", f"the kernel's triangles of {body.name} leave a gap")
+    raise GeometryError("open_mesh", f"the triangle mesh of {body.name} is not closed")
 
 
 def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
@@ -135,7 +135,7 @@ def _face_meshes(shape: Shape) -> Iterator[tuple[Array, Array, Integers]]:
     for face in shape.Faces():
         location = TopLoc_Location()
         triangulation = BRep_Tool.Triangulation_s(face.wrapped, location)
-        if triangulation is None:  # a face too small to show a triangle
+        if triangulation is None:  # the face is too small for a triangle
             continue
         turn, shift = rigid(Location(location))
         numbers = range(1, triangulation.NbNodes() + 1)

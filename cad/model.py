@@ -92,9 +92,9 @@ class Part:
     density: float = STEEL_DENSITY  # [kg/m³]
     places: tuple[Location, ...] = field(default_factory=_at_origin)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
-    shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
-    material: str = ""  # its name, such as "CuSn8"; steel, if it does not say and has the density of steel
-    called: tuple[str, ...] = ()  # at its positions, where these have their own names
+    shaped_by: tuple[str, ...] = ()  # parameters to name if the part fails; all parameters if empty
+    material: str = ""  # name such as "CuSn8"; steel if empty and the density is that of steel
+    called: tuple[str, ...] = ()  # names at its positions, if each position has its own name
 
     @property
     def solid(self) -> Shape:
@@ -107,7 +107,7 @@ class Part:
         """
         solids = self.shape.Solids()
         if len(solids) != 1:
-            detail = f"{self.name} should be one solid; it is {len(solids)}"
+            detail = f"{self.name} must be one solid, not {len(solids)}"
             raise GeometryError("not_one_solid", detail, self.shaped_by)
         return solids[0]
 
@@ -242,7 +242,7 @@ def arrays_of_points(model: CadModel) -> list[Fault]:
         takes_list = isinstance(declared, Curve)
         if np.ndim(values.get(declared.attribute, 0.0)) > int(takes_list):
             wanted = "one list of numbers" if takes_list else "a single value, not an array"
-            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}"))
+            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words} must be {wanted}"))
     return faults
 
 

@@ -27,12 +27,12 @@ MOST_CLEARANCES = 200
 """Pairs of parts of which the distance is measured, those with the closest boxes first."""
 MOST_MEETING = 2000
 """Pairs of solids with boxes that meet: two plain ones take 10 ms, two filleted bolts 250 ms."""
-_SHOWN_EVERY = 0.1  # [s]; a pair may take less than that
-_MOST_NAMED = 3  # of the fixed parts with the most pairs
+_SHOWN_EVERY = 0.1  # [s] between progress reports; a pair may take less
+_MOST_NAMED = 3  # number of fixed parts with the most pairs that are named
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap
 _OFF = 1e-3  # [mm]; a corner that is closer to a face lies on it
-_MOST_CORNERS = 500  # of a part that are tried
-_SPECK = 1e-6  # [mm³]; touching faces have less in common
+_MOST_CORNERS = 500  # largest number of a part's corners that are tried
+_SPECK = 1e-6  # [mm³]; touching faces share less volume
 
 
 @dataclass(frozen=True)

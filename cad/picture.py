@@ -23,9 +23,9 @@ SIZE = (640, 480)  # [pixels]
 _SAMPLES = 2  # along each side of a pixel
 _MARGIN = 0.06  # of the picture, on each side
 _PAPER = 1.0
-_LINE = 0.45  # brightness of the lines between faces, of what they cross
+_LINE = 0.45  # brightness of the lines between faces, relative to the surface
 
-# Lights in the frame of the picture (right, up, towards the eye), and how much each gives.
+# Directions of the lights in the frame of the picture (right, up, towards the eye), and their strengths.
 _KEY, _FILL = np.array([-0.45, 0.70, 0.55]), np.array([0.60, -0.10, 0.80])
 _AMBIENT, _KEY_SHARE, _FILL_SHARE, _GLOSS = 0.36, 0.52, 0.42, 0.30
 _SHININESS = 40
@@ -38,7 +38,7 @@ class Scene:
     corners: Array  # (t, 3, 3)
     normals: Array  # (t, 3, 3)
     colours: Array  # (t, 3), or of each corner (t, 3, 3)
-    faces: Integers  # (t,), different for every face of every body
+    faces: Integers  # (t,), a different number for each face of each body
 
 
 def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:

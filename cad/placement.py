@@ -28,7 +28,7 @@ from cad.surfaces import AXES, X, Y, Z, look
 ORIGIN = "origin"
 _SIDE = re.compile(r"(low|high)_([xyz])")
 _AXIS = re.compile(r"axis_([1-9][0-9]{0,3})")
-_DIGITS = 6  # [mm], to which points of axes are compared
+_DIGITS = 6  # decimals [mm] to which points of axes are compared
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,9 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     part_name, _, place = datum.rpartition(".")
     part = parts.get(part_name)
     if part is None:
-        raise _no_datum(name, f"there is no part {part_name!r} before it; there are {', '.join(parts)}")
+        raise _no_datum(
+            name, f"no earlier part is named {part_name!r}; the earlier parts are {', '.join(parts)}"
+        )
     box = box_of([part.solid.moved(part.places[0])])
     middle = Vector(*((low + high) / 2 for low, high in zip(box.low, box.high, strict=True)))
     if place == "centre":

@@ -138,7 +138,7 @@ class _Writer:
         size.SetType(getattr(DimensionType, _TYPES[kind]))
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
-        size.SetLowerTolValue(-within.lower)  # which the writer turns round
+        size.SetLowerTolValue(-within.lower)  # the writer reverses the sign
         ends = "/".join(filter(None, deviations(within)))
         text = f"{SIGNS.get(kind, '')}{number_of(within.nominal, 6)} {ends}"
         size.SetPresentation(self._drawn(text, [*place.first[:1], *place.second[:1]]), _name(text))

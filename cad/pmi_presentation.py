@@ -15,8 +15,8 @@ from OCP.TopoDS import TopoDS_Compound
 
 _HEIGHT = 0.025
 """Height of the letters as a part of the diagonal of the box of the solid."""
-_WIDE, _TALL = 4.0, 6.0  # the grid on which letters are drawn
-_ADVANCE, _ROW = 6.0, 11.0  # from letter to letter, and from row to row, on this grid
+_WIDE, _TALL = 4.0, 6.0  # grid on which letters are drawn
+_ADVANCE, _ROW = 6.0, 11.0  # spacing of letters and of rows on this grid
 
 Stroke = tuple[tuple[float, float], ...]
 

@@ -58,7 +58,7 @@ class Measures:
 
 def properties_of(part: Part, solid: Shape) -> PartProperties:
     """Return the properties of a part, integrated over its solid as `cad.inspect.measure` does."""
-    material = part.made_of.rpartition(" (")[0] or part.made_of  # without its density
+    material = part.made_of.rpartition(" (")[0] or part.made_of  # name without the density
     one = measured(solid)
     return PartProperties(part.name, one.volume, one.area, one.centroid, material, _digits(part.density))
 

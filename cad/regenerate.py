@@ -80,8 +80,8 @@ class Build:
     step: bytes
     measures: dict[str, float]  # in the units of `cad.inspect.MEASURES`
     dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
-    materials: dict[str, str]  # of every part
-    clearances: tuple[Clearance, ...] = ()  # of the fixed parts of an assembly
+    materials: dict[str, str]  # material of each part
+    clearances: tuple[Clearance, ...] = ()  # between the fixed parts of an assembly and the other parts
 
 
 def ignore(done: float, what: str) -> None:
@@ -142,7 +142,7 @@ def _canonical(model: CadModel) -> _Canonical:
     return kept
 
 
-_KEPT = "canonical form"  # no name that a declaration can have
+_KEPT = "canonical form"  # a declaration cannot have this name
 
 
 def regenerate(
@@ -286,7 +286,7 @@ def _kernel(model: CadModel) -> Iterator[None]:
             error.code, f"{model.id}: {error.detail}", error.parameters or model.inputs
         ) from None
     except MemoryError:
-        raise  # its process knows the limit, and says so
+        raise  # the caller handles the limit
     except Exception as error:
         detail = f"the kernel failed on {model.id}: {type(error).__name__}: {error}"
         raise GeometryError("kernel", detail, model.inputs) from error

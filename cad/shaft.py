@@ -39,7 +39,7 @@ class PinPlace:
     throw: float
     radius: float
     length: float  # of the cylinder, between its fillets
-    middle: float = 0.0  # its z; z = 0 is half way between the mains
+    middle: float = 0.0  # coordinate z of its middle; z = 0 is halfway between the main journals
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class ThrowSolid:
 class PlacedThrow:
     """A throw of a shaft: the number of its solid, and its position."""
 
-    solid: int  # its number among the solids, from 0
-    angle: float  # of its pin about z [rad]
+    solid: int  # number of its solid, from 0
+    angle: float  # angle of its pin about z [rad]
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", 
 MARK = "stamp:"
 """In the extended data of a DXF text: behind it stands which line of the block the text is."""
 
-LONGEST_LINE = 44  # letters that have room in the title block of an older drawing
+LONGEST_LINE = 44  # letters that fit into the title block of an older drawing
 _SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)[^<]*')
 
 

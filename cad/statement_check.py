@@ -12,8 +12,8 @@ from cad.properties import PartProperties, properties_of
 from cad.statements import UNITS, Statement, Value, compared
 from cad.step import Body
 
-_RELATIVE = 1e-9  # volume and area of the file as read back; the kernel repeats them to some 1e-12
-_CLOSE = 1e-6  # [mm], of the centroid
+_RELATIVE = 1e-9  # for volume and area as read back from the file; the kernel repeats them to about 1e-12
+_CLOSE = 1e-6  # [mm], for the centroid
 
 MEASURED = ("volume", "surface area", "centroid")
 

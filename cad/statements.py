@@ -32,7 +32,7 @@ LONGEST, MOST = 2**16, 50_000
 """Characters of an entity that is taken apart, and how many entities are. A file of ours has far less: longer
 ones, and those after so many, are left out."""
 
-_DEEPEST = 10  # datums of a geometric tolerance at each step of its references
+_DEEPEST = 10  # levels of references to which the datums of a geometric tolerance are followed
 _PIECE = re.compile(rb"'[^']*'|;|[^';]+|'")
 _START = re.compile(r"\s*#(\d{1,18})\s*=\s*(?:(\()\s*)?([A-Z_0-9]+)")
 _TOKEN = re.compile(
@@ -238,7 +238,7 @@ class _Reader:
             representation = self._follow([place])
             if representation is None or entity.sorts[0] != "PROPERTY_DEFINITION" or place in taken:
                 continue
-            taken.add(place)  # a representation is of one property: each of its items is read once
+            taken.add(place)  # a representation belongs to one property, so each of its items is read once
             items = [item for ref in representation.refs[:-1] if (item := self._follow([ref]))]
             if number in attributed:
                 yield from (Statement("attribute", i.texts[0], i.texts[1:]) for i in items if i.texts)

@@ -37,8 +37,8 @@ from templates.core.arrays import Array
 
 
 def _set_up() -> None:
-    STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
-    Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
+    STEPCAFControl_Controller.Init_s()  # the writer's settings exist only after this call
+    Message.DefaultMessenger_s().ChangePrinters().Clear()  # errors are raised, not printed
 
 
 once_loaded(_set_up)
@@ -108,7 +108,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise UnreadableStep("this is not a STEP file")
     if not reader.Transfer(document):
-        raise UnreadableStep("this STEP file holds no shape")
+        raise UnreadableStep("this STEP file contains no shape")
     return tuple(_bodies(document))
 
 
@@ -159,7 +159,7 @@ def _placed(solid: Shape, place: Location) -> Shape:
 
 
 def _named(label: TDF_Label, name: str) -> TDF_Label:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # as UTF-8
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # stores the name in UTF-8
     return label
 
 

@@ -22,7 +22,7 @@ KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')
 
 _USAGE = re.compile(r"^(#\d+ = NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+',((?:'[^']*'|[^';])*);", re.MULTILINE)
 _TOKEN = re.compile(r"'(?:[^']|'')*',?|[^',)]+,?|\)")
-_WIDEST = 72  # a line of the kernel's writer [characters]
+_WIDEST = 72  # longest line of the kernel's writer [characters]
 _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
 _PEN = "DRAUGHTING_PRE_DEFINED_COLOUR('{}')"
@@ -85,7 +85,7 @@ def _annotated(data: str, names: Sequence[str]) -> str:
     """Return the data section with parameters as names of dimensions, and with the types of deviations."""
     number = iter(names)
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
-    named = named.replace(_PEN.format("white"), _PEN.format("magenta"))  # on white paper and on black screens
+    named = named.replace(_PEN.format("white"), _PEN.format("magenta"))  # visible on white and on black
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 

@@ -28,7 +28,7 @@ Z = constant(lambda: Vector(0, 0, 1))
 AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector(0, 0, 1)})
 """The directions by their letters; one stand-in where the kernel is postponed, which loading it replaces."""
 
-_COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
+_COINCIDENT = 1e-6  # [mm], also used as the sine of an angle: ten times the kernel's own precision
 
 
 Face = tuple[str, int]
@@ -112,7 +112,7 @@ class Size(float):
         if not known:
             return value
         places = dict.fromkeys(place for one in known for place in one.places)
-        if known[0].kind != "distance":  # all faces of a diameter are one feature
+        if known[0].kind != "distance":  # all faces of a diameter form one feature
             places = {Place(tuple(dict.fromkeys(face for place in places for face in place.first))): None}
         return Size(value, known[0].kind, *places)
 
@@ -127,7 +127,7 @@ def alike(values: Iterable[float], what: str) -> float:
     """
     found = [float(value) for value in values]
     if not found or max(found) - min(found) > 2 * _COINCIDENT:
-        raise LookupError(f"all {what} must have one size; the file has {found}")
+        raise LookupError(f"all {what} must have the same size; the file has {found}")
     return sum(found) / len(found)
 
 

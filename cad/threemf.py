@@ -32,7 +32,7 @@ _RELATIONS = f"""{_HEAD}<Relationships xmlns="{_PACKAGE}/relationships">
 <Relationship Target="/{_MODEL}" Id="rel0" Type="{_RELATED}"/>
 </Relationships>
 """
-_COLOURS = 1  # the id of the list of colours; that of a mesh follows
+_COLOURS = 1  # id of the list of colours; the meshes have the next ids
 _FIRST = 2
 
 
@@ -42,7 +42,7 @@ def write_3mf(meshes: Sequence[Mesh], title: str = "model") -> bytes:
     stream = io.BytesIO()
     with ZipFile(stream, "w") as package:
         for name, text in files.items():
-            entry = ZipInfo(name)  # of the first day that a ZIP archive can state
+            entry = ZipInfo(name)  # a ZIP archive's earliest date
             entry.compress_type = ZIP_DEFLATED
             package.writestr(entry, text.encode())
     return stream.getvalue()

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 Form = Literal["cylindricity", "perpendicularity", "parallelism"]
 FORMS: tuple[Form, ...] = get_args(Form)
 _MORE = frozenset({"datum", "to"})
-_DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
+_DIGITS = 9  # decimals of a limit in mm: limits that differ less are equal
 
 
 @dataclass(frozen=True)
@@ -120,13 +120,13 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
         raise _wrong(
             cls,
             name,
-            "a geometric tolerance is a share, above 0 and at most 1, of the dimension's own tolerance",
+            "a geometric tolerance must be a fraction of the dimension's tolerance, above 0 and at most 1",
         )
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
         raise _wrong(
             cls,
             name,
-            "`to`, a datum, is required for perpendicularity and parallelism, and not allowed otherwise",
+            "perpendicularity and parallelism need a datum in `to`; other tolerances must not have one",
         )
     return FormTolerances(name, said.get("datum", ""), forms, said.get("to", ""))
 
@@ -156,11 +156,11 @@ def limits_of(texts: Mapping[str, str]) -> dict[str, Limits]:
 def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, TypedQuantity]]:
     for name, text in parameters.items():
         if text.count(" ") < 2:
-            continue  # `48 mm` and words have no room for a tolerance
+            continue  # a tolerance cannot be added to `48 mm` or to words
         try:
             yield name, read(text, "m")
         except FaultyText:
-            continue  # a word, a count or an angle
+            continue  # the value is a word, a count or an angle
 
 
 def _single(pairs: Iterator[tuple[str, TypedQuantity]]) -> Iterator[tuple[str, Limits]]:

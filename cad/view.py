@@ -24,4 +24,4 @@ def view_of(extent: Array) -> Array:
     """
     if extent[2] <= _LONG * max(extent[:2]):
         return _STANDING
-    return _STANDING[[1, 2, 0]]  # z of the part runs to the right, y upwards
+    return _STANDING[[1, 2, 0]]  # z of the part points to the right, y upwards

@@ -257,7 +257,7 @@ def _unit(declared: Declaration) -> str | None:
 
 def _value(name: str, answer: Answer) -> Any:
     if answer.value is None:
-        raise NoValue(name, answer.reason or "the formula has no value here")
+        raise NoValue(name, answer.reason or "the formula has no value for these inputs")
     return answer.value if answer.unit is None else _quantity(answer.value, answer.unit)
 
 

@@ -1,4 +1,4 @@
-"""Bare shells of `plain_bearing`: the quickest solids of it, for tests of something else.
+"""Bare shells of `plain_bearing`, its quickest solids, for tests of other things.
 
 Each set is what to give beside the bore: one body of steel, `full_back` or `upper_back`, with square edges,
 an oil groove and an oil hole. By default the model draws a pair of half shells with linings.

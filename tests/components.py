@@ -1,4 +1,4 @@
-"""Components of a team for tests: PostgreSQL and an S3 server, each started once per pytest worker.
+"""External components for tests of the team mode: PostgreSQL and S3, started once per pytest worker.
 
 `tests/conftest.py` offers these fixtures to all folders of tests. A test skips, with the reason, where a
 component is not installed.

@@ -1,4 +1,4 @@
-"""The command line and the fork servers of servers, forked from processes with their imports.
+"""Forks the command line and the fork servers from processes that have already imported their modules.
 
 `python -m app serve` takes seconds to import the geometry kernel, and so does each fork server of a server;
 a fork takes none of them. All come from one process in each worker of pytest, which has imported what the

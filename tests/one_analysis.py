@@ -1,4 +1,4 @@
-"""Each route of the program is analysed once in a process, not again for each server that tests start.
+"""Analyses each route of the program once per process, instead of once per test server.
 
 FastAPI reads the signature of every route, and makes its Pydantic fields, for each application that includes
 it: half a second. The results depend on the route alone, and nobody changes them.

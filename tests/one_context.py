@@ -1,4 +1,4 @@
-"""One TLS context for all HTTP clients of a process: to read all certificate authorities takes 20 ms.
+"""One TLS context for all HTTP clients of a process, because reading the certificate authorities takes 20 ms.
 
 Tests make thousands of clients, and none of them speaks TLS with a stranger. A client that asks for a context
 of its own gets one.

@@ -1,4 +1,4 @@
-"""Processes that are forked from one which has imported what they need: an import takes seconds, a fork none.
+"""Processes from which tests fork: an import takes seconds, a fork of a process with the import none.
 
 An origin imports modules and waits. For each request it forks, and the fork calls a function of tests with
 the request, in an environment of its own and with nothing to read.

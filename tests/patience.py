@@ -1,4 +1,4 @@
-"""How long tests wait for a condition: never for a time to pass, and longer on a slow machine by one setting.
+"""Sets how long tests wait for a condition; one setting extends it on slow machines.
 
 `CRANKWRIGHT_TEST_PATIENCE` is a factor on every deadline, 1 if not set: `CRANKWRIGHT_TEST_PATIENCE=5 pytest`
 passes on a machine five times as busy. A deadline only ends a test that would wait for ever: it is generous.

@@ -1,4 +1,4 @@
-"""Compliance of the example `bearing_housing` 1 as finite elements answered once, at level `default`.
+"""Recorded compliance of the example `bearing_housing` 1 by finite elements at level `default`.
 
 It stands in for the solver in quick tests. The lower half of the symmetric matrix, row by row [um/GPa].
 """

@@ -1,4 +1,4 @@
-"""The script of the mutation tests: related tests of a file, the figure of a record, the mutants."""
+"""The mutation script selects related tests of a file, makes mutants, and reads its record."""
 
 import ast
 import json

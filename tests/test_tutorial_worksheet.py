@@ -1,4 +1,4 @@
-"""The worksheets of the tutorial's second page are accepted and give the numbers that the page states."""
+"""The worksheets on the tutorial's second page are accepted and give the numbers that the page states."""
 
 import re
 from pathlib import Path

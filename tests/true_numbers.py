@@ -1,4 +1,4 @@
-"""Sentences that compare two numbers, and whether they are true."""
+"""Finds sentences that compare two numbers, and checks whether they are true."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Nothing that a test stores must outlive a loss of power: to sync to the disk takes most of a short write.
+"""Turns off syncing to disk, because nothing that a test stores must survive a power failure.
 
 Servers in processes of their own, which are killed, sync as ever.
 """

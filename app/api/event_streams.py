@@ -36,7 +36,7 @@ LastEvent = Annotated[int | None, Depends(last_event)]
 
 
 Still = Callable[[], Awaitable[bool]]
-"""Asks whether whoever listens may still do so: the key may have been revoked since."""
+"""Function that checks whether the client may still listen: its key may have been revoked."""
 
 
 async def always() -> bool:

@@ -29,7 +29,7 @@ GONE = 410
 UNAVAILABLE = refusals(410, 503)
 """Declared answers of a route that serves stored files."""
 UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
-"""Further declared answers of a route whose answer has an ETag."""
+"""Further declared answers of a route whose answers have an ETag."""
 
 
 async def lost(

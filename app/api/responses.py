@@ -26,13 +26,13 @@ from app.schemas.problems import Responses
 LONGEST = 60.0  # s
 SMALLEST, LEVEL = 1000, 6  # smallest body that is compressed [bytes], compression level
 PLAIN = ("/events", "/evaluate", ".png", ".step")
-"""Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
+"""Ends of paths whose answers are not compressed: streams, short answers, and compressed formats."""
 CALCULATED = re.compile("/api/v1/(evaluations/.*|templates/.*/worksheet)")
-"""Paths of answers that may be large: to compress 256 kB holds the event loop for some 10 ms."""
+"""Paths of answers that may be large: compressing 256 kB blocks the event loop for about 10 ms."""
 LATER: Responses = {
     202: {"description": "the work goes on; its job is in the header Location", "model": Accepted}
 }
-"""Declared answers of a route whose work may become a job."""
+"""Declared answers of a route that may answer with a job."""
 
 
 def later(answer: type[Answer]) -> Responses:
@@ -107,7 +107,7 @@ T = TypeVar("T")
 
 THREADS = 64
 WATCHED = 0.05
-"""Time after which it is watched whether the client leaves [s]: most answers take less."""
+"""Time after which the service watches for a disconnected client [s]; most answers take less."""
 
 
 class Threads:

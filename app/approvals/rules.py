@@ -20,7 +20,7 @@ ROLES: dict[Step, Role] = {
 }
 
 ACKNOWLEDGING: tuple[Step, ...] = ("checked", "released")
-"""The steps that say that a design is right."""
+"""The steps in which a person confirms that a design is right."""
 MOST_NAMED = 3  # largest number of criteria that a refusal lists
 
 

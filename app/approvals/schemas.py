@@ -13,7 +13,7 @@ from app.schemas.bounds import Bounded
 from app.schemas.texts import BLANK
 
 Files = dict[str, dict[str, str]]
-"""SHA-256 of files of solids, by the name of the model and the kind of the file."""
+"""SHA-256 of the files of solids, by model name and kind of file."""
 
 LONGEST_TEXT = 4000  # letters of a comment or a reason
 LONGEST_SUBJECT = 140

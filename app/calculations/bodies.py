@@ -16,7 +16,7 @@ from app.schemas.values import Given, Limits
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # largest number of names in one request
 NOTHING: JsonDict = {"default": {}}
-"""Describes an empty object as the default; pydantic would copy that itself at length for each request."""
+"""Documents an empty object as the default; a default in pydantic would be copied for each request."""
 
 OIL_FILM: JsonObject = {
     "radial_load": "25 kN",

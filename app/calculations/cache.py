@@ -73,14 +73,14 @@ class Cache:
 
 
 results = Cache(USUAL)
-"""The cache of the process: evaluations of steps and formulas written out."""
+"""The cache of this process: evaluations of steps, and written-out formulas."""
 
 
 _SHARED = (
     type, ModuleType, FunctionType, BuiltinFunctionType, MethodType,
     Declaration, Shared, Requirement, Unit, pint.UnitRegistry, pint.Unit,
 )  # fmt: skip
-"""What belongs to the program, not to the values that refer to it."""
+"""Types of objects that belong to the program, and are not counted as part of a value."""
 _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 
 

@@ -21,7 +21,7 @@ from templates.core.units.units import unit
 
 MOST_ROWS = 50_000
 MOST_BYTES, MOST_UNPACKED = 4_000_000, 40_000_000
-"""Of a file: as it comes, and of XLSX unpacked."""
+"""Largest size of a file as sent, and of XLSX unpacked [bytes]."""
 
 SUFFIXES = ("deg", "rad", "bar", "Pa", "kPa", "MPa", "psi", "N", "kN", "lbf", "s", "ms", "mm", "m", "rpm")
 """Units that may end a name without brackets."""

@@ -22,7 +22,7 @@ from templates.core.units.units import compatible, unit
 
 TURN, FOUR_STROKES = 360.0, 720.0
 MOST_POINTS = 7200
-"""Of a cycle that is calculated from pulses."""
+"""Largest number of points of a cycle that is calculated from pulses."""
 
 _ANGLE = re.compile(r"angle|winkel|crank|kurbel|phi|theta|alpha|deg|φ|ϕ|θ|α", re.IGNORECASE)
 _PULSE = re.compile(

@@ -63,7 +63,7 @@ class Question:
     body: Pieces
     system: System = "si"
     form: Form = "json"
-    """Format of the answer; only `evaluate` offers another one than JSON."""
+    """Format of the answer; only `evaluate` offers a format other than JSON."""
 
     @property
     def media_type(self) -> str:

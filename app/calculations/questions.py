@@ -24,7 +24,7 @@ from templates.core.catalogue.digests import digest
 from templates.core.language.template import Template
 
 CHECKED_WITHIN = 2.0
-"""How long a client that does not wait is kept for the check of a large body by a process [s]."""
+"""Longest time that a client that does not wait is held while a process checks a large body [s]."""
 
 
 def calculated(question: Question, database: Database, catalogues: Catalogues) -> Reply[Question, Pieces]:

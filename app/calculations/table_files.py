@@ -18,7 +18,7 @@ ZIP, OLD_EXCEL = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 MOST_PARTS, MOST_COLUMNS = 500, 40
 DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or send CSV"
 _SAMPLE = 4096
-"""Bytes by which UTF-16 without a mark is recognised."""
+"""Number of bytes examined to recognise UTF-16 without a byte order mark."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
 _ALIGNED = re.compile(r" {2,}|[ \u00a0]*\t[ \u00a0]*")
 _HEAD = 60
-"""Lines among which the first row of numbers is sought."""
+"""Number of lines in which the first row of numbers must occur."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class _Marks:
 _Unit = HeadingUnit | None  # of a heading, with an empty text where it has none; None where it is wrong
 _NO_UNIT = HeadingUnit("")
 Heading = Callable[[str, str], Fault | None]
-"""What is wrong with the name and the unit of a column, if anything is."""
+"""Function that returns the fault of a column's name and unit; None if there is none."""
 
 
 def read_table(

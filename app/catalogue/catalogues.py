@@ -33,7 +33,7 @@ PATIENCE = 2.0  # how long a request waits for the check of a file that has chan
 
 
 Drafts = Callable[[str, int], type[Template]]
-"""Read the present draft of a worksheet; raise UnknownTemplate if it has faults or no longer exists."""
+"""Reads the current draft of a worksheet; raises UnknownTemplate if it has faults or no longer exists."""
 
 
 class Catalogues:

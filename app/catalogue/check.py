@@ -21,7 +21,7 @@ from templates.core.language.template import Template
 
 MOST_BYTES = 2**20
 KERNEL = (b"cadquery", b"OCP")
-"""Names in a file for whose import a process that has the kernel is the quicker one."""
+"""Names in a file that show that it imports the kernel; a process with the kernel then checks it faster."""
 DECLARE = "a file <id>_v<version>.py declares one class that inherits Template or CadModel"
 
 Check = Callable[[Path, bytes], list[FileFault]]

@@ -9,7 +9,7 @@ from collections.abc import Callable
 logger = logging.getLogger(__name__)
 
 EVERY = 1.0
-"""Time between two looks at the database [s]."""
+"""Time between two checks of the database [s]."""
 
 
 class Follower:

@@ -18,7 +18,7 @@ from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetSummary
 from templates.core.errors import plain
 
 OPEN = ("draft", "tested", "reviewed")
-"""States in which an edit begins no new version."""
+"""States in which an edit does not start a new version."""
 FILE = re.compile(r"([a-z][a-z0-9_]*?)(?:_v([1-9][0-9]*))?\.sheet")
 _files = click.argument(
     "files", nargs=-1, required=True, type=click.Path(exists=True, dir_okay=False, path_type=Path)

@@ -25,7 +25,7 @@ JSON, MERGE_PATCH = "application/json", "application/merge-patch+json"
 _JOB = f"{BASE}/jobs/"
 
 Progress = Callable[[float, str], None]
-"""Receives how much of a job is done, 0 to 1, and what it does."""
+"""Function that receives the progress of a job, 0 to 1, and what the job is doing."""
 
 Model = TypeVar("Model")
 Result = TypeVar("Result")
@@ -33,7 +33,7 @@ Item = TypeVar("Item")
 
 
 Query = Mapping[str, str] | tuple[tuple[str, str], ...]
-"""The query of a request; as pairs, a name may stand several times."""
+"""The query of a request; in pairs, a name may occur several times."""
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ from app.schemas.criteria import Word
 from app.studies.schemas import Study, StudyList, StudyRow, StudyRows
 
 Where = Word | Literal["refused"]
-"""A choice of rows: by their worst verdict, or those without values."""
+"""A selection of rows: by their worst verdict, or rows without values."""
 Kind = Literal["csv", "xlsx", "npz"]
 _PAGE = "500"  # rows in one request
 _JOB = f"{BASE}/jobs/"

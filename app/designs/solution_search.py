@@ -22,7 +22,7 @@ from templates.core.language.roots import Roots, roots_of
 from templates.core.language.scan import Outputs, SampledCurve, evenly
 
 EXPLORED = 0.05
-"""The relative error to which the curve between the bounds is calculated."""
+"""Relative error to which the curve between the bounds is calculated."""
 PROBED = 33  # number of rows from which levels are chosen
 
 

@@ -26,7 +26,7 @@ NEW_REVISION = Statement(
     "author",
     "design",
 )
-"""The revision supersedes the newest released one of the design `design`."""
+"""Records that a revision supersedes the newest released revision of `design`."""
 APPENDED = Statement(
     update(_DESIGNS)
     .where(

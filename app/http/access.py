@@ -31,7 +31,7 @@ from app.observation.secrets import LENGTH, MARK, holds_key
 from templates.core.errors import Fault, InvalidInputs
 
 SIGN_IN = "crankwright_sign_in"
-"""The cookie of a browser in which somebody has signed in."""
+"""Name of the cookie of a signed-in browser."""
 FORM_TOKEN = "crankwright.form_token"
 """Key of an ASGI scope: the token in forms of the session."""
 HEALTH = frozenset({"/healthz", "/readyz"})
@@ -114,7 +114,7 @@ _NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII 
 _SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
 _SESSION_COOKIE = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)")
 PRINCIPAL = "crankwright.principal"
-"""Key of an ASGI scope: the principal of the request, where keys are asked for."""
+"""Key of an ASGI scope: the principal of the request, if the service requires keys."""
 
 
 def is_session(text: str) -> bool:
@@ -160,7 +160,7 @@ TheClient = Annotated[str, Depends(get_client)]
 
 READING = frozenset({"GET", "HEAD", "OPTIONS"})
 OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})
-"""Mounted files, which are those of the program: the page to sign in needs them."""
+"""Paths of the program's own files, which need no key: the sign-in page uses them."""
 
 
 @dataclass(frozen=True)

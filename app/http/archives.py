@@ -10,7 +10,7 @@ DATE = (1980, 1, 1, 0, 0, 0)  # date of every file: the earliest that a ZIP can 
 _UNIX, _READABLE = 3, 0o100644 << 16  # creating system, permissions of each file
 
 Member = tuple[str, Callable[[], bytes]]
-"""A file of a ZIP: its name, and what reads it."""
+"""A file of a ZIP: its name, and a function that reads it."""
 
 
 class _Sink:

@@ -25,9 +25,9 @@ from app.plain import JsonObject
 
 LONGEST_HEAD = 2**16  # bytes
 WHOLE = "crankwright.whole"
-"""Key of an ASGI scope of which all has come already: most have, and to time them costs a twentieth."""
+"""Key of an ASGI scope whose request has arrived completely: then no time limit is needed."""
 _NO_PATH = "crankwright.target"
-"""Name of an extension in an ASGI scope whose target is no mere path."""
+"""Name of an extension in an ASGI scope: the target of the request is not a plain path."""
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
 _DEAD = 60.0  # extra time for a silent machine, compared with a slow reader [s]

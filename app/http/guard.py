@@ -34,7 +34,7 @@ POLICY = "default-src 'none'; frame-ancestors 'none'"
 PAGE_POLICY = (
     "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 )
-"""No inline script or style, no eval, no outside address: on every page, without an exception."""
+"""Forbids inline scripts and styles, eval and outside addresses on every page."""
 HEADERS = (
     (b"content-security-policy", POLICY.encode()),
     (b"x-content-type-options", b"nosniff"),
@@ -43,7 +43,7 @@ HEADERS = (
     (b"cross-origin-opener-policy", b"same-origin"),
     (b"referrer-policy", b"same-origin"),
 )
-"""Headers of every answer, unless its route sets others."""
+"""Headers of every answer, unless its route sets different ones."""
 
 LOOKED_AT = {b"host", b"origin", b"upgrade", b"sec-fetch-site", b"sec-fetch-mode", b"sec-fetch-dest"}
 Looked = dict[bytes, list[bytes]]

@@ -257,14 +257,14 @@ BEFORE_HTTP = (
     CROWDED,
     Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
 )
-"""Problems that `app.http.connections` sends before there is a request."""
+"""Problems that `app.http.connections` sends before a request exists."""
 
 
 SLUGS = {
     kind.slug: kind
     for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, NOT_READY, REBUILDING, INTERNAL)
 }
-"""Every kind, by its slug."""
+"""All kinds of problems by slug."""
 
 
 def kind_of(error: Exception) -> Kind:

@@ -167,7 +167,7 @@ def install(app: FastAPI) -> None:
 
 
 _PASSING = (jobs.QueueFull, RowsLost, storage.ArtifactsUnreachable, storage.DatabaseUnavailable)
-"""Problems that may be over at a later try; each answer says when to try."""
+"""Temporary problems; each answer states when to retry."""
 
 
 def refusal(error: Exception) -> Response:

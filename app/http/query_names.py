@@ -37,4 +37,4 @@ def _fault(name: str, declared: list[str]) -> Fault:
 
 
 KNOWN_NAMES = Depends(refuse_unknown)
-"""Dependency of a route that declares all its parameters: any other is refused."""
+"""Dependency of a route that declares all its parameters: other names are refused."""

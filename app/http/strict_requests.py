@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
-"""The registered name of STEP's clear text, and two that were in use before it."""
+"""The registered media type of STEP's clear text, and two older ones."""
 SHEET_TYPES = {
     "application/octet-stream",
     "application/zip",
@@ -42,12 +42,13 @@ SHEET_TYPES = {
     "application/xml",
     "text/xml",
 }
-"""Media types of a sheet of Mathcad: its own ones are not registered."""
+"""Media types of a Mathcad sheet; Mathcad's own types are not registered."""
 MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
-"""Media types of a model: FreeCAD's own one is not registered."""
+"""Media types of a model; FreeCAD's own type is not registered."""
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
-"""In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
+"""Largest number in one body. A list of numbers has one bracket; millions of brackets would block the
+parser and the server."""
 
 
 class HttpError(Exception):
@@ -407,13 +408,13 @@ async def fingerprint(request: Request) -> str:
 
 
 NUL = "\0"
-"""U+0000, which no text of a request may have: PostgreSQL cannot store it. It is refused where requests are
-read, for both kinds of database, by the name of the field that has it."""
+"""U+0000, which PostgreSQL cannot store. For both kinds of database, the service refuses it while reading
+a request and names the field that contains it."""
 MOST_NUL_PLACES = 20
 _NUL_DETAIL = "no text may contain the character U+0000 (NUL); remove it: {}"
 _ESCAPED_NUL = b"\\u0000"
 _JSON_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
-"""It itself in JSON; an escaped backslash may stand before `u0000`."""
+"""U+0000 in JSON; an escaped backslash may precede `u0000`."""
 
 
 def refuse_nul_in_address(request: Request) -> None:

@@ -52,7 +52,7 @@ class Link:
 
 
 START = Link(0, None)
-"""Before the first row."""
+"""The link before the first row."""
 
 
 @dataclass(frozen=True)

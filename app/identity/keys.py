@@ -17,7 +17,7 @@ from app.observation.secrets import MARK, PREFIX, SECRET, key_prefix
 _LETTERS = string.ascii_lowercase + string.digits
 _BYTES = 32
 NO_HASH = "0" * 64
-"""Compared with where there is no key of that prefix. No text has this SHA-256, as far as anybody knows."""
+"""The hash that is compared if no key has the prefix. No text with this SHA-256 is known."""
 
 
 @dataclass(frozen=True)

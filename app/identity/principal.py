@@ -20,7 +20,7 @@ INCLUDED: dict[Role, frozenset[Role]] = {
     "checker": frozenset({"viewer", "author", "checker"}),
     "admin": frozenset({"admin"}),
 }
-"""What each role includes. An administrator administers: designs need a role of their own."""
+"""The roles that each role includes. An administrator needs a further role to work on designs."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,12 @@ class Principal:
 
 
 LOCAL = Principal("local", "local", "person", frozenset(ROLES))
-"""Whoever uses the service on its own machine, where nothing asks for a key."""
+"""The user of a service on the same machine, which requires no key."""
 SYSTEM = Principal("system", "Crankwright", "service", frozenset(ROLES))
-"""The service itself, such as its sweep of old files."""
+"""The service itself, for example when it deletes old files."""
 
 ANONYMOUS = Principal("anonymous", "nobody", "person", frozenset())
-"""Whoever has sent no valid key where keys are asked for."""
+"""A client that has sent no valid key to a service that requires keys."""
 
 BUILT_IN = frozenset({LOCAL.id, SYSTEM.id, ANONYMOUS.id})
 """Principals without a row: the service neither limits them nor counts their usage."""
@@ -65,7 +65,7 @@ def client_of(principal: str) -> str:
 
 ACTING: ContextVar[Principal] = ContextVar("acting", default=LOCAL)
 acting: Callable[[], Principal] = ACTING.get
-"""On whose behalf the present request or job runs."""
+"""Returns the principal for whom the current request or job runs."""
 
 
 @contextmanager

@@ -23,7 +23,7 @@ SAME = 1e-9
 INFINITE = float("inf")
 
 UNREMARKABLE = {(None, "met"), (None, "not_checked"), ("not_checked", None)}
-"""Criteria that come or go with a version, without anything to do about them."""
+"""Changes of criteria between versions that require no action."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from templates.core.errors import Fault
 from templates.core.language.template import Template
 
 MOST_NAMED = 50
-"""Refusals, parameters and names of one design that an answer lists."""
+"""Largest number of refusals, parameters and names of one design that an answer lists."""
 
 Pairs = Mapping[str | None, tuple[Outcome, Outcome]]
 """Both outcomes by variant; None is the design itself."""

@@ -23,7 +23,7 @@ from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
 
 Quantities = Mapping[Reference, float]
-"""Values [SI] of the places that are left open."""
+"""Values [SI] of the places in which documents of the same form may differ."""
 
 
 @dataclass(frozen=True)

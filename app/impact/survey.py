@@ -27,10 +27,10 @@ from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 
 MOST_TOGETHER = 256
-"""Designs and variants in one batch: so much is in memory at once."""
+"""Number of designs and variants in one batch, which limits the memory."""
 
 LOST = (DeadlineExceeded, MemoryExceeded, JobCrashed)
-"""What ends the process of a batch; its designs are then calculated in smaller ones."""
+"""Errors that end the process of a batch; its designs are then calculated in smaller batches."""
 
 At = tuple[DesignAt, Document]
 

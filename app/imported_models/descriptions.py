@@ -70,7 +70,7 @@ TRIAL = 1.01
 """By how much a trial changes a parameter; down only where FreeCAD refuses the value."""
 MOST_TRIALS = 30
 _BOUNDS: Mapping[str, float] = {"mm": 1e5, "deg": 360.0, "1": 1e6}
-"""The largest parameter by unit: 100 m, a full turn, a million."""
+"""Largest value of a parameter by unit: 100 m, a full turn, a million."""
 
 
 def described_freecad(

@@ -31,10 +31,10 @@ from cad.freecad import drawing_process
 from cad.imported_models import DrawnPart, Ends, ProgramResult
 
 STARTING = 60.0
-"""Time in which FreeCAD has to start [s]; it takes 3 s."""
+"""Longest time for FreeCAD to start [s]; it usually takes 3 s."""
 LARGEST_ANSWER = 512 * 2**20
 _ENDING = 1.0
-"""Time in which a process that no longer answers has to end [s]."""
+"""Longest time for a process that no longer answers to end [s]."""
 _GLANCE = 0.05  # [s]
 _LEAST = 0.1  # shortest time given to a drawing, even if less is left [s]
 _PIECE = 2**20

@@ -12,7 +12,7 @@ from cad.imported_models import imported_description
 from templates.core.errors import Fault, InvalidInputs
 
 RESERVED = frozenset({"import", "new"})
-"""Words with a path of their own, such as `/models/import`."""
+"""Words that have their own path, such as `/models/import`."""
 _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 LONGEST = 60
 

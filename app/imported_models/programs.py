@@ -21,7 +21,7 @@ from cad.errors import GeometryError, ProgramMissing, UnreadableModel
 from cad.imported_models import Description, ImportedModel, Parameter, Program, ProgramResult
 
 Values = dict[str, float]
-"""By API name, in the unit of each parameter; those that are as in the file may be left out."""
+"""Values by API name, in the unit of each parameter; values that equal those in the file may be omitted."""
 
 
 class Drawing(Protocol):

@@ -34,7 +34,7 @@ class ImportedModelRegistry:
         self.database, self.catalogues = database, catalogues
         self._looking, self._count = threading.Lock(), 0
         self.follower = Follower("imported models", self.look, lambda: is_shared)
-        """Looks for the models that other servers import, if the database may have other servers."""
+        """Finds the models that other servers import, if the database may have other servers."""
         self.look()
 
     def look(self) -> None:

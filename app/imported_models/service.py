@@ -37,7 +37,7 @@ FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
     MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
 )  # fmt: skip
-"""Errors that a file causes."""
+"""Errors that are caused by a file."""
 
 
 class ModelImports:

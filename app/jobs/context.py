@@ -24,7 +24,7 @@ _LINES = 200  # lines of the log that are kept
 
 
 Keep = Callable[[Job, float, list[str]], object]
-"""Accept the progress [0 to 1] and the log of a claimed job, to be stored soon; never blocks."""
+"""Accepts the progress [0 to 1] and the log of a claimed job, and stores them soon; it never blocks."""
 
 
 class JobContext:

@@ -36,7 +36,7 @@ FailureHook = Callable[[Session, Job, Problem], None]
 
 FAST, SLOW = "fast", "slow"
 WORKER_LANES: Mapping[str, WorkerLane] = {FAST: GEOMETRY, SLOW: ANALYSIS}
-"""Where the worker needs a place before a job is claimed; jobs of other lanes may never ask for one."""
+"""Lanes whose jobs are claimed only if the worker has room; other lanes do not use the worker."""
 MAX_CRASHES = 2
 MAX_LOSSES = 5  # largest number of lost machines or servers for one job
 _GLANCE = 0.1  # time between two checks whether the worker has room [s]
@@ -77,11 +77,11 @@ class Dispatcher:
         lease: float = 30.0,
     ) -> None:
         self.owner = secrets.token_hex(8)
-        """The name of this server in the rows of the jobs that it runs."""
+        """Name of this server in the rows of the jobs that it runs."""
         self.kinds: dict[str, Kind] = {}
         self.durations = Durations()
         self.around: Callable[[Job], AbstractContextManager[object]] = nullcontext
-        """Within what a job runs: its span, where there are traces."""
+        """Context in which a job runs: its span if traces are enabled."""
         self._database = database
         self._worker = worker
         self._limits = limits

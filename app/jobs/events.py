@@ -141,7 +141,7 @@ class Events:
 
     def __init__(self, database: Database) -> None:
         self.tell: Callable[[Iterable[str]], object] = list
-        """Hints other servers, where there are any, at what they should look at, such as a topic."""
+        """Tells other servers, if there are any, what to read again, such as a topic."""
         self._database = database
         self._lock = threading.Lock()
         self._topics: dict[str, _Topic] = {}
@@ -228,7 +228,7 @@ class Events:
 
 
 Read = Callable[[str, int], list[Event]]
-"""Reads the events of a topic above a number: a page of them."""
+"""Reads one page of a topic's events above a number."""
 
 _ROOM = 100  # events queued for a slow reader before the oldest are dropped
 
@@ -243,7 +243,7 @@ class Subscription:
 
     def __init__(self, topic: str, read: Read) -> None:
         self.number: int | None = None
-        """The newest event that the reader has; None: take them as they come."""
+        """Number of the newest event that the reader has; None if it takes events as they arrive."""
         self._topic, self._read = topic, read
         self._is_behind = False  # whether events above `number` have arrived but are not in the queue
         self._loop = asyncio.get_running_loop()

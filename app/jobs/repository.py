@@ -56,7 +56,7 @@ class Job:
     owner: str | None = None
     cause: str = ""  # id of the request that queued the job, and its trace context
     event: int = 0
-    """The number of its newest event."""
+    """Number of the job's newest event."""
 
     @cached_property
     def topics(self) -> tuple[str, ...]:
@@ -82,7 +82,7 @@ _AS_JOB = (
     _JOBS.c.created, _JOBS.c.updated, _JOBS.c.principal, _JOBS.c.losses, _JOBS.c.owner,
     func.coalesce(_JOBS.c.cause, ""), _JOBS.c.event,
 )  # fmt: skip
-"""What a `Job` has, in the order of its fields."""
+"""The columns of a `Job`, in the order of its fields."""
 _OF_ID = Statement(select(*_AS_JOB).where(_JOBS.c.id == bindparam("of")), "of")
 
 
@@ -265,7 +265,7 @@ def cancel(session: Session, job: Job, problem: JsonObject) -> None:
 
 
 _FREE: Mapping[str, object] = {"owner": None, "lease_until": None}
-"""What a job has that nobody runs."""
+"""Column values of a job that no server runs."""
 
 
 def _fenced(session: Session, job: Job, **values: object) -> bool:

@@ -13,7 +13,7 @@ FORMAT, FORMAT_OF_DUMP = 1, 2
 MANIFEST, DATABASE, END = "manifest.json", "crankwright.sqlite", "end.json"
 DUMP = "crankwright.dump"
 DATABASES = {FORMAT: DATABASE, FORMAT_OF_DUMP: DUMP}
-"""The entry of the database, by format: a SQLite file, or what `pg_dump -Fc` writes."""
+"""Name of the database's entry by format: a SQLite file, or the output of `pg_dump -Fc`."""
 ARTIFACT = re.compile(r"artifacts/([0-9a-f]{2})/(\1[0-9a-f]{62})")
 
 

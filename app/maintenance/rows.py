@@ -61,7 +61,7 @@ IMPORTED_MODELS = """
 IMPORTED_WORKSHEETS = "SELECT id, import_sha256 FROM worksheet_version WHERE import_sha256 IS NOT NULL"
 
 SENT = (("worksheet_version", IMPORTED_WORKSHEETS, "import"), ("imported_model", IMPORTED_MODELS, "model"))
-"""Files that users sent: the table that names them, by which query, and their kind."""
+"""Files that users sent: the table that names them, its query, and their kind."""
 
 
 def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[NamedFile]:
@@ -94,7 +94,7 @@ LEADING_NOWHERE = {
         SELECT build.key FROM build LEFT JOIN artifact
         ON artifact.build_key = build.key AND artifact.kind = 'step' WHERE artifact.kind IS NULL""",
 }
-"""Sentences about rows that refer to what is not there, each with the query that finds them."""
+"""Messages about rows that refer to missing objects, each with the query that finds these rows."""
 
 
 RELEASES = """

@@ -28,7 +28,7 @@ Level = Literal["debug", "info", "warning", "error"]
 
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
 TRACE: ContextVar[str] = ContextVar("trace", default="")
-"""The context of the present trace as W3C's `traceparent`, empty without traces; see `traces`."""
+"""The context of the current trace as W3C's `traceparent`, empty without traces; see `traces`."""
 FIELDS = ("request_id", "client", "method", "route", "path", "status", "ms", "job")
 
 _ROOM = 10_000  # largest number of lines waiting to be written

@@ -31,7 +31,7 @@ Census = Sequence[tuple[str, str, int]]
 """Kind, state and number of jobs."""
 
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 60.0)
-"""Upper ends of the classes of times [s]."""
+"""Upper limits of the duration buckets [s]."""
 
 
 class _Row:

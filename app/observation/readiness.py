@@ -28,7 +28,7 @@ FORK = 1.0  # longest wait for a job process, which may just be starting [s]
 _GLANCE = 0.05  # s
 
 Check = Callable[[], Awaitable[str | None]]
-"""Says what is wrong; None if nothing is."""
+"""Returns what is wrong; None if nothing is wrong."""
 
 
 class Readiness:

@@ -35,7 +35,7 @@ PER_VALUE = 1e-6  # for each number of an answer, calculated and written as JSON
 PER_NUMBER = 5e-7  # for each number of a request, read and checked [s]
 PER_FORMULA = 3e-4  # for each formula written out in a worksheet [s]
 SCANS, CLOSINGS = 8, 120
-"""Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
+"""Number of evaluations in `solve`: of all samples of its scan, then of single points."""
 SOLUTIONS = 2  # number of solutions typically recalculated at the requested level
 BESIDE = 2  # samples around each of these solutions
 MOST_POINTS = 10**12  # upper limit; a request may claim more than a float can hold
@@ -138,7 +138,7 @@ def _bodies_seconds(cls: type[Template], points: int) -> float:
 
 
 _costs: WeakKeyDictionary[type[Template], tuple[float, float]] = WeakKeyDictionary()
-"""Of worksheets: what all bodies take, and beside that at each point [s]."""
+"""Costs of worksheets: time of all bodies, and additional time per point [s]."""
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:

@@ -24,7 +24,7 @@ Ts = TypeVarTuple("Ts")
 
 SHEETS = ("app.worksheets.check", "app.worksheets.examination")
 LIGHT = ("app.calculations", "app.workers", *SHEETS, "templates")
-"""Packages and modules of this program whose functions need no network of designs."""
+"""Packages and modules of this program whose functions do not need the network of designs."""
 
 
 class CalculationProcesses:

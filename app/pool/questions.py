@@ -42,10 +42,10 @@ CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
 TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "variant"
 EXPLANATION = "explanation"
 ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT, EXPLANATION)
-"""Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
+"""Kinds of jobs whose result is an answer to a request that did not wait for it."""
 AGAIN = "again"  # payload key: the job whose lost answer is calculated again
 FAILURES = (TemplateError, NotFound, CannotRebuild, DeadlineExceeded, MemoryExceeded)
-"""What a question of any kind, or the loss of it, brings about."""
+"""Errors that a question of any kind, or the loss of its answer, may cause."""
 
 Q = TypeVar("Q")
 A = TypeVar("A", bound=Answer | Pieces)

@@ -16,7 +16,7 @@ from templates.core.language.template import Template
 from templates.core.sheets.sheet import from_text
 
 _PROGRAM = str(Path(templates.__file__).parents[1])
-"""The folder in which this machine has the packages of the program."""
+"""Folder of the program's packages on this machine."""
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ class Steps:
 
 
 _Question = tuple[Source, Mapping[str, Raw], tuple[str, ...] | None, str | None, float | None]
-"""A step as `_evaluated` takes it."""
+"""The arguments of `_evaluated`."""
 
 
 @dataclass

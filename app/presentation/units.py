@@ -25,7 +25,7 @@ US = {
     "N*m*s/rad": "lbf*inch*s/rad",
     "MPa/kN": "psi/lbf", "MPa/(kN*m)": "psi/(lbf*ft)",
 }  # fmt: skip
-"""The unit that stands for a declared one; others, such as rpm, are used there as well."""
+"""The US unit for each declared unit; other units, such as rpm, are used unchanged."""
 
 
 def shown_unit(declared: str, system: System) -> str:

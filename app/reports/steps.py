@@ -36,7 +36,7 @@ RANGES = ("domain", "published")
 
 T = TypeVar("T", bound=Template)
 Class = type[Template] | None
-"""The class of a version; None if its file was taken away."""
+"""The class of a version; None if its file was removed."""
 
 
 class StepDocument(TypedDict):

@@ -18,9 +18,10 @@ from string import ascii_lowercase, ascii_uppercase, digits, punctuation
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
 LINE = 51.0
-"""A formula of the calculation: 210 mm of paper less 35 mm of margins and 4 mm of inset, at 9.5 pt."""
+"""Width of a formula in the calculation: 210 mm of paper minus 35 mm of margins and 4 mm of inset, at 9.5
+pt."""
 CELL = 10.0
-"""A formula in a table: the narrowest of its columns is wider as long as the others leave 80 mm."""
+"""Width of a formula in a table: its narrowest column is wider than this if the others leave 80 mm."""
 
 _SPACE = 0.56  # 5/18 em on either side of a relation, the widest of all classes
 _COLUMN = 1.0  # twice the gap between two columns

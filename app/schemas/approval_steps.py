@@ -6,6 +6,6 @@ from typing import Literal, get_args
 
 Step = Literal["calculated", "checked", "released", "withdrawn"]
 ORDER: tuple[Step, ...] = get_args(Step)
-"""The steps, one after another."""
+"""The steps in order."""
 ApprovalState = Literal["unsigned", "calculated", "checked", "released", "withdrawn"]
-"""The last step that was taken; `unsigned` before the first."""
+"""The last completed step; `unsigned` before the first."""

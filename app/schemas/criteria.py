@@ -11,10 +11,8 @@ from app.schemas.answers import Answer, Measured, Quantity, Shown
 from templates.core.criteria.judgement import verdict_sentence
 
 Word = Literal["met", "not_met", "undecided", "not_checked"]
-"""The verdict on the value itself, unless the limit lies within its error as far as that is known.
-
-`undecided`: it does; `not_checked`: value or limit is missing.
-"""
+"""The verdict on the value. `undecided`: the limit lies within the known error of the value;
+`not_checked`: value or limit is missing."""
 
 
 class Band(Measured):

@@ -72,7 +72,7 @@ MEANINGS = {
 
 
 Responses = dict[int | str, dict[str, object]]
-"""Declared answers of a route by status, as FastAPI takes them."""
+"""Declared answers of a route by status, in the form that FastAPI needs."""
 
 
 class RouteOptions(TypedDict):

@@ -24,7 +24,7 @@ GIVEN: JsonDict = {
     "anyOf": FORMS,
 }
 Given = Annotated[object, WithJsonSchema(GIVEN)]
-"""A value as typed: the domain reads it and says what is wrong."""
+"""A value as typed; the domain reads it and reports faults."""
 
 Limits = Annotated[
     dict[str, Given],

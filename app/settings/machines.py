@@ -17,7 +17,7 @@ from app.settings.hosts import is_loopback
 LOCAL = "local"
 FILES = "CRANKWRIGHT_DASK_CA, CRANKWRIGHT_DASK_CERT and CRANKWRIGHT_DASK_KEY"
 Lane = Literal["geometry", "analysis"]
-"""Kinds of work for which a worker has places of their own."""
+"""Kinds of work for which a worker has separate capacity."""
 Count = Annotated[int, Field(ge=0, le=1000)]
 EXAMPLE = "tls://scheduler.example:8786"
 COLLECTOR = "http://127.0.0.1:4318"

@@ -24,7 +24,7 @@ from cad.shells.bore_place import bore_place
 from templates.core.progress import report
 
 FILE = "file"
-"""In an output on its way from the worker: the bytes of what is stored as a file."""
+"""Key in an output from the worker: the bytes that are stored as a file."""
 
 
 class AnalysisRunner:

@@ -24,6 +24,7 @@ from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
 from cad.errors import AnalysisError, GeometryError, ProgramMissing
 from cad.export import DRAWINGS, derive
+from cad.file_kinds import plain_kind
 from cad.imported_models import ImportedModel, ProgramResult, imported_description
 from cad.model import CadModel
 from cad.regenerate import (
@@ -133,7 +134,8 @@ class Builds:
             self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
 
     def _is_outdated(self, row: rows.Artifact) -> bool:
-        return row.kind in DRAWINGS and not takes_stamp(self.store.read(row.sha256), row.kind)
+        kind = plain_kind(row.kind)
+        return kind in DRAWINGS and not takes_stamp(self.store.read(row.sha256), kind)
 
     def _row(self, key: str, kind: str) -> rows.Artifact | None:
         with self.database.read() as session:

@@ -224,7 +224,7 @@ class ModelBuild:
 
 
 LONGEST = 200
-"""Letters of a text that an answer quotes: a client may send any file."""
+"""Largest number of letters that an answer quotes from a text, because a client may send any file."""
 
 
 def statements(original: bytes, step: bytes) -> list[StepStatement]:

@@ -46,4 +46,4 @@ Outputs = Mapping[str, StoredOutput]
 """Outputs of an analysis by name."""
 
 Computed = Mapping[str, Mapping[str, object]]
-"""Outputs on their way from the worker, by name: a file has its bytes with it."""
+"""Outputs from the worker by name; a file includes its bytes."""

@@ -46,7 +46,7 @@ WITHOUT_SURFACE = (UNIT_LOADS, CHAIN, BORE_COMPLIANCE)
 """Kinds whose solid has no picture."""
 
 RECIPE = 6
-"""Raised whenever the same question to the same solid gets another answer."""
+"""Version of the analyses; increase it whenever an analysis of the same solid gives a different answer."""
 
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"
 
@@ -138,7 +138,7 @@ _OF_TABLES = {
         "load": "is under unit pressures",
     },
 }
-"""For each kind that answers tables, why it lacks an option."""
+"""For each kind of analysis with tables, the reason why it lacks an option."""
 
 
 def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:

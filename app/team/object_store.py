@@ -19,7 +19,7 @@ AWS = {
     "AWS_DEFAULT_REGION": "us-east-1",
     "AWS_EC2_METADATA_DISABLED": "true",
 }
-"""The environment in which its clients find their keys; the server accepts any."""
+"""Environment variables with the keys of the clients; the server accepts any keys."""
 
 
 def is_installed() -> bool:

@@ -34,9 +34,9 @@ LEAST_POINTS, USUAL_POINTS, MOST_POINTS = 1024, 16_384, 131_072
 MOST_OUTPUTS = 30
 ABOUT = "analysis"  # key of the scope among the outputs of an answer
 PATIENCE = 20.0
-"""For further points where none were asked for, by their estimate [s]."""
+"""Largest estimated time for further points if the request gives no number of points [s]."""
 LONGEST = 600.0
-"""By its estimate, an analysis that takes longer is refused [s]."""
+"""Largest estimated time of an analysis; longer analyses are refused [s]."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ Codes = NDArray[np.int8]
 
 SCRAMBLINGS = 8
 AIM = 5e-4
-"""Of the standard error of a yield."""
+"""Target for the standard error of a yield."""
 QUANTILES = (0.00135, 0.5, 0.99865)
 BINS = 40
 

@@ -16,7 +16,7 @@ from templates.core.units.quantity import TypedQuantity, read, read_any
 from templates.core.units.tolerance import is_toleranced
 
 MOST = 40
-"""Values that one analysis varies."""
+"""Largest number of values that one analysis varies."""
 
 SEVERAL = "its value is an array; an analysis varies single values"
 EXACT = "both its limits are its value"

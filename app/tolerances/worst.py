@@ -16,7 +16,7 @@ from app.tolerances.factors import Factor, lattice, placed, sobol
 from templates.core.arrays import Array
 
 Outputs = Callable[[Array], Array]
-"""From rows of factors [SI] to outputs of the shape (rows, outputs) [SI]; NaN where a row is refused."""
+"""Function from rows of factors [SI] to outputs [SI], shape (rows, outputs); NaN where a row is refused."""
 
 SCANNED = 512  # quasi-random rows in addition to the lattice
 STARTS = 3

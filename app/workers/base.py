@@ -15,7 +15,7 @@ Ts = TypeVarTuple("Ts")
 GEOMETRY: Final = "geometry"
 ANALYSIS: Final = "analysis"
 UNLIMITED = sys.maxsize
-"""The capacity of a worker that leaves it to its callers how much they run at the same time."""
+"""Capacity of a worker that does not limit the number of simultaneous jobs."""
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,8 @@ from app.workers.messages import (
 from templates.core.progress import reporting
 
 Rehearsal = Callable[[Callable[[], bool]], object]
-"""Does some work like a job's; its argument says whether the job has come, and then ends soon."""
+"""Function that rehearses the work of a job. Its argument returns whether the job has arrived; then it
+ends soon."""
 
 _PR_SET_PDEATHSIG = 1
 _GROWTH = 4  # a process that keeps more than 1/4 of its allowance takes no other request

@@ -7,7 +7,7 @@ busy processes on the machine they multiplied the processor time of small linear
 import os
 
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""Environment variables, as the libraries read them when they are loaded."""
+"""Environment variables that the libraries read when they are loaded."""
 
 
 def use_one_thread() -> None:

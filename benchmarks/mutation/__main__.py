@@ -109,14 +109,14 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     earlier = recorded(options.record) if is_resumed else {}
     rows = {str(old["key"]): old for old in valid(chosen, options)} if is_resumed else {}
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
-    ahead.sort(key=lambda mutant: mutant.key in earlier)  # a run that is cut short has tried the new ones
+    ahead.sort(key=lambda mutant: mutant.key in earlier)  # new mutants first, in case the run is cut short
     left_over = {mutant.key for mutant in ahead if is_left_over(earlier.get(mutant.key), mutant)}
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept, tuple(options.tests or ()))
         passes = (Reach.NEAREST,) if options.tests or options.quick else tuple(Reach)
-        for reach in passes:  # the nearest tests kill most: they come first
+        for reach in passes:  # the nearest tests kill most mutants, so they run first
             attempt = partial(tried, copies, options.record, lock, reach)
             is_done = reach is Reach.NEAREST and len(passes) > 1
             skipped = rows.keys() | left_over if is_done else rows.keys()

@@ -20,7 +20,7 @@ from app.workers.threads import use_one_thread
 from benchmarks.mutation import ROOT
 
 OURS = {"app", "cad", "templates", "benchmarks", "tests"}
-MEMORY = 12 << 30  # bytes of addresses, for a mutant that fills all of it
+MEMORY = 12 << 30  # address space of a mutant [bytes], which stops one that would fill the memory
 USED = "import sys, app.main, httpx, hypothesis, pytest, scipy.integrate, scipy.optimize; print(*sys.modules)"
 """Prints the modules that the program and most tests import."""
 REWRITTEN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
@@ -40,7 +40,7 @@ def start(
 
 @cache
 def _context() -> ForkServerContext:
-    use_one_thread()  # before the process that is forked imports NumPy
+    use_one_thread()  # set before the forked process imports NumPy
     context = get_context("forkserver")
     context.set_forkserver_preload(libraries())
     return context

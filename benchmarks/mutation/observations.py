@@ -39,11 +39,11 @@ Case = tuple[str, float]
 class Observation:
     """The result of one run of a test file."""
 
-    seconds: dict[str, float]  # of each test
-    lines: dict[str, dict[int, list[str]]]  # of each file: the tests that ran a line
-    code: dict[str, str]  # of each file that may be changed: its digest then
-    has_programs: bool  # it started servers or other programs, which may run all of our code
-    has_processes: bool  # it started processes, which may have run templates and solids
+    seconds: dict[str, float]  # time of each test
+    lines: dict[str, dict[int, list[str]]]  # for each file: the tests that ran a line
+    code: dict[str, str]  # for each file that may be changed: its digest at the time of the run
+    has_programs: bool  # whether the test started servers or other programs, which may run all of our code
+    has_processes: bool  # whether the test started processes, which may have run templates and solids
 
     def may_hide(self, file: str) -> bool:
         """Return whether the file may have run in another process, where it was not seen."""
@@ -65,7 +65,7 @@ class Observations:
 
     def __init__(self, folder: Path, observe: Callable[[str, Path], bool]) -> None:
         self.folder = folder
-        self._observe = observe  # runs a test file and writes what was seen; False if it did not end
+        self._observe = observe  # runs a test file and writes the observations; False if the run did not end
         folder.mkdir(parents=True, exist_ok=True)
 
     def of(self, test: str, file: str) -> Observation:

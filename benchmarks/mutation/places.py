@@ -83,12 +83,12 @@ OPERATORS["ours/DropCall"] = DropCall()
 class Mutant:
     """One change of one file."""
 
-    key: str  # of the seed and the mutated line; stays while the line does
+    key: str  # hash of the seed and the mutated line; it stays the same as long as the line does
     file: str
     line: int
     text: str  # the line before the change
     operator: str
-    source: str  # the file with the change
+    source: str  # the changed file
     diff: str
 
 
@@ -99,7 +99,7 @@ class Place:
     file: str
     span: Span
     rank: str
-    choices: tuple[tuple[str, int], ...]  # operators, and which of their occurrences in the file
+    choices: tuple[tuple[str, int], ...]  # operators, and the numbers of their occurrences in the file
 
 
 def sample(seed: int, count: int) -> list[Mutant]:

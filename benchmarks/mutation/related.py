@@ -22,8 +22,8 @@ NEAREST = 18
 """Number of test files that are run for a mutated file."""
 VALUES = "tests/test_values.py"
 """A test about all modules, which it finds by their folders."""
-_NAME_IN_COMMON = 1.5  # imports that one word in common is worth
-_NOT_REACHED = 9  # imports, if none leads there: migrations are found by their folder
+_NAME_IN_COMMON = 1.5  # a word in common counts as much as this number of imports
+_NOT_REACHED = 9  # number of imports assumed if no import leads there: migrations are found by their folder
 _OF_NO_USE = {"tests", "test", "app", "templates", "v1", "v2", "py", "and", "of"}
 
 

@@ -31,11 +31,11 @@ from tests.patience import patient
 
 PYTEST = ("-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
 MARK = "CRANKWRIGHT_MUTANT"
-WIDE = {"COLUMNS": "500"}  # lines of pytest's summary, so that it says why a test failed
-NEAR = 4  # test files whose single tests are tried first
-STARTING = patient(60.0)  # of the time for single tests, what pytest itself may take [s]
-SLOWER = 10.0  # times as slow as when they were observed
-NOTHING_FAILED = (0, 5)  # exit codes of pytest: all passed; all are slow tests, which are left out
+WIDE = {"COLUMNS": "500"}  # width of pytest's summary, so that it shows why a test failed
+NEAR = 4  # number of test files whose single tests are tried first
+STARTING = patient(60.0)  # time that pytest itself may take in a run of single tests [s]
+SLOWER = 10.0  # factor of the observed time after which a test counts as hung
+NOTHING_FAILED = (0, 5)  # exit codes of pytest: all passed, or all were slow tests, which are deselected
 _FAILED = re.compile(r"^(?:FAILED|ERROR) ((tests/[\w/]+\.py).*)", re.MULTILINE)
 
 
@@ -46,8 +46,8 @@ Part = tuple[tuple[str, ...], float]
 class Reach(Enum):
     """Which of the related tests run: a pass over all mutants with few of them comes before one with more."""
 
-    NEAREST = auto()  # the nearest file
-    NEAR = auto()  # single tests of near files that run the line
+    NEAREST = auto()  # runs the nearest test file
+    NEAR = auto()  # runs single tests of near files that execute the line
     ALL = auto()
 
 
@@ -57,8 +57,8 @@ class Run:
 
     outcome: str  # passed, failed or hung
     by: str = ""  # the test that failed
-    tests: tuple[str, ...] = ()  # what has to pass without the mutant
-    limit: float = 0.0  # time that it had [s]
+    tests: tuple[str, ...] = ()  # tests that must pass without the mutant
+    limit: float = 0.0  # time limit [s]
 
 
 class Copy:
@@ -143,7 +143,7 @@ class Copy:
         if run.outcome == "passed":
             return "survived"
         is_of_time = run.outcome == "hung" or "Timeout" in run.by
-        if run.tests not in self._passing or is_of_time:  # the load may be another than it was
+        if run.tests not in self._passing or is_of_time:  # the load of the machine may have changed
             if self._run(run.tests, run.limit).outcome != "passed":
                 return "unclear"
             self._passing.add(run.tests)
@@ -158,7 +158,7 @@ class Copy:
     def _write(self, file: str, text: str) -> None:
         target = self.folder / file
         for compiled in target.parent.glob(f"__pycache__/{target.stem}.*.pyc"):
-            compiled.unlink()  # Python compares dates to the second
+            compiled.unlink()  # Python compares file times to the second
         target.write_text(text, encoding="utf-8")
 
     def _run(

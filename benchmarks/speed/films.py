@@ -16,8 +16,8 @@ from templates.physics.supplied.supplied_orbit import COARSE, FINE, supplied_orb
 
 ECCENTRICITIES = (0.05, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.999, 0.9999)
 WIDTHS = (0.1, 0.25, 0.5, 1.0, 2.0)
-RUNGS = {(64, 8): None, (128, 16): (3.0, 0.1)}  # mesh: the aims of its cost [ms] and of its error [%]
-SEED, ENGINES = 17, 15  # duties of engines have even numbers
+RUNGS = {(64, 8): None, (128, 16): (3.0, 0.1)}  # mesh: target cost [ms] and target error [%]
+SEED, ENGINES = 17, 15  # duties with even numbers are engines
 
 
 def figures() -> list[Figure]:
@@ -75,7 +75,7 @@ def mass_conserving() -> Figure:
 
 def supplied() -> Figure:
     """Return the cost of supplied orbits of random engine bearings."""
-    _march(random_duty(SEED, 1))  # compiles
+    _march(random_duty(SEED, 1))  # compiles the kernels
     duties = [random_duty(SEED, 2 * number) for number in range(ENGINES)]
     spent = median_seconds([lambda duty=duty: _march(duty) for duty in duties])  # type: ignore[misc]
     return Figure(

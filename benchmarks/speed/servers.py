@@ -28,7 +28,7 @@ from pydantic import BaseModel
 
 from benchmarks import processor_time
 
-PATIENCE = 240.0  # for a server to start, also on a busy machine [s]
+PATIENCE = 240.0  # time that a server may take to start, also on a busy machine [s]
 
 
 @dataclass(frozen=True)

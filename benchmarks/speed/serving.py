@@ -40,7 +40,7 @@ ROUNDS = 5
 CLIENTS, PROCESSES, SECONDS = 32, 4, 6.0
 STEPS = 60
 POINTS = 10**6
-SETTLING = 2.0  # after a change: the service prepares its next job [s]
+SETTLING = 2.0  # pause after a change, in which the service prepares its next job [s]
 
 
 def figures() -> list[Figure]:
@@ -76,7 +76,7 @@ def evaluating(server: Server, folder: Path) -> tuple[list[Figure], float]:
             for turn in range(ROUNDS + 1):
                 mine = cost(server, EVALUATE, body)
                 other = cost(plain, f"/{name.replace(' ', '%20')}", body)
-                if turn:  # the first warms up
+                if turn:  # the first call warms up
                     own.append(mine)
                     others.append(other)
             ratio = median(np.divide(own, others).tolist())
@@ -102,7 +102,7 @@ def changes(server: Server, alone: float) -> list[Figure]:
     rows = []
     kinds = {"creates": create, "PATCHes": change}
     with ProcessPoolExecutor(PROCESSES, mp_context=multiprocessing.get_context("spawn")) as pool:
-        list(pool.map(abs, range(PROCESSES)))  # they are there
+        list(pool.map(abs, range(PROCESSES)))  # waits until the processes have started
         for name, action in kinds.items():
             before, begin = used(server.pid), time.perf_counter()
             runs = [pool.submit(clients, action, server.url, f"{name} {n}") for n in range(PROCESSES)]
@@ -205,7 +205,7 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
     loads = np.round(np.linspace(6.3, 200, POINTS), 3)
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
-    result.inputs.clear()  # the echo is what was sent
+    result.inputs.clear()  # the response repeats the request's inputs
     forms: dict[str, tuple[Callable[[], bytes], float | None]] = {
         "JSON": (lambda: to_json(json_values.evaluation(result)), None),
         NPY: (lambda: npy(result), 10.0),

@@ -111,7 +111,7 @@ def _at_level(
         for name, compute in wanted.items():
             try:
                 values[name].append(compute(response))
-            except AnalysisError as error:  # one output is refused, the others are not
+            except AnalysisError as error:  # only this output is refused
                 reasons[name] = error.detail
     shown = surface(response) if SURFACE in outputs else None
     common = {
@@ -194,7 +194,7 @@ def _stiffness(response: Response) -> float:
     return 1e-3 / response.compliance
 
 
-_ELASTIC_SHARE = 0.6  # of the progress of an analysis that looks for the greatest stress as well
+_ELASTIC_SHARE = 0.6  # share of the progress if the analysis also searches for the highest stress
 _ELASTIC: dict[str, Callable[[Response], float]] = {
     "stiffness": _stiffness,
     MODE: lambda response: torsional_mode(response).frequency,

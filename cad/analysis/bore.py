@@ -47,10 +47,10 @@ BORE = "bore"
 RIGID = np.array([name in ("c1", "s1") for name in mode_names()])
 """The modes that are a motion of the bore as a whole."""
 
-_NEAR = 1e-5  # [mm], so near to a surface a point lies on it
-_ALIKE = 1e-6  # relative, of volumes, centres and moments of mirrored halves
-_GRADING = 0.5  # how fast elements grow
-_SAMPLES = 5  # of an edge
+_NEAR = 1e-5  # [mm], distance within which a point lies on a surface
+_ALIKE = 1e-6  # relative difference of volumes, centres and moments of mirrored halves
+_GRADING = 0.5  # growth rate of the elements
+_SAMPLES = 5  # number of points on an edge
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,9 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
         whole = whole + other
     half = _upper_half(list(whole.solids))
     if half is None:
-        raise AnalysisError("no_bore", "the bore's solids are not one body that is symmetric about z = 0")
+        raise AnalysisError(
+            "no_bore", "the solids of the bore must form one body that is symmetric about z = 0"
+        )
     for face in half.faces:
         face.name = _name(face, place)
     for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):
@@ -154,7 +156,7 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
     )
     try:
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
-    except Exception as error:  # Netgen has one kind of exception
+    except Exception as error:  # Netgen raises no more specific exception
         raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
     if mesh.ne > MOST_ELEMENTS:
         detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for another level"

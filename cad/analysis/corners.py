@@ -22,7 +22,7 @@ from templates.core.arrays import Array, Integers
 
 SHARP = pi / 3  # [rad]
 
-_SIZE, _CURVATURE, _GRADING = 1.0, 1.0, 0.7  # of triangles: in radii; by radius of curvature; of neighbours
+_SIZE, _CURVATURE, _GRADING = 1.0, 1.0, 0.7  # triangles: size in radii; per radius of curvature; growth
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Edges:
     """Straight segments of edges."""
 
     ends: Array  # (n, 2, 3) [mm]
-    radius: Array  # (n,) [mm], of the edge there; of a straight one the scale of the solid
+    radius: Array  # (n,) [mm], radius of the edge at the end; for a straight edge the size of the solid
 
 
 def sharp_inner_edges(shape: Any, scale: float) -> Edges:

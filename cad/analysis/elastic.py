@@ -33,7 +33,7 @@ from cad.errors import AnalysisError
 from cad.shaft import Material
 from templates.core.arrays import Array, Integers
 
-_RESIDUAL = 1e-5  # relative, in the preconditioner's norm: stresses change by some 1e-5, stiffnesses by 1e-9
+_RESIDUAL = 1e-5  # relative, in the preconditioner's norm: stresses change by about 1e-5, stiffnesses by 1e-9
 _MOST_STEPS = 1000
 
 
@@ -152,9 +152,9 @@ class Response:
     system: System
     compliance: float  # [rad/(N·mm)]
     displacement: Any  # a GridFunction [mm]
-    guides: tuple[Any, ...]  # forces that act on the guided end
-    guided: tuple[Any, ...]  # displacements under them
-    gram: Array  # work between them
+    guides: tuple[Any, ...]  # forces on the guided end
+    guided: tuple[Any, ...]  # displacements due to these forces
+    gram: Array  # matrix of the work of each force on each displacement
 
 
 def respond(system: System, boundary: Boundary) -> Response:

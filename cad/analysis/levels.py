@@ -31,11 +31,11 @@ class Level:
     name: str
     fineness: Fineness
     order: int
-    factor: float  # of the change from the order below: the error that is reported
-    floor: float  # what no order of elements corrects, relative: it is added to that
-    sharp_factor: float  # both where there are sharp inner edges
+    factor: float  # reported error over the change from the next lower order
+    floor: float  # relative error that a higher order does not reduce; it is added
+    sharp_factor: float  # factor and floor for solids with sharp inner edges
     sharp_floor: float
-    typical: float  # the error that is usually reported, relative
+    typical: float  # typical reported error, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
         """Return the estimated relative error of a value, from the value of the next lower order."""

@@ -32,18 +32,18 @@ MOST_ELEMENTS = 60_000
 ONE_THREAD = {"parallel_meshing": False}
 """On several threads Netgen makes the same mesh, but they wait in loops: 3 to 7 times the processor time."""
 
-_GRADING = 0.5  # how fast elements grow from one to the next
-_SAMPLES = 16  # of an edge, to see how far it turns
+_GRADING = 0.5  # growth rate from one element to the next
+_SAMPLES = 16  # points on an edge, to measure its angle
 
 
 @dataclass(frozen=True)
 class Fineness:
     """Parameters of the element sizes of a mesh."""
 
-    size: float  # of the largest elements, in the solid's scale
-    curvature: float  # elements for each radius of curvature
-    turn: float  # [rad], the most that one segment of an edge turns
-    sharp: float = 0.15  # of elements at sharp inner edges, in the edge's radius or the scale
+    size: float  # size of the largest elements, relative to the solid
+    curvature: float  # elements per radius of curvature
+    turn: float  # [rad], largest angle of one segment of an edge
+    sharp: float = 0.15  # size of elements at sharp inner edges, relative to the edge's radius or the solid
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Grid:
 
     mesh: Any
     solid: Solid
-    is_sharp: bool = False  # whether it has sharp inner edges
+    is_sharp: bool = False  # whether the solid has sharp inner edges
 
 
 def make_grid(
@@ -112,7 +112,7 @@ def _meshing() -> Iterator[None]:
     """Convert a failure of Netgen into an analysis error of the solid."""
     try:
         yield
-    except Exception as error:  # Netgen has one kind of exception
+    except Exception as error:  # Netgen raises no more specific exception
         raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
 
 
@@ -154,7 +154,7 @@ def _coordinates(mesh: Any, order: int) -> list[Any]:
     """Return the coordinates in curved elements as finite-element functions."""
     mesh.Curve(order)
     together = ng.GridFunction(ng.H1(mesh, order=order, dim=3))
-    together.Set(ng.CF((ng.x, ng.y, ng.z)))  # at once: a quarter of the time
+    together.Set(ng.CF((ng.x, ng.y, ng.z)))  # one call takes a quarter of the time
     scalar = ng.H1(mesh, order=order)
     vectors = []
     for values in together.vec.FV().NumPy().reshape(-1, 3).T:
@@ -166,7 +166,7 @@ def _coordinates(mesh: Any, order: int) -> list[Any]:
 
 def bound_sizes(solid: Solid, fineness: Fineness) -> None:
     """Limit the size of elements along curved edges, and on curved faces bounded by full circles."""
-    limits: dict[Any, tuple[float, float]] = {}  # of edges: how far they turn, and their longest segment
+    limits: dict[Any, tuple[float, float]] = {}  # for each edge: angle that it turns, and its longest segment
     for face in solid.shape.faces:
         rims = []
         for edge in face.edges:

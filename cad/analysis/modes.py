@@ -28,7 +28,7 @@ class Mode:
     """A natural mode with its frequency and effective inertia."""
 
     frequency: float  # [Hz]
-    share: float  # its effective inertia about z, as a share of the solid's
+    share: float  # effective inertia about z over the inertia of the solid
 
 
 def torsional_mode(response: Response) -> Mode:
@@ -78,7 +78,7 @@ def natural_modes(response: Response, count: int) -> list[Mode]:
     turned.data = mass * rotation.vec
     start = np.array(response.displacement.vec.FV().NumPy()[free])
     squares, shapes = eigsh(
-        LinearOperator(size, matvec=times_mass, dtype=float),  # only its size is used here
+        LinearOperator(size, matvec=times_mass, dtype=float),  # the operator is used only for its size
         count,
         M=LinearOperator(size, matvec=times_mass, dtype=float),
         sigma=0.0,

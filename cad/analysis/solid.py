@@ -26,8 +26,8 @@ HELD, LOADED, MIRROR, FREE = "held", "loaded", "mirror", "free"
 _AXES = "xyz"
 _COLUMNS = ((slice(0, 1), 1), (slice(1, 4), 3), (slice(4, 10), 6))  # area, centre, moments
 _NEAR = 1e-6  # [mm]
-_ALIKE = 1e-7  # of a size, relative: what the kernel's integrals over mirrored faces agree in
-_FLAT = 1e-5  # of a moment of area; the kernel's own are good to 1e-6
+_ALIKE = 1e-7  # relative difference to which the kernel's integrals over mirrored faces agree
+_FLAT = 1e-5  # relative to a moment of area; the kernel's moments are accurate to 1e-6
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,9 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
         face.name = _name(face, mirror, ends)
     for name, level in ends.items():
         if not any(face.name == name for face in shape.faces):
-            raise AnalysisError("no_end", f"there is no flat face at z = {level:g} mm to be {name}")
+            raise AnalysisError(
+                "no_end", f"the shaft needs a flat face at z = {level:g} mm, where it is {name}"
+            )
     return Solid(shape, mirror, _radius(shape))
 
 
@@ -81,7 +83,7 @@ def _only_solid(step: bytes) -> Any:
         path.write_bytes(step)
         solids = list(OCCGeometry(str(path)).shape.solids)
     if len(solids) != 1:
-        raise AnalysisError("no_shaft", f"a shaft is one solid; this file has {len(solids)}")
+        raise AnalysisError("no_shaft", f"a shaft must be one solid; the file has {len(solids)}")
     return solids[0]
 
 

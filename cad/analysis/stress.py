@@ -33,13 +33,13 @@ Measure = Callable[[Components], Any]
 START = Fineness(size=0.7, curvature=0.8, turn=np.pi / 4)
 ORDER = 3
 STEPS = 5
-SMALL, CONVERGED = 0.05, 0.01  # relative changes from mesh to mesh, of the last step but one and of the last
-FLOOR = 0.008  # relative: what the last change does not show (docs/finite_elements.md)
+SMALL, CONVERGED = 0.05, 0.01  # largest relative change in the last step but one, and in the last
+FLOOR = 0.008  # relative error that the last change does not show (docs/finite_elements.md)
 
-_END_ZONE = 0.3  # of the radius of the loaded end: nothing is looked at there
-_PLAIN = 0.9  # of the distance from an end to where the next faces begin: nor there, if that is less
-_TOUCHES = 1e-3  # [mm]: a face that begins so near to an end begins there
-_HIGH = (0.85, 0.85, 0.9)  # of the greatest stress on each mesh: elements above it are halved
+_END_ZONE = 0.3  # stresses within this share of the loaded end's radius are ignored
+_PLAIN = 0.9  # nor within this share of the distance from an end to the next faces, if that is less
+_TOUCHES = 1e-3  # [mm]: a face that begins within this distance of an end touches it
+_HIGH = (0.85, 0.85, 0.9)  # share of the highest stress on each mesh above which elements are halved
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Places:
 
     peak: Peak
     corners: Array  # (elements, 3, 3) [mm]
-    values: Array  # (elements,) the greatest stress in each [MPa] under 1 N·mm
+    values: Array  # (elements,) the highest stress in each element [MPa] under 1 N·mm
 
     def high(self, share: float) -> tuple[Near, ...]:
         """Return the elements to refine: those with more than a share of the greatest stress."""
@@ -200,7 +200,7 @@ def recover(response: Response) -> Components:
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
     space = ng.H1(system.grid.mesh, order=system.order - 1)
     together = ng.GridFunction(ng.H1(system.grid.mesh, order=system.order - 1, dim=len(places)))
-    together.Set(ng.CF(tuple(raw[place] for place in places)))  # at once: a third of the time
+    together.Set(ng.CF(tuple(raw[place] for place in places)))  # one call takes a third of the time
     components = []
     for values in together.vec.FV().NumPy().reshape(-1, len(places)).T:
         component = ng.GridFunction(space)

@@ -29,10 +29,10 @@ MOST_TRIANGLES = 16_000
 
 LOADS = {"torsion": "a torque of 1 N*m about z", "bending": "a moment of 1 N*m about y"}
 
-_FINEST = 3  # divisions of the side of an element
-_NEAR = 1e-6  # [mm], to the mirror plane
+_FINEST = 3  # largest number of divisions of an element's side
+_NEAR = 1e-6  # [mm], distance within which a point lies on the mirror plane
 _DIGITS = 6
-_NOISE = 1e-9  # of the largest value: what is smaller is nothing
+_NOISE = 1e-9  # relative to the largest value: smaller values count as zero
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ END, PIN = 6, 2
 FREEDOMS = 2 * END + PIN
 
 _AXES = (ng.CF((1, 0, 0)), ng.CF((0, 1, 0)), ng.CF((0, 0, 1)))
-_INSIDE = 1e-4  # of a radius, by which a point may lie beyond the pin's surface and still be on it
+_INSIDE = 1e-4  # relative to the radius: distance by which a point on the pin's surface may lie outside it
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ThrowMatrix:
     mass: Array
     pitch: float  # [mm]
     throw: float  # [mm]
-    degrees_of_freedom: int = 0  # of the elements behind it
+    degrees_of_freedom: int = 0  # of the elements from which the matrix was computed
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:

@@ -24,7 +24,7 @@ LEVELS: dict[Level, tuple[Fineness, int]] = {
 
 NO_ERROR = "how far these tensors depend on the mesh is not estimated: compare two levels"
 
-_PER_UNIT = {"force": 1e3, "moment": 1e6}  # N in a kN, N·mm in a kN·m
+_PER_UNIT = {"force": 1e3, "moment": 1e6}  # N per kN, N·mm per kN·m
 
 
 def unit_load_tables(

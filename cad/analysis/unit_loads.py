@@ -39,7 +39,7 @@ LOADS = ("force_1", "force_2", "moment_1", "moment_2", "moment_3")
 FINENESS = Fineness(size=0.7, curvature=0.8, turn=pi / 4)
 ORDER = 3
 
-_ON_PIN = 1e-3  # of its radius: so near to its cylinder a point lies on it
+_ON_PIN = 1e-3  # relative to the radius: distance within which a point lies on the pin's cylinder
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class UnitStresses:
     """Stress tensors at points of the fillets under unit loads."""
 
     points: Array  # [point, 3] [mm]
-    tensors: dict[str, Array]  # by load: [point, 6], xx, yy, zz, xy, yz, xz [MPa] under 1 N or 1 N·mm
+    tensors: dict[str, Array]  # for each load: [point, 6], xx, yy, zz, xy, yz, xz [MPa] under 1 N or 1 N·mm
     elements: int
 
 

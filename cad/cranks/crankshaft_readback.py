@@ -16,7 +16,7 @@ from cadquery import Vector
 from cad.cranks.throw_readback import Webs, stubs
 from cad.surfaces import PartSurfaces, Place, Size, Surface, Z, alike, faces_of
 
-_CLEAR = 1e-6  # [mm], and as the sine of an angle
+_CLEAR = 1e-6  # [mm], also used as the sine of an angle
 _ANGLE = 1e-8  # [rad]
 
 
@@ -84,13 +84,13 @@ class ShaftReadback:
             pins = (self._pin_between(*faces[at : at + 2]) for at in range(1, count - 1, 2))
             found.append(ThrowReadback(tuple(pins), faces))
         if not found:
-            raise LookupError("there is no pin between two webs")
+            raise LookupError("the file has no pin between two webs")
         return found
 
     def _pin_between(self, low: float, high: float) -> Surface:
         pins = self._beside_within(low, high)
         if not pins:
-            raise LookupError(f"there is no pin between the webs at {low:.9g} and {high:.9g} mm")
+            raise LookupError(f"the file has no pin between the webs at {low:.9g} and {high:.9g} mm")
         return max(pins, key=lambda c: c.diameter)
 
     def _beside_within(self, low: float, high: float) -> list[Surface]:
@@ -137,7 +137,9 @@ class ShaftReadback:
         inner = []
         for low, high in self._gaps():
             if not (between := self._about(low, high)):
-                raise LookupError(f"there is no main journal between the webs at {low:.9g} and {high:.9g} mm")
+                raise LookupError(
+                    f"the file has no main journal between the webs at {low:.9g} and {high:.9g} mm"
+                )
             inner += between
         return [front, *inner, rear]
 
@@ -236,13 +238,13 @@ class ShaftReadback:
         tori = self.seen.tori
         each = 6 if self.split else 4
         if tori and len(tori) != each * len(self.throws):
-            raise LookupError(f"each throw must have {each} fillets; all throws have {len(tori)}")
+            raise LookupError(f"each throw must have {each} fillets; the whole crankshaft has {len(tori)}")
         return Size.radius(tori) if tori else 0.0
 
     def _drilling(self) -> float:
         askew = [c for c in self.seen.cylinders if not c.along(Z)]
         if askew and len(askew) < sum(len(throw.pins) for throw in self.throws):
-            raise LookupError(f"each pin must have a drilling; all pins have {len(askew)}")
+            raise LookupError(f"each pin must have a drilling; the file has only {len(askew)}")
         return Size.diameter(askew) if askew else 0.0
 
     def _inclination(self) -> float:
@@ -258,7 +260,7 @@ class ShaftReadback:
         """Return the pin angles [deg], in the turn nearest to the requested angles [deg]."""
         seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
-            raise LookupError(f"there must be {len(near)} throws; there are {len(seen)}")
+            raise LookupError(f"the crankshaft must have {len(near)} throws; the file has {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
     def flange(self) -> dict[str, float]:

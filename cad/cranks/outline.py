@@ -17,7 +17,7 @@ from cadquery.func import segment, wire
 Point = tuple[float, float]
 Run = tuple[Point, ...]  # two points: a line; three: an arc through the second
 
-_NOTHING = 1e-9  # [mm]: the length of a line that is none, as where a flank meets a corner
+_NOTHING = 1e-9  # [mm]: shorter lines are left out, as where a flank meets a corner
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from templates.core.language.template import Array, choice, derived, formula, gi
 class CrankParameters(CadModel):
     """Parameters of a crank throw."""
 
-    L_s: Array  # how long the main journal is that is drawn on each side
+    L_s: Array  # length of the main journal drawn on each side
 
     D_j: Array = given(
         "mm",

@@ -19,7 +19,7 @@ from cadquery.func import cut, face, fuse, polygon, wire
 
 from cad.cranks.outline import Outline, Run, draw
 
-_MIDDLE = 1 - sqrt(0.5)  # of a fillet's arc, in radii from either end
+_MIDDLE = 1 - sqrt(0.5)  # distance of the middle of a fillet's arc from either end, in radii
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Throw:
         """Return the pin, webs and journals joined, then bored and drilled at once."""
         web, journal = self.web(), self.journal_solid(None)
         parts = web, web.mirror("XY"), self.pin_solid(), journal.mirror("XY"), journal
-        whole = fuse(*parts, glue="partial")  # they touch and do not cross: half the time
+        whole = fuse(*parts, glue="partial")  # glueing takes half the time: the parts only touch
         tools = [*self._bores()]
         return whole.cut(*tools) if tools else whole
 
@@ -145,7 +145,7 @@ class Throw:
         top, bottom = self.drilled
         way = bottom - top
         lean = way.z / -way.x
-        # As far beyond the mouths as the slant of the drill's flat ends needs, and a tenth more.
+        # The drill extends beyond the openings by the slant of its flat ends plus a tenth.
         over = way.normalized() * (1.1 * self.drilling * lean)
         return Solid.makeCylinder(self.drilling, (way + over * 2).Length, top - over, way)
 

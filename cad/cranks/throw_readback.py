@@ -15,7 +15,7 @@ from cadquery import Vector
 
 from cad.surfaces import PartSurfaces, Place, Size, Surface, X, Y, Z, faces_of
 
-_CLEAR = 1e-6  # [mm], and as the sine of an angle
+_CLEAR = 1e-6  # [mm], also used as the sine of an angle
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
     within = [c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR]
     bores = [c for c in beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]
     if not within:
-        raise LookupError("there is no pin between the webs")
+        raise LookupError("the file has no pin between the webs")
     journals = [cylinder for stub in stubs(seen, webs) for cylinder in stub[:1]]
     return {
         "pin_diameter": Size.diameter(within),

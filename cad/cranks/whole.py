@@ -50,7 +50,7 @@ class Throws:
 
     front: Throw
     rear: Throw
-    angle: float  # of its pin, or of its front one, from the line of reference [rad]
+    angle: float  # angle of the pin, or of the front pin, from the reference line [rad]
 
 
 @dataclass(frozen=True)

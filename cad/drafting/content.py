@@ -64,10 +64,19 @@ class Content:
         return [*definition.missing()]
 
 
-def content_of(bodies: Sequence[Body], header: Header | None) -> Content:
-    """Return what the drawing of a STEP file shows, where the sheet has room for everything."""
+def declared_of(
+    bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()
+) -> tuple[dict[str, PartSurfaces], DrawingDeclaration]:
+    """Return the surfaces of bodies, and what their model declares; `whole` are all its parts."""
     seen = look_at(bodies)
-    declared = DrawingDeclaration.of(header, seen, is_assembly=is_assembly(bodies))
+    every = look_at(whole) if len(whole) > len(bodies) else seen
+    declared = DrawingDeclaration.of(header, every, is_assembly=is_assembly(bodies))
+    return seen, declared.on(seen) if len(every) > len(seen) else declared
+
+
+def content_of(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> Content:
+    """Return what the drawing of a STEP file, or of one of its parts, shows if there is room."""
+    seen, declared = declared_of(bodies, header, whole)
     return next(contents(bodies, seen, header, declared))
 
 
@@ -79,7 +88,7 @@ def contents(
 ) -> Iterator[Content]:
     """Yield what a drawing shows: with removed sections, and without them where they have no room."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
-    parameters = header.parameters if header else {}
+    parameters = declared.own(header.parameters if header else {})
     repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
     shown = [
         *lengths(declared.sizes.values(), seen, section),

@@ -7,7 +7,7 @@ dimension line of its feature.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import cos, pi, radians, sin
+from math import cos, dist, pi, radians, sin
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import Control, DrawingDeclaration
@@ -22,6 +22,7 @@ from cad.drafting.symbols import Symbol, arrow, datum, texture
 _HIGH = 2 * TEXT  # of a frame [mm on paper]
 _INTO = 3.0  # from the corner of a face to where a leader points [mm on paper]
 _ACROSS = 20.0  # a leader runs within a view, where another place is free [mm on paper]
+_ROUND = 4.0  # radius of a balloon [mm on paper]
 _STEMS = range(2, 90, 3)
 
 BoxAt = Callable[[float, float], Rectangle]
@@ -93,6 +94,16 @@ class Controls:
         self.page.symbol(arrow(target, start))
         frame.draw(self.page, left, low)
         self.room.add_line([target, start], is_drawn=True)
+
+    def balloon(self, number: str, target: Point) -> None:
+        """Draw the number of a part in a circle, with a leader that ends in a dot on the part."""
+        x, y = self._place(target, lambda x, y: (x - _ROUND, y - _ROUND, x + _ROUND, y + _ROUND), 0.0)
+        size = dist((x, y), target)
+        foot = x + (target[0] - x) * _ROUND / size, y + (target[1] - y) * _ROUND / size
+        drawn = Symbol(lines=[[target, foot]], circles=[((x, y), _ROUND), (target, 0.5)])
+        self.page.symbol(drawn, "DIMENSIONS")
+        self.page.write(number, x - width_of(number, TEXT) / 2, y - TEXT / 2, TEXT)
+        self.room.add_line([target, foot], is_drawn=True)
 
     def _texture(self, placed: PlacedDimension, text: str) -> None:
         reach = width_of(text, 2.5)

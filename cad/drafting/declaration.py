@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cad.assemblies import AssemblyModel
@@ -44,6 +44,8 @@ class DrawingDeclaration:
         Removed sections by letter, in the words of `cad.drafting.removed_section`.
     sizes
         Dimensions of the solid with the faces that carry them, by parameter.
+    is_part
+        Whether the sheet is that of one part of a model with several.
     """
 
     is_shaft: bool = False
@@ -53,6 +55,31 @@ class DrawingDeclaration:
     textures: Mapping[str, float] = field(default_factory=dict)
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     sizes: Mapping[str, Size] = field(default_factory=dict)
+    is_part: bool = False
+
+    def on(self, seen: Mapping[str, PartSurfaces]) -> DrawingDeclaration:
+        """Return what is declared of some of the parts alone."""
+        kept = {
+            name: Size(size, size.kind, *places)
+            for name, size in self.sizes.items()
+            if (places := [p for p in size.places if all(part in seen for part, _ in (*p.first, *p.second))])
+        }
+        return replace(
+            self,
+            limits={name: one for name, one in self.limits.items() if name in kept},
+            controls=tuple(one for one in self.controls if one.parameter in kept),
+            datums={name: letter for name, letter in self.datums.items() if name in kept},
+            textures={name: height for name, height in self.textures.items() if name in kept},
+            sections={letter: one for letter, one in self.sections.items() if one["of"] in seen},
+            sizes=kept,
+            is_part=True,
+        )
+
+    def own(self, parameters: Mapping[str, str]) -> Mapping[str, str]:
+        """Return the parameters of a sheet: of a part those that its faces carry."""
+        if not self.is_part:
+            return parameters
+        return {name: text for name, text in parameters.items() if name in self.sizes}
 
     @staticmethod
     def of(

@@ -247,7 +247,7 @@ def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, in
         points = (arc.centre, arc.middle)
         faces = on(*(one for one in standing if _is_cut_in(one, arc, section.frame)))
         count = max((counts[part] for part, _ in faces), default=1)
-        if arc.whole or count > 1:
+        if arc.whole or any(one.form == "sphere" and one.face in faces for one in standing):
             yield Measure("diameter", 2 * arc.radius, "section", "circle", points, count, faces)
         tubes = {one.face for one in standing if one.form == "torus" and one.face in faces}
         alike = [

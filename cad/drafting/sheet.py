@@ -15,7 +15,8 @@ from itertools import islice
 from ezdxf._options import options
 from ezdxf.document import Drawing
 
-from cad.drafting.content import Content, contents
+from cad.drafting.balloons import balloons
+from cad.drafting.content import Content, contents, declared_of
 from cad.drafting.controls import Controls
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
@@ -25,22 +26,22 @@ from cad.drafting.page import Page, document_of
 from cad.drafting.plan import Plan
 from cad.drafting.removed_section import mark, place
 from cad.drafting.room import Rectangle, Room
-from cad.drafting.sheet_border import General, frame, notes, table, title_block
+from cad.drafting.sheet_border import General, SheetNumber, frame, notes, parts_list, table, title_block
 from cad.drafting.title import general_profile
 from cad.drafting.views import View, is_assembly
 from cad.header import Header
-from cad.inspect import bounding_box, look_at
+from cad.inspect import bounding_box
 from cad.step import Body
 from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
 
 
-def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
+def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
     """Return a dimensioned drawing; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
-        document, _ = draw(bodies, header)
+        document, _ = draw(bodies, header, whole)
         _register_classes(document)
         document.write(stream)
     return stream.getvalue().encode()
@@ -77,10 +78,10 @@ class _Laid:
     datum: str
 
 
-def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
-    """Return the drawing as a document of ezdxf, and its sheet."""
-    seen = look_at(bodies)
-    declared = DrawingDeclaration.of(header, seen, is_assembly=is_assembly(bodies))
+def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
+    """Return the drawing as a document of ezdxf, and its sheet; `whole` are the parts of a part's model."""
+    seen, declared = declared_of(bodies, header, whole)
+    sheet = SheetNumber.of(bodies, whole)
     content, laid = _laid_out(bodies, seen, header, declared)
     page = laid.page
     section_label(page, content.section, laid.room)
@@ -89,9 +90,11 @@ def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format
     box = bounding_box(bodies)
     longest = max(high - low for low, high in zip(box.low, box.high, strict=True))
     general = General(general_profile(longest), "" if is_assembly(bodies) else laid.datum)
-    title_block(page, header, general)
+    title_block(page, header, general, sheet)
     notes(page, header, content.unseen, general)
-    table(page, header.parameters if header else {}, content.unseen)
+    parameters = declared.own(header.parameters if header else {})
+    left = table(page, parameters, content.unseen, len(sheet.names))
+    parts_list(page, sheet.names, left)
     return page.document, page.plan.format
 
 
@@ -133,7 +136,10 @@ def _laid(
     placed = placing.all()
     for one in content.removed:
         placed += place(page, room, one, placing)
-    datum = Controls(page, room, is_last=is_last).draw(declared, placed)
+    controls = Controls(page, room, is_last=is_last)
+    datum = controls.draw(declared, placed)
+    for number, target in balloons(content.section, bodies):
+        controls.balloon(str(number), plan.paper(target))
     return _Laid(page, room, centres, placed, datum)
 
 

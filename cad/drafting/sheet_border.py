@@ -23,11 +23,14 @@ from cad.drafting.title import (
 )
 from cad.header import Header
 from cad.stamp import MARK
+from cad.step import Body
 from cad.tolerances import Limits, deviations, limits_of, number_of
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
+_OF_THE_WHOLE = ("mass", "material", "part")
+"""Fields that a stamp fills in with what is true of all parts together."""
 _MOST_LINES = 3  # of one value in the table
 
 
@@ -77,12 +80,37 @@ class General:
             frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
 
 
-def title_block(page: Page, header: Header | None, general: General) -> None:
+@dataclass(frozen=True)
+class SheetNumber:
+    """The number of a sheet: the first shows all parts, each further one a part.
+
+    `names` are those of all parts on the first sheet of several, with how often they occur.
+    """
+
+    number: int = 1
+    count: int = 1
+    part: str = ""
+    names: tuple[tuple[str, int], ...] = ()
+
+    @staticmethod
+    def of(bodies: Sequence[Body], whole: Sequence[Body]) -> SheetNumber:
+        """Return the number of the sheet of some bodies of a whole."""
+        every = [body.name for body in whole or bodies]
+        if len(every) == 1:
+            return SheetNumber()
+        if len(bodies) == 1:
+            return SheetNumber(every.index(bodies[0].name) + 2, len(every) + 1, bodies[0].name)
+        names = tuple((body.name, len(body.places)) for body in bodies)
+        return SheetNumber(1, len(every) + 1, "", names)
+
+
+def title_block(page: Page, header: Header | None, general: General, sheet: SheetNumber) -> None:
     """Draw the fields of ISO 7200; a stamp fills in those of a design."""
     left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
     texts = {
-        "sheet": "1/1",
+        "sheet": f"{sheet.number}/{sheet.count}",
+        "part": sheet.part.replace("_", " "),
         "language": "en",
         "format": page.plan.format.name,
         "model": model,
@@ -101,9 +129,10 @@ def title_block(page: Page, header: Header | None, general: General) -> None:
         page.line(box, "FRAME")
         page.write(field.caption, left + field.caption_at[0], low + field.caption_at[1], CAPTION)
         text = clipped(texts.get(field.name, ""), field.room, field.letters)
-        if field.is_stamped or text:
+        is_stamped = field.is_stamped and not (sheet.part and field.name in _OF_THE_WHOLE)
+        if is_stamped or text:
             line = page.write(text, left + field.text_at[0], low + field.text_at[1], field.letters)
-            if field.is_stamped:
+            if is_stamped:
                 line.set_xdata(APP, [(1000, f"{MARK}{field.mark}")])
         if field.name == "general":
             general.draw(page, left + field.text_at[0], low + field.text_at[1])
@@ -135,8 +164,8 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
     page.write("roughness in µm (ISO 21920-1)", left + 34.0 + reach, y + 1.5, 2.5)
 
 
-def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> None:
-    """Draw the parameters with their values."""
+def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str], below: int = 0) -> float:
+    """Draw the parameters with their values; return where they end, with room for rows `below` them."""
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
@@ -148,12 +177,29 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
         for number, line in enumerate(_wrapped(_value(text, limits.get(name)), COLUMN - _NAMES - 6))
     ]
     room = top - (EDGE + HEIGHT) - 3.0
-    row = min(_ROW, room / max(len(rows), 1))
+    row = min(_ROW, room / max(len(rows) + (below + 2 if below else 0), 1))
     size = min(_LETTERS, row * 0.55)
     for number, (name, text) in enumerate(rows, 1):
         y = top - row * number
         page.write(clipped(name, _NAMES - 2, size), left, y, size)
         page.write(text, left + _NAMES, y, size)
+    return top - row * (len(rows) + 2)
+
+
+def parts_list(page: Page, names: Sequence[tuple[str, int]], top: float) -> None:
+    """Draw the parts with the numbers of their balloons and how often they occur."""
+    if not names:
+        return
+    left = page.plan.format.column[0] + 3
+    room = top - (EDGE + HEIGHT) - 3.0
+    row = min(_ROW, room / (len(names) + 1))
+    size = min(_LETTERS, row * 0.55)
+    page.write("Parts", left, top, min(4.5, row * 0.8))
+    page.write("quantity", left + _NAMES, top, size)
+    for number, (name, count) in enumerate(names, 1):
+        y = top - row * number
+        page.write(clipped(f"{number}  {name.replace('_', ' ')}", _NAMES - 2, size), left, y, size)
+        page.write(str(count), left + _NAMES, y, size)
 
 
 def _value(text: str, limits: Limits | None) -> str:

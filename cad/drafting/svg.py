@@ -48,9 +48,9 @@ _EDGE = 0.7  # of words, white: it interrupts an extension line that crosses the
 _FLAT = 0.02  # greatest distance of a hatched outline from its arcs [mm on paper]
 
 
-def write_drawing(bodies: Sequence[Body], header: Header | None) -> bytes:
-    """Return a dimensioned drawing, the sheet in millimetres."""
-    document, format = draw(bodies, header)
+def write_drawing(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
+    """Return a dimensioned drawing of all parts or of one of the whole, the sheet in millimetres."""
+    document, format = draw(bodies, header, whole)
     frame: Any = document.modelspace().query('LWPOLYLINE[layer=="FRAME"]').first
     (left, low), (right, _) = frame.get_points("xy")[:2]
     ink = Ink(left, low, format.width / (right - left), format)

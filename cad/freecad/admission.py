@@ -45,10 +45,7 @@ _DAMAGES = (
 )  # fmt: skip
 """What `zipfile` raises for bytes that are not ZIP, or no longer one."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-_DIRECTORY, _LARGE_DIRECTORY = (
-    b"PK\x05\x06",
-    b"PK\x06\x07",
-)  # where their ends are, in a ZIP and in a large one
+_DIRECTORY, _LARGE_DIRECTORY = b"PK\x05\x06", b"PK\x06\x07"  # end records of ZIP and of ZIP64
 
 
 def admitted(content: bytes) -> bytes:
@@ -68,7 +65,7 @@ def admitted(content: bytes) -> bytes:
         for name, part in parts.items():
             if (
                 name == DOCUMENT or name in named
-            ):  # packed small: a bomb of zeros is not kept at its full size
+            ):  # compressed at a low level, so that a zip bomb of zeros is not stored at full size
                 package.writestr(zipfile.ZipInfo(name), part, zipfile.ZIP_DEFLATED, 1)
     return out.getvalue()
 
@@ -83,7 +80,7 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
                     continue
                 if part.compress_type not in _METHODS:
                     raise UnreadableModel(
-                        "package", f"it is packed in a way that FreeCAD does not use: {AGAIN}"
+                        "package", f"it is compressed in a way that FreeCAD does not use: {AGAIN}"
                     )
                 with package.open(part) as opened:
                     read = opened.read(left + 1)
@@ -107,7 +104,7 @@ def _check_directory(content: bytes) -> None:
         raise UnreadableModel("package", f"it is a ZIP64 package, which states its size twice: {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS or size > MOST_PARTS * 400:
-        raise UnreadableModel("too_large", f"it has {entries} parts; a model has at most {MOST_PARTS}")
+        raise UnreadableModel("too_large", f"it has {entries} parts; a model may have at most {MOST_PARTS}")
 
 
 class _Document:
@@ -160,10 +157,12 @@ class _Document:
 
     def _begin(self, tag: str, attributes: dict[str, str]) -> None:
         if self._depth == 0 and tag != "Document":
-            raise UnreadableModel("not_freecad", f"its {DOCUMENT} is not that of FreeCAD")
+            raise UnreadableModel("not_freecad", f"its {DOCUMENT} was not written by FreeCAD")
         self._depth += 1
         if self._depth > DEEPEST:
-            raise UnreadableModel("package", f"its {DOCUMENT} nests more than {DEEPEST} deep: {AGAIN}")
+            raise UnreadableModel(
+                "package", f"its {DOCUMENT} nests elements more than {DEEPEST} deep: {AGAIN}"
+            )
         _check_element(tag, attributes)
         self.named.update(attributes.get(key, "") for key in ("file", "File"))
 

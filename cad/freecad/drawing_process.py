@@ -116,12 +116,13 @@ def deny_calls(libc: ctypes.CDLL) -> None:
     load, equal, at_least, has, answer, first = 0x20, 0x15, 0x35, 0x45, 0x06, 16
     refused, missing, killed, allowed = 0x00050000 | 1, 0x00050000 | 38, 0x80000000, 0x7FFF0000
     lines = [(load, 0, 0, 4), (equal, 1, 0, audited), (answer, 0, 0, killed), (load, 0, 0, 0)]
-    lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # the numbers of x32
+    lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # system call numbers of x32
     for number in denied:
         lines += [(equal, 0, 1, number), (answer, 0, 0, refused)]
-    lines += [(equal, 0, 1, CLONE3), (answer, 0, 0, missing)]  # its flags are out of reach: clone stands in
+    # The filter cannot read the flags of clone3. If it is missing, programs use clone.
+    lines += [(equal, 0, 1, CLONE3), (answer, 0, 0, missing)]
     firsts = ((signal_one, equal, os.getpid()), (limit_one, equal, 0), (clone, has, CLONE_THREAD))
-    for number, test, wanted in firsts:  # by the lower half of the first argument
+    for number, test, wanted in firsts:  # compares the lower half of the first argument
         lines += [(equal, 0, 4, number), (load, 0, 0, first), (test, 0, 1, wanted)]
         lines += [(answer, 0, 0, allowed), (answer, 0, 0, refused)]
     lines.append((answer, 0, 0, allowed))
@@ -159,8 +160,8 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
     create, add, restrict, reading, of_a_file = 444, 445, 446, 0b1101, 0b101
     rules = libc.syscall(create, None, 0, 1)
     if rules < 1:
-        return  # a kernel without Landlock; the other walls stand
-    everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels rule links and shortening too
+        return  # the kernel has no Landlock; the other restrictions still apply
+    everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels also restrict links and truncation
     ruled = libc.syscall(create, ctypes.byref(FileAccess(everything)), ctypes.sizeof(FileAccess), 0)
     places = {place: reading if os.path.isdir(place) else of_a_file for place in READABLE}
     for place, access in {**places, writable: everything}.items():
@@ -254,7 +255,9 @@ def parameters(app: Any, document: Any) -> list[list[Any]]:
         elif thing.TypeId == "Sketcher::SketchObject":
             listed += [[thing.Name, "constraint", *one, thing.Label] for one in constraints(thing)]
     if len(listed) > MOST_PARAMETERS:
-        raise Refused("too_large", f"it has {len(listed)} parameters; a model has at most {MOST_PARAMETERS}")
+        raise Refused(
+            "too_large", f"it has {len(listed)} parameters; a model may have at most {MOST_PARAMETERS}"
+        )
     return listed
 
 
@@ -275,7 +278,7 @@ def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
                 left.append(one)
         if len(left) == len(waiting):
             names = [f"{one[0]}.{one[2]}" for one in left]
-            raise Refused("not_solved", f"FreeCAD does not take {', '.join(names)}: {failed}", names)
+            raise Refused("not_solved", f"FreeCAD does not accept {', '.join(names)}: {failed}", names)
         waiting = left
 
 
@@ -451,7 +454,7 @@ def solids(there: Census) -> list[tuple[str, float, bytes]]:
             name = thing.Label if len(shape.Solids) == 1 else f"{thing.Label} {number + 1}"
             listed.append((name, solid.Volume, solid.exportBrepToString().encode()))
     if len(listed) > MOST_SOLIDS:
-        raise Refused("too_large", f"it has {len(listed)} solids; a model has at most {MOST_SOLIDS}")
+        raise Refused("too_large", f"it has {len(listed)} solids; a model may have at most {MOST_SOLIDS}")
     return listed
 
 
@@ -530,18 +533,18 @@ def main(lifeline: int, folder: str, modules: str, memory: int) -> None:
     requests, out = os.fdopen(os.dup(0), "rb"), os.dup(1)
     null = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1, 2):
-        os.dup2(null, standard)  # FreeCAD prints
+        os.dup2(null, standard)  # FreeCAD prints messages
     hang_on(lifeline)
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(38, 1, 0, 0, 0) != 0:  # no new privileges
         raise OSError("the Linux kernel refuses `no_new_privs`")
     keep_to_files(libc, folder)
     sys.path[:0] = [place for place in modules.split(os.pathsep) if place]
-    import FreeCAD  # the first: the others crash without it
+    import FreeCAD  # must be imported first: the other modules crash without it
 
     for name in ("Part", "Sketcher", "Spreadsheet", "_PartDesign"):
-        importlib.import_module(name)  # what a file needs, before much is denied
-    sys.modules["PartDesign"] = sys.modules["_PartDesign"]  # its package stands in a folder of workbenches
+        importlib.import_module(name)  # imports what a file needs before most access is denied
+    sys.modules["PartDesign"] = sys.modules["_PartDesign"]  # its package lies in a folder of workbenches
     deny_calls(libc)
     limit(resource.RLIMIT_CORE, 0)
     limit(resource.RLIMIT_FSIZE, LARGEST_FILE)

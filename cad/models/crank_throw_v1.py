@@ -134,7 +134,7 @@ class CrankThrow(CrankRules):
         """Return every parameter; the angle of a counterweight only if there is one."""
         surfaces, webs = seen[self.id], Webs.of(seen[self.id])
         front, rear = (stub[0] for stub in stubs(surfaces, webs))
-        before, behind = -front.reach[1], rear.reach[1]  # the end faces, in mid-journal
+        before, behind = -front.reach[1], rear.reach[1]  # the end faces, at the middle of the journals
         return {
             "journal_diameter": Size.diameter([front, rear]),
             "journal_length": webs.faces[0] - before + behind - webs.faces[3],

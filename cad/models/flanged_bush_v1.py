@@ -35,7 +35,7 @@ class Bush:
     width: float
     inner_chamfer: float
     outer_chamfer: float
-    groove: float  # radius of its bottom; that of the bore if there is no groove
+    groove: float  # radius of the groove's bottom; of the bore if there is no groove
     half_groove: float
     hole: float
 
@@ -280,7 +280,7 @@ class FlangedBush(CadModel):
             "outer_chamfer": bush.chamfer(levels[-1] - max(c.reach[1] for c in outside), outside),
             "oil_hole_diameter": Size.diameter(holes) if holes else 0.0,
         }
-        if len(levels) == 5:  # both ends, the back of the flange, both sides of a groove
+        if len(levels) == 5:  # both ends, the back of the flange and both sides of a groove
             sizes["oil_groove_width"] = bush.between(Z, 2, 3)
             sizes["oil_groove_depth"] = Size.wall(bore, rings[1])
         return sizes

@@ -30,7 +30,7 @@ from templates.core.language.template import (
 
 LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 _ANGLE_DIGITS = 12  # decimals of an angle [rad], so that equal parameters give equal bytes
-WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
+WHOLE = 3.14159  # rad; a groove of this extent goes from joint to joint
 LININGS = ("upper_lining", "lower_lining", "full_lining")
 BACKS = ("upper_back", "lower_back", "full_back")
 

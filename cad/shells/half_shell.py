@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from cad.revolution import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
 from cad.shells.relief import Relief
 
-_BEYOND = 10.0  # [deg] by which what cuts a groove from joint to joint passes the joints
+_BEYOND = 10.0  # [deg] by which the tool for a groove from joint to joint extends beyond the joints
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class Groove:
 
     bottom: float  # radius
     half_width: float
-    turn: float  # [rad] about the crown
-    is_whole: bool  # from joint to joint
+    turn: float  # [rad], rotation about the crown
+    is_whole: bool  # whether the groove goes from joint to joint
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class Relief:
     @property
     def axis(self) -> float:
         """Return the distance of the relief's axis from that of the bore, towards the joint."""
-        fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # of the bore's arc
+        fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # sagitta of the bore's arc
         return self.depth * (2 * self.bore + self.depth) / (2 * (self.depth + fall))
 
     @property

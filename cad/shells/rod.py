@@ -44,7 +44,7 @@ class Rod:
         if self.pocket_width > 0:
             depth = (self.thickness - self.web) / 2
             for side in (1, -1):
-                middle = side * (self.web / 2 + depth)  # twice as deep as the pocket, half of it in the air
+                middle = side * (self.web / 2 + depth)  # the tool is twice as deep as the pocket
                 shank = cut(shank, self._bar(self.pocket_width, *self.pocket, middle, 2 * depth))
         eye = Solid.makeCylinder(self.outside, full, end, Vector(0, 0, 1))
         whole = fuse(fuse(shank, eye), self.big_end.block())

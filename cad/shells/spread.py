@@ -19,7 +19,7 @@ from cad.surfaces import Surface, X, Y, Z
 from templates.core.language.declare import on_paper
 from templates.core.language.template import Array, units
 
-_STEPS = 12  # of Newton's method, which doubles the digits with each
+_STEPS = 12  # steps of Newton's method, each of which doubles the correct digits
 
 
 @on_paper("solved by Newton's method from a quarter turn on")

@@ -136,27 +136,27 @@ class BearingLoad(Cylinder):
 
     @shared
     def motion(self) -> Motion:
-        """The mechanism at the angles of the curves."""
+        """Return the mechanism at the angles of the curves."""
         return crank_motion(self.theta, self.n)
 
     @shared
     def grid(self) -> CrankGrid:
-        """The angles at which the maxima are calculated."""
+        """Return the angles at which the maxima are calculated."""
         return crank_grid(self.strokes, self.step, self.gas.corners())
 
     @shared
     def everywhere(self) -> Motion:
-        """The mechanism at all these angles."""
+        """Return the mechanism at the angles of `grid`."""
         return crank_motion(self.grid.theta, self.n)
 
     @shared
     def pressures(self) -> Array:
-        """The pressure at these angles [Pa], (…, K)."""
+        """Return the pressure at the angles of `grid` [Pa], (…, K)."""
         return pressure_at(self.gas, self.everywhere)
 
     @shared
     def forces(self) -> CrankForces:
-        """The forces at these angles."""
+        """Return the forces at the angles of `grid`."""
         motion, p = self.everywhere, self.pressures
         K = axial_force(self.m_rec, self.omega, self.r, self.A, motion, p, self.p_0)
         wall = wall_force_Rao_Singh_1993(K, self.dI_c, self.omega, self.r, motion)

@@ -113,7 +113,7 @@ class CombustionCycle(Template):
 
     @shared
     def cylinder(self) -> ClosedCylinder:
-        """The cylinder with closed valves."""
+        """Return the cylinder with closed valves."""
         burning = HeatRelease(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
         return closed_cylinder(
             self.n, self.V_h, self.epsilon, self.p_s, self.ic, self.eo, self.gamma, burning
@@ -121,7 +121,7 @@ class CombustionCycle(Template):
 
     @shared
     def highest(self) -> Peak:
-        """The largest pressure and its crank angle."""
+        """Return the largest pressure and its crank angle."""
         return highest(self.cylinder, self.p_s, self.p_e)
 
     @formula("1", "rod ratio")

@@ -221,12 +221,12 @@ class Engine(ArticulatedEngine):
 
     @shared
     def sections(self) -> CrankSections:
-        """Sections of the crank."""
+        """Return the sections of the crank."""
         return sections_of(self.d_j, self.d_p, self.l_p, self.t_s, self.b_s, self.E, self.nu, self.f_w)
 
     @shared
     def loads(self) -> ShaftLoads:
-        """All loads on the shaft."""
+        """Return all loads on the shaft."""
         return on_the_shaft(
             self.places, self.pins + spun(self.throw_unbalance, self.omega, self.grid.theta),
             self.web_places, spun(self.webs, self.omega, self.grid.theta),
@@ -234,12 +234,12 @@ class Engine(ArticulatedEngine):
 
     @shared
     def mains(self) -> Vectors:
-        """Statically determinate loads of the mains."""
+        """Return the statically determinate loads of the mains."""
         return determinate(self.z_m, self.loads)
 
     @shared
     def reactions(self) -> Array:
-        """Reactions of the mains to unit loads on the elastic crank."""
+        """Return the reactions of the mains to unit loads on the elastic crank."""
         return reactions_of(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections, self.k_s,
@@ -247,12 +247,12 @@ class Engine(ArticulatedEngine):
 
     @shared
     def supports(self) -> Supports:
-        """The supports of the mains."""
+        """Return the supports of the mains."""
         return supports_of(self.z_m, self.k_s, self.c_m, self.o_x, self.o_y)
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Loads of mains with clearance; None without clearance or without the sections of the crank."""
+        """Return the loads of mains with clearance; None without clearance or without crank sections."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,
@@ -261,7 +261,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def elastic_mains(self) -> Vectors:
-        """Loads of the mains on elastic supports."""
+        """Return the loads of the mains on elastic supports."""
         if self.played:
             return self.played.forces
         return elastic(self.z_m, self.loads, self.reactions, self.grid.theta)

@@ -194,27 +194,27 @@ class Flywheel(Cylinder):
 
     @shared
     def row(self) -> Arrangement:
-        """Positions and angles of the cranks."""
+        """Return the positions and angles of the cranks."""
         return arrangement(self.strokes, self.order, self.beta, self.z_i, self.z_0)
 
     @shared
     def planes(self) -> TwoPlanes:
-        """Balancing masses for cranks of unit mass and radius."""
+        """Return the balancing masses for cranks of unit mass and radius."""
         return two_planes(self.row, self.z_0, self.z_f, self.z_d)
 
     @shared
     def motion(self) -> Motion:
-        """The mechanisms of all cylinders."""
+        """Return the mechanisms of all cylinders."""
         return cylinder_motion(self.theta, self.strokes, self.N, self.n)
 
     @shared
     def grid(self) -> CrankGrid:
-        """The angles over which the energy is integrated."""
+        """Return the angles over which the energy is integrated."""
         return crank_grid(self.strokes, self.step, corners(self.gas, self.strokes, self.N))
 
     @shared
     def torques(self) -> Array:
-        """Torque of all cylinders at these angles [N m], (…, K)."""
+        """Return the torque of all cylinders at the angles of `grid` [N m], (…, K)."""
         theta = self.grid.theta
         motion = cylinder_motion(theta, self.strokes, self.N, self.n)
         return total_torque(

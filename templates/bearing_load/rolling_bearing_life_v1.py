@@ -110,7 +110,7 @@ class RollingBearingLife(Template):
 
     @shared
     def P(self) -> Array:
-        """The equivalent load over the cycle [N]."""
+        """Return the equivalent load over the cycle [N]."""
         return equivalent_load_ISO_281_2007(self.F_r, self.F_a, self.f_0, self.C_0)
 
     @formula("1", "relative axial load", symbol=r"\frac{f_0 F_a}{C_0}", source=ISO_281, le=6.89,

@@ -129,7 +129,7 @@ def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
     if (whole := name.replace("radial_clearance", "diametral_clearance")) != name and whole in candidates:
         remedy = f"give {whole}, which is twice the radial clearance"
         return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
-    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(candidates)}"
+    remedy = f"did you mean {', '.join(near)}?" if near else f"use one of {listed(candidates)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
 
 

@@ -63,46 +63,46 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def crank(self) -> OffsetCrank:
-        """The mechanisms."""
+        """Return the mechanisms."""
         carrier = carriers(self.masters, count_of(self.order, self.psi_g, self.phi_g))
         plain = crank_of(self.s, self.r_g, self.l, self.e)
         return with_articulated(plain, carrier, self.rho_a, self.gamma_a, self.beta)
 
     @shared
     def weight(self) -> Phasor:
-        """Force of each piston at the orders [N], (…, N, H)."""
+        """Return the force of each piston at the orders [N], (…, N, H)."""
         return (self.m_rec * np.asarray(self.omega)[..., None] ** 2)[..., None] * order_amplitudes(
             self.crank, self.h, self.terms == "exact"
         )
 
     @shared
     def own_wall(self) -> Array:
-        """Force of each piston on its wall by its own rod [N]."""
+        """Return the force of each piston on its wall by its own rod [N]."""
         return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
 
     @shared
     def links(self) -> Vectors:
-        """Force of each rod on its own pin in the cylinder's axes [N], complex."""
+        """Return the force of each rod on its own pin in the cylinder's axes [N], complex."""
         return link_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.own_wall)
 
     @shared
     def wall(self) -> Array:
-        """Force of each piston on its wall [N], with the reaction of articulated rods on that of a master."""
+        """Return the wall force of each piston [N], with the reaction of articulated rods on their master."""
         return walls_with_articulated(self.own_wall, self.motion, self.links)
 
     @shared
     def rod_forces(self) -> Vectors:
-        """Force of each cylinder's rod on its crankpin, in the cylinder's axes [N], complex."""
+        """Return the force of each cylinder's rod on its crankpin, in the cylinder's axes [N], complex."""
         return link_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
 
     @shared
     def big_ends(self) -> Vectors:
-        """Load of each rod on the pin of its bearing in the engine's axes [N], complex."""
+        """Return the load of each rod on the pin of its bearing in the engine's axes [N], complex."""
         return on_big_ends(self.pins, self.motion)
 
     @shared
     def moving(self) -> Parts:
-        """All moving parts, by their forces on the frame."""
+        """Return all moving parts, by their forces on the frame."""
         omega, bank = self.omega[..., None], self.layout.bank
         return Parts(
             piston_shaking(self.m_rec, omega, self.motion, bank)

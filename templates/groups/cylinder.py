@@ -134,7 +134,7 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @shared
     def gas(self) -> GasCycle:
-        """Gas cycle of the cylinder."""
+        """Return the gas cycle of the cylinder."""
         return gas_cycle(
             self.gas_cycle, self.strokes, self.n, self.charge, self.valves, self.theta_p, self.p_t, self.p_0
         )

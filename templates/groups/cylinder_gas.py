@@ -156,35 +156,35 @@ class CylinderGas(Template):
 
     @shared
     def steps(self) -> Array:
-        """Number of steps in a cycle."""
+        """Return the number of steps in a cycle."""
         return steps_in(self.strokes, self.step)
 
     @shared(unit="bar")
     def p_2(self) -> Array:
-        """Greatest pressure at the end of compression."""
+        """Return the greatest pressure at the end of compression."""
         return end_of_compression(self.gas_cycle, lambda: self.gas)
 
     @shared(unit="bar")
     def p_low(self) -> Array:
-        """Lowest pressure of the table."""
+        """Return the lowest pressure of the table."""
         return lowest_of_table(self.gas_cycle, self.p_t)
 
     @shared(unit="bar")
     def p_absolute(self) -> Array:
-        """Pressure from which a table counts as absolute."""
+        """Return the pressure from which a table counts as absolute."""
         return np.asarray(absolute_table())
 
     @shared(unit="bar")
     def p_ambient(self) -> Array:
-        """Pressure from which a crankcase pressure counts as absolute."""
+        """Return the pressure from which a crankcase pressure counts as absolute."""
         return np.asarray(absolute_crankcase())
 
     @shared
     def charge(self) -> Charge:
-        """Pressures, volume ratios and exponents of the cycle."""
+        """Return the pressures, volume ratios and exponents of the cycle."""
         return Charge(self.p_s, self.p_e, self.p_3, self.epsilon, self.rho, self.k_c, self.k_e)
 
     @shared
     def valves(self) -> Valves:
-        """Crank angles at which the valves open and close."""
+        """Return the crank angles at which the valves open and close."""
         return Valves(self.io, self.ic, self.eo, self.ec)

@@ -194,7 +194,7 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def layout(self) -> Layout:
-        """Pins and firing."""
+        """Return the pins and firing."""
         return arranged(
             self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top,
             self.gas_cycle,
@@ -202,17 +202,17 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def places(self) -> Array:
-        """Positions of the cylinders [m], one for each."""
+        """Return the positions of the cylinders [m], one for each."""
         return each(self.z_i)
 
     @shared
     def web_places(self) -> Array:
-        """Positions of the webs [m]; empty if none are given."""
+        """Return the positions of the webs [m]; empty if none are given."""
         return or_none(self.z_w)
 
     @shared
     def webs(self) -> Phasor:
-        """Unbalance of each web with its counterweight [kg m], complex at crank angle 0."""
+        """Return the unbalance of each web with its counterweight [kg m], complex at crank angle 0."""
         return web_unbalance(
             self.U_w, self.a_w, self.U_k, self.a_k, self.web_places, self.t_w,
             throw_places(self.places, self.layout.throw), self.layout.throw_pin,
@@ -220,12 +220,12 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def throw_unbalance(self) -> Phasor:
-        """Crank unbalance of each cylinder's throw [kg m], complex at crank angle 0."""
+        """Return the crank unbalance of each cylinder's throw [kg m], complex at crank angle 0."""
         return each(self.U_c) * np.exp(1j * self.layout.pin)
 
     @shared
     def turning(self) -> tuple[Rotors, Rotors]:
-        """All parts that rotate with the crank: throws with the big ends of the rods, and webs."""
+        """Return all parts that rotate with the crank: throws with the big ends of the rods, and webs."""
         return (
             Rotors(
                 self.throw_unbalance + self.rods.at_crank * self.crank.r * np.exp(1j * self.layout.pin),
@@ -236,29 +236,29 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def rotating(self) -> Phasor:
-        """Force of all rotating parts [N] at crank angle 0."""
+        """Return the force of all rotating parts [N] at crank angle 0."""
         return rotating_sum([(one.unbalance, one.place) for one in self.turning], self.omega, None)
 
     @shared
     def rotating_couples(self) -> Phasor:
-        """Couple of all rotating parts about the reference position [N m] at crank angle 0."""
+        """Return the couple of all rotating parts about the reference position [N m] at crank angle 0."""
         return rotating_sum([(one.unbalance, one.place) for one in self.turning], self.omega, self.z_0)
 
     @shared
     def weight(self) -> Phasor:
-        """Force of each piston at the orders [N], (…, N, H)."""
+        """Return the force of each piston at the orders [N], (…, N, H)."""
         return (self.m_rec * np.asarray(self.omega)[..., None] ** 2)[..., None] * piston_harmonics(
             self.crank, self.h, self.terms == "exact"
         )
 
     @shared
     def forces(self) -> Harmonics:
-        """Forces of the pistons at the orders."""
+        """Return the forces of the pistons at the orders."""
         return harmonics(self.layout, self.h, self.weight)
 
     @shared
     def couples(self) -> Harmonics:
-        """Couples of the pistons at the orders about the reference position."""
+        """Return the couples of the pistons at the orders about the reference position."""
         return harmonics(self.layout, self.h, self.weight, self.places - np.asarray(self.z_0)[..., None])
 
     @text("layout", name="layout")

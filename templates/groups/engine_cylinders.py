@@ -54,22 +54,22 @@ class EngineCylinders(CylinderGas, CylinderSizes):
 
     @shared
     def crank(self) -> OffsetCrank:
-        """The mechanisms."""
+        """Return the mechanisms."""
         return crank_of(self.s, self.r_g, self.l, self.e)
 
     @shared
     def rods(self) -> RodMasses:
-        """The rods as two masses each."""
+        """Return the rods as two masses each."""
         return masses_of(self.m_3, self.b_g, self.I_3, self.l)
 
     @shared
     def m_rec(self) -> Array:
-        """Mass that moves with each piston [kg]."""
+        """Return the mass that moves with each piston [kg]."""
         return self.rods.at_piston + self.m_4
 
     @shared
     def gas(self) -> GasCycle:
-        """Gas cycle of each cylinder."""
+        """Return the gas cycle of each cylinder."""
         return engine_gas(
             self.gas_cycle,
             self.strokes,

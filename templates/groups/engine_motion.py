@@ -74,58 +74,58 @@ class EngineMotion(EngineBalance):
 
     @shared
     def grid(self) -> CrankGrid:
-        """The crank angles of the calculation; some of them are returned."""
+        """Return the crank angles of the calculation; some of them are returned."""
         return crank_grid(self.strokes, self.step, corners(self.gas, self.layout))
 
     @shared
     def motion(self) -> RodMotion:
-        """The mechanisms at all angles."""
+        """Return the mechanisms at all angles."""
         return self.crank.at(self.layout.alpha(self.grid.theta))
 
     @shared
     def pressures(self) -> Array:
-        """The pressure in each cylinder [Pa], (…, N, K)."""
+        """Return the pressure in each cylinder [Pa], (…, N, K)."""
         return pressures(self.gas, self.layout, self.motion, self.grid.theta)
 
     @shared
     def gas_forces(self) -> Array:
-        """Force of the gas on each piston [N], (…, N, K)."""
+        """Return the force of the gas on each piston [N], (…, N, K)."""
         return gas_force(self.pressures, self.p_0, self.f_p, self.D)
 
     @shared
     def axial(self) -> Array:
-        """Force along each cylinder with which the crank drives the piston against the gas [N]."""
+        """Return the force along each cylinder with which the crank drives the piston against the gas [N]."""
         return axial_force(self.m_rec, self.omega[..., None], self.motion, self.gas_forces)
 
     @shared
     def wall(self) -> Array:
-        """Force of each piston on its wall [N]."""
+        """Return the force of each piston on its wall [N]."""
         return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
 
     @shared
     def rod_forces(self) -> Vectors:
-        """Force of each rod on its pin in the cylinder's axes [N], complex."""
+        """Return the force of each rod on its pin in the cylinder's axes [N], complex."""
         return pin_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
 
     @shared
     def pins(self) -> Vectors:
-        """Force of each rod on its pin in the engine's axes [N], complex."""
+        """Return the force of each rod on its pin in the engine's axes [N], complex."""
         return in_engine_axes(self.rod_forces, self.layout.bank)
 
     @shared
     def balancers(self) -> Rotors:
-        """The balance shafts."""
+        """Return the balance shafts."""
         return balancers(self.U_b, self.i_b, self.a_b, self.z_b)
 
     @shared
     def rotors(self) -> tuple[tuple[Vectors, Array], ...]:
-        """Forces of all parts that rotate at constant speed [N], and their positions [m]."""
+        """Return the forces of all parts that rotate at constant speed [N], and their positions [m]."""
         rotors = (*self.turning, self.balancers)
         return tuple((one.forces(self.omega, self.grid.theta), one.place) for one in rotors)
 
     @shared
     def moving(self) -> Parts:
-        """All moving parts, by their forces on the frame."""
+        """Return all moving parts, by their forces on the frame."""
         return Parts(
             piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank),
             self.places,
@@ -134,12 +134,12 @@ class EngineMotion(EngineBalance):
 
     @shared
     def shaking(self) -> Vectors:
-        """Force of all moving parts on the frame [N], complex."""
+        """Return the force of all moving parts on the frame [N], complex."""
         return self.moving.resultant()
 
     @shared
     def couple(self) -> Vectors:
-        """Sum of position times force of all moving parts [N m], complex."""
+        """Return the sum of position times force of all moving parts [N m], complex."""
         return self.moving.couple(self.z_0)
 
     @profile(
@@ -151,12 +151,12 @@ class EngineMotion(EngineBalance):
 
     @shared
     def torques(self) -> Array:
-        """Torque of all rods on the crank [N m], (…, K)."""
+        """Return the torque of all rods on the crank [N m], (…, K)."""
         return torque(self.rod_forces, self.motion)
 
     @shared
     def energies(self) -> Array:
-        """Running energy [J], (…, K)."""
+        """Return the running energy [J], (…, K)."""
         return running_energy(self.torques, self.grid)
 
     @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")

@@ -156,7 +156,7 @@ class FedBearing(Template):
 
     @shared
     def period(self) -> Array:
-        """The cycle [rad]; NaN if the angles do not cover one."""
+        """Return the length of the cycle [rad]; NaN if the angles do not cover a cycle."""
         return cycle_length(self.theta)
 
     @formula("deg", "cycle", symbol="T")
@@ -179,7 +179,7 @@ class FedBearing(Template):
 
     @shared
     def feeding(self) -> SupplyGeometry:
-        """Groove and holes."""
+        """Return the groove and holes."""
         return SupplyGeometry(
             self.D, self.W, self.W_g, self.phi_g, self.ext_g,
             self.l_B, self.a_B, self.phi_B, self.l_J, self.a_J, self.phi_J,
@@ -212,7 +212,7 @@ class FedBearing(Template):
 
     @shared
     def motion(self) -> Duty:
-        """Loads and speeds of the bearing, with an unscaled load."""
+        """Return the loads and speeds of the bearing, with an unscaled load."""
         sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
         return Duty(
             self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,

@@ -185,12 +185,12 @@ class WarmOil(Oil):
 
     @shared
     def viscosity_is_known(self) -> Truth:
-        """Whether the viscosity is given or follows from a temperature."""
+        """Return whether the viscosity is given or follows from a temperature."""
         return viscosity_known(self.as_given("eta"), self.T_in, self.T_out, self.T_s, self.T_amb, self.kA)
 
     @shared
     def mean_is_used(self) -> Truth:
-        """Whether given inlet and outlet temperatures are used."""
+        """Return whether given inlet and outlet temperatures are used."""
         return mean_is_used(self.T_in, self.T_out, self.T_s, self.T_amb, self.kA)
 
     @formula("degC", "service temperature", absent="needs oil_inlet_temperature and oil_outlet_temperature")

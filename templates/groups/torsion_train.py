@@ -76,7 +76,7 @@ class TorsionTrain(Template):
 
     @shared
     def layout(self) -> TrainLayout | None:
-        """Layout of the train; None where a rule refuses it."""
+        """Return the layout of the train; None where a rule refuses it."""
         return train_layout(self.J, self.s_i, self.s_j, self.g_i, self.g_j, self.i_g)
 
     @require("gear_to", "gear_from", missing=True,

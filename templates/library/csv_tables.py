@@ -101,7 +101,7 @@ def _each_once(path: Path, keys: Iterable[str]) -> None:
         if times > 1:
             raise UnusableTable(path, f"{key!r} occurs {times} times")
         if not _ROW.fullmatch(key):
-            raise UnusableTable(path, f"{key!r} is not a name")
+            raise UnusableTable(path, f"{key!r} is not a valid name")
 
 
 def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -> Row:
@@ -120,7 +120,9 @@ def _values(
     for head, text in record.items():
         match = _QUANTITY.fullmatch(head)
         if match is None and head not in _OTHERS and not head.startswith("source of "):
-            raise UnusableTable(path, f"the head {head!r} is not valid; write quantities like `NAME [mm]`")
+            raise UnusableTable(
+                path, f"the column head {head!r} is not valid; write quantities like `NAME [mm]`"
+            )
         if match and text:
             own = f"source of {match[1]}"
             source = _citation(path, record, own if record.get(own) else "source", sources)

@@ -191,17 +191,17 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def duty(self) -> Duty:
-        """Loads and speeds of the bearing, for an oil of 1 Pa s."""
+        """Return the loads and speeds of the bearing, for an oil of 1 Pa s."""
         return replace(self.motion, scale=self.s)
 
     @shared
     def bearing(self) -> CycleBearing:
-        """The bearing over its cycle."""
+        """Return the bearing over its cycle."""
         return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2)
 
     @shared
     def eta_given(self) -> Array:
-        """The viscosity of the film, if it is given."""
+        """Return the viscosity of the film, if it is given."""
         return self.as_given("eta")
 
     @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}", source=LAWS,
@@ -223,7 +223,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def oil(self) -> CycleOil:
-        """The oil and its heat capacity."""
+        """Return the oil and its heat capacity."""
         return CycleOil(
             A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V), b=self.b_V, offset=self.c_V,
             eta=self.as_given("eta"), rho_ref=self.rho_ref, T_ref=self.T_ref, left=self.hths_ratio,
@@ -232,7 +232,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def heat(self) -> CycleHeat:
-        """The heat balance."""
+        """Return the heat balance."""
         return heat_of_cycle(self.bearing, self.oil)
 
     @formula(
@@ -302,17 +302,17 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @shared
     def fed(self) -> FedDuty:
-        """Loads, speeds and oil supply at the effective viscosity."""
+        """Return the loads, speeds and oil supply at the effective viscosity."""
         return self.bearing.fed(self.eta_e)
 
     @shared
     def orbit(self) -> FedOrbit:
-        """The orbit at the effective viscosity."""
+        """Return the orbit at the effective viscosity."""
         return fed_orbit(self.level, self.fed)
 
     @shared
     def film(self) -> CycleFilm:
-        """The pressure of the film."""
+        """Return the pressure of the film."""
         return fed_film(self.level, self.fed, self.orbit)
 
     @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=ORBIT)

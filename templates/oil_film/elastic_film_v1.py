@@ -242,7 +242,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def elasticity(self) -> Elasticity:
-        """Compliances of the bearing."""
+        """Return the compliances of the bearing."""
         return Elasticity(
             liner=self.C_l, inner=self.D / 2 + self.t_l, outer=self.D_h / 2, modulus=self.E_h,
             poisson=self.nu_h, exponent=self.Z, eta=self.eta, pressure=self.p_0, clearance=self.c / 2,
@@ -250,12 +250,12 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def bore(self) -> Bore:
-        """Additional inputs of level elastic."""
+        """Return the additional inputs of level elastic."""
         return Bore(self.C_b, self.W / self.W_b, self.theta_F)
 
     @shared
     def unbounded_film(self) -> ElasticJournalFilm:
-        """The film at this level, before its bounds are checked."""
+        """Return the film at this level, before its bounds are checked."""
         return bore_film_at(self.level, self.S_0, self.b, self.elasticity, self.bore)
 
     @formula(
@@ -272,7 +272,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def film(self) -> ElasticJournalFilm:
-        """The film if it carries the load."""
+        """Return the film if it carries the load."""
         return self.unbounded_film.admitted(self.eps)
 
     @text("boundary condition")
@@ -281,7 +281,7 @@ class ElasticFilm(Oil, Journal):
 
     @shared
     def boundary_of_level(self) -> str:
-        """The same at every level."""
+        """Return the boundary condition of the pressure, which is the same at every level."""
         return "Swift-Stieber: p = 0 at the ends and along the widest gap; rupture where p = dp/dn = 0"
 
     @formula("deg", "attitude angle", symbol=r"\beta")

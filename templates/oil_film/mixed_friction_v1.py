@@ -203,7 +203,7 @@ class MixedFriction(Oil):
 
     @shared
     def bearing(self) -> RoughJournal:
-        """The bearing with its roughness."""
+        """Return the bearing with its roughness."""
         return RoughJournal(
             F=self.F, viscous=self.W * self.D * self.eta / self.psi**2, area=self.W * self.D / 2,
             ratio=self.b, psi=self.psi, roughness=self.sigma / (self.c / 2),
@@ -212,27 +212,27 @@ class MixedFriction(Oil):
 
     @shared
     def journal(self) -> MixedJournal:
-        """The bearing with its film at any eccentricity."""
+        """Return the bearing with its film at any eccentricity."""
         return mixed_journal(self.level, self.bearing)
 
     @shared
     def balance(self) -> MixedFilm:
-        """The equilibrium of load, film and contact at the operating speed."""
+        """Return the equilibrium of load, film and contact at the operating speed."""
         return mixed_film(self.journal, self.omega)
 
     @shared
     def film(self) -> MixedFilm:
-        """The equilibrium at the operating speed, NaN without one."""
+        """Return the equilibrium at the operating speed; NaN if none exists."""
         return self.balance.admitted(self.eps)
 
     @shared
     def films(self) -> MixedFilm:
-        """The equilibria at the speeds of the curve."""
+        """Return the equilibria at the speeds of the curve."""
         return mixed_films(self.journal, spread(self.omega, MULTIPLES))
 
     @shared
     def lowest(self) -> LeastFriction:
-        """The minimum of the curve."""
+        """Return the minimum of the curve."""
         return least_friction(self.journal, self.omega, self.films)
 
     @formula("1", "relative eccentricity", symbol=r"\varepsilon", ge=0, remedy=UNBORNE)

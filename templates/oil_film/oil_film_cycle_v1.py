@@ -260,22 +260,22 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def course(self) -> LoadCourse:
-        """Measures of how the load varies over the cycle."""
+        """Return the measures of how the load varies over the cycle."""
         return load_course(self.theta, self.F_x, self.F_y)
 
     @shared
     def peak(self) -> Array:
-        """Largest over mean load; the errors of the mobility levels depend on it."""
+        """Return the ratio of largest to mean load, on which the errors of the mobility levels depend."""
         return self.course.peak
 
     @shared
     def turns(self) -> Array:
-        """Variation of the load's direction, from 0.05 (constant) to 1.05; errors depend on it."""
+        """Return the variation of the load's direction, from 0.05 (constant) to 1.05; errors depend on it."""
         return 1.05 - self.course.steadiness
 
     @shared
     def whirls(self) -> Array:
-        """Fraction of the cycle in which the load rotates at about half crank speed, plus 0.05.
+        """Return the fraction of the cycle in which the load rotates at about half crank speed, plus 0.05.
 
         The errors of the mobility levels depend on it.
         """
@@ -283,7 +283,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def wide(self) -> Array:
-        """B/D over 0.5, or 1 for a narrower bearing; errors depend on it."""
+        """Return B/D over 0.5, or 1 for a narrower bearing; errors depend on this ratio."""
         return np.maximum(self.b / 0.5, 1.0)
 
     @formula("1/N", "load scale", symbol="s")
@@ -303,7 +303,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def duty(self) -> Duty:
-        """Loads and speeds of the bearing, if the load number is within its limits."""
+        """Return the loads and speeds of the bearing, if the load number is within its limits."""
         return replace(self.motion, scale=self.S_max / self.F_max)
 
     @formula("1", "feed under load", symbol=r"\tau_{F}", absent=NO_FEED,
@@ -314,17 +314,17 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def fed(self) -> FedDuty:
-        """The duty with its oil supply, and the load supported by the pressure in a groove."""
+        """Return the duty with its oil supply, and the load supported by the pressure in a groove."""
         return fed_duty(self.level, self.duty, self.feeding, self.P_s)
 
     @shared
     def any_orbit(self) -> FedOrbit:
-        """The orbit at this level, before its bounds are checked."""
+        """Return the orbit at this level, before its bounds are checked."""
         return fed_orbit(self.level, self.fed)
 
     @shared
     def film_orbit(self) -> FedOrbit:
-        """The orbit if the film repeats; otherwise a single point is refused."""
+        """Return the orbit if the film repeats; otherwise a single point is refused."""
         return self.any_orbit.required()
 
     @formula(
@@ -337,12 +337,12 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def orbit(self) -> FedOrbit:
-        """The orbit if its film carries the load."""
+        """Return the orbit if its film carries the load."""
         return self.any_orbit.admitted(self.eps_max)
 
     @shared
     def film(self) -> CycleFilm:
-        """Pressure, loss and flow along the orbit."""
+        """Return the pressure, loss and flow along the orbit."""
         return fed_film(self.level, self.fed, self.orbit)
 
     @text("boundary condition")
@@ -352,7 +352,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def boundary_of_level(self) -> str:
-        """Boundary condition of the level for the pressure."""
+        """Return the boundary condition of the level for the pressure."""
         return BOUNDARY[self.level]
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}", absent=STARVED)
@@ -429,12 +429,12 @@ class OilFilmCycle(FedBearing):
 
     @text("verdict", absent=SUPPLIED_ONLY)
     def verdict(self) -> str:
-        """How the march of level supplied ended."""
+        """Outcome of the march of level `supplied`."""
         return self.any_orbit.verdict
 
     @text("verdict reason", absent="a film repeats, or the level does not follow the oil that is fed")
     def why(self) -> str:
-        """Why the orbit does not repeat."""
+        """Reason why the orbit does not repeat."""
         return self.any_orbit.reason
 
     @formula("1", "cycles run", symbol="n_{c}", absent=MARCHED_ONLY)

@@ -264,7 +264,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def shape(self) -> Shape:
-        """Bore and tilt over the radial clearance."""
+        """Return the bore and tilt over the radial clearance."""
         return Shape(
             bore=self.bore, lobes=int(self.lobes), preload=self.preload, angle=self.phi_l, offset=self.alpha,
             mouth=np.where(self.l_m > 0, 2 * self.s_m / self.c, 0.0), mouth_length=2 * self.l_m / self.W,
@@ -273,7 +273,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def is_shaped(self) -> bool:
-        """Whether the bore is not plain, or the journal is tilted."""
+        """Return whether the bore is not plain, or the journal is tilted."""
         return is_shaped(self.shape)
 
     @formula(
@@ -294,7 +294,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def balance(self) -> HeatBalance:
-        """The heat balance, if one is requested."""
+        """Return the heat balance, if one is requested."""
         return heat_balance(
             OperatingPoint(
                 F=self.F, D=self.D, W=self.W, psi=self.psi, omega_m=self.omega_h, omega_s=self.omega_s,
@@ -316,7 +316,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def unbounded_film(self) -> StaticFilm:
-        """The film at this level, before its bounds are checked."""
+        """Return the film at this level, before its bounds are checked."""
         return journal_film_at(
             self.level, self.S_0, self.b, self.P_s, self.grooves, self.shape, self.departure
         )
@@ -328,7 +328,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def film(self) -> StaticFilm:
-        """The film if it carries the load."""
+        """Return the film if it carries the load."""
         return self.unbounded_film.admitted(self.eps)
 
     @text("boundary condition")
@@ -337,7 +337,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def boundary_of_level(self) -> str:
-        """Boundary condition of the level for the pressure."""
+        """Return the boundary condition of the level for the pressure."""
         return BOUNDARY[self.level]
 
     @formula("deg", "attitude angle", symbol=r"\beta")
@@ -441,7 +441,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def linear(self) -> Linear:
-        """Stiffness, damping and threshold mass, dimensionless."""
+        """Return the stiffness, damping and threshold mass, dimensionless."""
         return linear_of(self.level, self.film, self.S_0, self.b, self.start_line, self.P_s, self.grooves)
 
     @formula("N/m", "stiffness scale", symbol=r"k_{0}")

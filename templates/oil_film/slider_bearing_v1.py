@@ -178,7 +178,7 @@ class SliderBearing(Template):
 
     @shared
     def film(self) -> PadFilm:
-        """The film, dimensionless."""
+        """Return the film, dimensionless."""
         return pad_film(self.level, self.a, self.ratio)
 
     @formula("N", "load", source=RAYLEIGH, assumes=VALID)
@@ -237,7 +237,7 @@ class SliderBearing(Template):
 
     @shared
     def slope(self) -> Array:
-        """The pressure gradient at the position, dimensionless."""
+        """Return the pressure gradient at the position, dimensionless."""
         return self.film.gradient(self.x / self.l)
 
     @formula("MPa/mm", "pressure gradient", symbol="p'", assumes=VALID)

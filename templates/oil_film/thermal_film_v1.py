@@ -205,12 +205,12 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def eta_given(self) -> Array:
-        """The viscosity, if it is given and so does not depend on the temperature."""
+        """Return the viscosity, if it is given and so does not depend on the temperature."""
         return self.as_given("eta")
 
     @shared
     def case(self) -> ThermalCase:
-        """The bearing and its oil."""
+        """Return the bearing and its oil."""
         return ThermalCase(
             F=self.F, D=self.D, W=self.b * self.D, psi=self.psi, omega=self.omega, pressure=self.p_s,
             angle=self.phi_g, extent=self.ext_g, length=self.l_g, carry_over=self.kappa, supply=self.T_film,
@@ -221,7 +221,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def anywhere(self) -> WarmFilm:
-        """The film, before its thickness is checked."""
+        """Return the film, before its thickness is checked."""
         return warm_film(self.level, self.case)
 
     @formula("1", "relative eccentricity", ge=0, le=0.99, assumes=("b", "eta"), source=DOWSON, remedy=UNBORNE)
@@ -230,7 +230,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def film(self) -> WarmFilm:
-        """The film, if there is one."""
+        """Return the film, if a film exists."""
         return self.anywhere.admitted(self.eps)
 
     @formula("um", "minimum film thickness", symbol="h_{0}")

@@ -166,7 +166,7 @@ class ThrustBearing(Oil):
 
     @shared
     def collar(self) -> Collar:
-        """The collar in operation."""
+        """Return the collar in operation."""
         return Collar(
             load=self.p, taper=self.t, omega=self.omega, radius=self.D_m / 2, angle=self.phi,
             reach=self.reach + 0 * self.ratio, heat_capacity=self.rho_c, T_supply=self.T_s, carried=self.k,
@@ -174,7 +174,7 @@ class ThrustBearing(Oil):
 
     @shared
     def film(self) -> CollarFilm:
-        """The film that carries the load, with the heat balance, dimensionless."""
+        """Return the film that carries the load, with the heat balance, dimensionless."""
         return working_collar(
             self.collar, viscosity_at, self.A, self.B, by_law(self.law, np.nan, self.a_V),
             self.b_V, self.c_V, self.as_given("eta"), self.rho_ref, self.T_ref,

@@ -230,22 +230,22 @@ class FatigueLife(SteelEndurance):
 
     @shared
     def loads(self) -> tuple[Array, ...]:
-        """The loads in the order of the tables."""
+        """Return the loads in the order of the tables."""
         return (self.F_1, self.F_2, self.M_1, self.M_2, self.M_3)
 
     @shared
     def stresses(self) -> tuple[Rows, ...]:
-        """The tables of stresses."""
+        """Return the tables of stresses."""
         return (self.t_1, self.t_2, self.t_3, self.t_4, self.t_5)
 
     @shared
     def history(self) -> Array:
-        """Stress tensors over the cycle [point, angle, 6]."""
+        """Return the stress tensors over the cycle [point, angle, 6]."""
         return superposed(self.loads, self.stresses)
 
     @shared
     def counted(self) -> CycleCounts:
-        """Cycles of every point."""
+        """Return the cycles of every point."""
         return counted_cycles(self.history, self.criterion, self.level, self.k_F, self.credit)
 
     @profile("1", "points", along="points", symbol="i")
@@ -271,7 +271,7 @@ class FatigueLife(SteelEndurance):
 
     @shared
     def reversed(self) -> Array:
-        """Reversed amplitudes of all cycles of all points."""
+        """Return the reversed amplitudes of all cycles of all points."""
         return reversed_amplitudes(
             self.counted, self.c_n, self.correction, self.credit, self.sigma_u, self.sigma_F, self.k_F,
             self.c_y,

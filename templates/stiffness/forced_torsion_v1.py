@@ -236,7 +236,7 @@ class ForcedTorsion(TorsionTrain):
 
     @shared
     def train(self) -> Train:
-        """The train."""
+        """Return the train."""
         return train_of(
             self.layout, self.J, self.k, self.c, self.eta, self.c_a, self.E,
             propeller_of(self.p, self.T_p, self.n_p, self.f_p),
@@ -244,12 +244,12 @@ class ForcedTorsion(TorsionTrain):
 
     @shared
     def excitation(self) -> Excitation:
-        """The harmonics of one cylinder."""
+        """Return the harmonics of one cylinder."""
         return excitation(self.theta, self.T_g, self.T_m, self.n_m, self.h_max)
 
     @shared
     def response(self) -> Response:
-        """The response of the train."""
+        """Return the response of the train."""
         return response_of(self.train, self.excitation, self.omega, self.E, self.f_g, self.phi)
 
     @profile("Hz", "natural frequencies", along="natural_frequencies", symbol="f")

@@ -222,17 +222,17 @@ class StressLife(Template):
 
     @shared
     def as_given_amplitude(self) -> Array:
-        """The local amplitude, if it was given."""
+        """Return the local amplitude, if it was given."""
         return self.as_given("sigma_a")
 
     @shared
     def as_given_mean(self) -> Array:
-        """The local mean stress, if it was given."""
+        """Return the local mean stress, if it was given."""
         return self.as_given("sigma_m")
 
     @shared
     def as_given_factor(self) -> Array:
-        """The stress concentration factor, if it was given."""
+        """Return the stress concentration factor, if it was given."""
         return self.as_given("K_t")
 
     @formula("1", "mean stress share", symbol="c_m", lt=1, source="Goodman 1899, Gerber 1874, Morrow 1968",

@@ -1,4 +1,4 @@
-"""What is sent to each route, so that it succeeds where the role allows it: for `test_attack.py`.
+"""Requests to each route that succeed if the role allows them; `test_attack.py` uses them.
 
 A call that changes or ends an object gets a copy: a function of the scene and of who sends the request, which
 gives names in the path, and what else the request has.

@@ -1,4 +1,4 @@
-"""A migrated database in a separate folder, and one server for all tests of the interface."""
+"""Fixtures: a migrated database in a separate folder, and one server for all tests of the interface."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""What a page of another site may try, as data, and plain HTTP that lets a test send any of it."""
+"""Requests that a page of another site may try, as data, and plain HTTP that can send each of them."""
 
 import http.client
 from dataclasses import dataclass

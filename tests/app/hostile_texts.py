@@ -1,4 +1,4 @@
-"""Relatives of the request that froze the service: texts on which a careless reader goes back and forth.
+"""Texts like the request that froze the service: a careless parser backtracks on them.
 
 Each is `(method, path, headers, body)`; `{design}` in a path stands for the id of some design. The tests send
 them all and want an answer.

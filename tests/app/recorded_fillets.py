@@ -1,4 +1,4 @@
-"""Stress tensors at fillets of the gallery's crank throws under unit loads, as finite elements answered once.
+"""Recorded stress tensors at fillets of the gallery's crank throws under unit loads, by finite elements.
 
 They stand in for the solver in quick tests: 16 points of each throw, those that its loads use most, at a bore
 of 86 mm, pins of 48 mm, fillets of 2.5 mm and level `default`. Rows: xx, yy, zz, xy, yz, xz.

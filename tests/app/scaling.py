@@ -1,4 +1,4 @@
-"""How the time of a function grows with its input: the thread's processor time, the least of several runs."""
+"""Measures how the processor time of a function grows with its input, as the minimum of several runs."""
 
 import gc
 from time import thread_time

@@ -1,4 +1,4 @@
-"""The service keeps what /openapi.json promises: all checks of schemathesis, on requests made up from it.
+"""The service keeps the promises of /openapi.json: schemathesis runs all its checks on generated requests.
 
 CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails. The quick lane asks
 a third of the operations, the slow lane all others. Besides, test_contract_all_at_length.py asks what covers

@@ -1,4 +1,4 @@
-"""The paper's parameter study from the gallery: dimensions of a crankshaft to stiffness, stress and life."""
+"""The gallery's design of the paper's study leads from dimensions to stiffness, stress and life."""
 
 import numpy as np
 import pytest

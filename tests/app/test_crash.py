@@ -1,4 +1,4 @@
-"""`kill -9` at any moment: what was accepted is there once, whole, and built, or it says why not.
+"""After `kill -9` at any moment, accepted changes exist once and completely, and are built or state why not.
 
 Clients change designs and repeat, under the same Idempotency-Key, whatever was not answered. Meanwhile the
 server is killed again and again. In the end every accepted change is one revision, no more and no less, and

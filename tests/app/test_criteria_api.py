@@ -1,4 +1,4 @@
-"""Criteria and verdicts over HTTP: of evaluations, worksheets, designs, previews and revisions."""
+"""Evaluations, worksheets, designs, previews and revisions return criteria and verdicts over HTTP."""
 
 import pytest
 from bare_shells import BUSH

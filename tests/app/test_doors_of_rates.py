@@ -1,4 +1,4 @@
-"""Turns, radians and hertz in designs: in relations, criteria, parameters and inputs."""
+"""Designs read turns, radians and hertz alike in relations, criteria, parameters and inputs."""
 
 import math
 

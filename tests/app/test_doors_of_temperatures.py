@@ -1,4 +1,4 @@
-"""Differences of temperature at every door: criteria, limits, units, targets, variants, studies, pages.
+"""Criteria, limits, units, targets, variants, studies and pages accept temperature differences.
 
 The film of a bearing supplied at 80 °C rises by what the heat that its oil carries off says: P/(ρ c Q).
 """

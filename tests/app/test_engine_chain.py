@@ -1,4 +1,4 @@
-"""Gas pressure to geometry as one design, by the live interface: load → film over the cycle → bearing shell.
+"""One design leads from gas pressure to geometry over HTTP: load, film over the cycle, bearing shell.
 
 The throw that carries the bearing feeds its measured mass and centre of gravity back into the load.
 """

@@ -1,4 +1,4 @@
-"""Engines of the gallery from the bore to verdicts on film, torsion and life."""
+"""The gallery's engines lead from the bore to verdicts on film, torsion and life."""
 
 import json
 import os

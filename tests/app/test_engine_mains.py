@@ -1,4 +1,4 @@
-"""An engine as one design over HTTP: its loads drive a film in each bearing, by items of arrays."""
+"""In one design over HTTP, an engine's loads drive a film in each bearing, by items of arrays."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""An engine and its forced torsion as one design, by the live interface: one cylinder's torque excites all.
+"""One design contains an engine and its forced torsion; the torque of one cylinder excites all throws.
 
 The design is the example of docs/forced_torsion.md.
 """

@@ -1,4 +1,4 @@
-"""Tables that people paste: separators, decimal commas, units, repeated points, faults by row and column."""
+"""Pasted tables are read with any separator, decimal commas and units; faults name row and column."""
 
 import time
 

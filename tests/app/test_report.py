@@ -1,4 +1,4 @@
-"""The report on screen and on paper: complete, reproducible, safe from user text."""
+"""The report on screen and on paper is complete, reproducible, and safe against user text."""
 
 import hashlib
 import io

@@ -1,4 +1,4 @@
-"""Verdicts of five main bearings and of the paper's design, against a calculation by hand.
+"""Verdicts of five main bearings and of the paper's design agree with a calculation by hand.
 
 The five mains run at eccentricities that Butenschön's dissertation of 1976 tabulates for B/D = 1/2. So the
 load follows from the printed Sommerfeld number, and the film from the eccentricity: h = c (1 - eps)/2. The

@@ -1,4 +1,4 @@
-"""A server that only runs jobs, in a process that tests stop; they call it in a fork."""
+"""A server that only runs jobs, in a separate process that tests can stop; tests run it in a fork."""
 
 import sys
 from contextlib import asynccontextmanager

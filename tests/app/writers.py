@@ -1,4 +1,4 @@
-"""Clients that change designs while servers die, and what must be left of their changes.
+"""Clients that change designs while servers are killed, and the state that must remain.
 
 A client repeats, under the same Idempotency-Key, whatever was not answered, at any of the servers.
 """

@@ -1,4 +1,4 @@
-"""Builds in a process with other hash seeds and addresses: a fork of one that imported the kernel itself."""
+"""Builds models in a process with other hash seeds and addresses, forked from one with the kernel."""
 
 import hashlib
 import json

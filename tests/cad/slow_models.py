@@ -1,4 +1,4 @@
-"""Which models belong to the slow lane, in a whole file or in one test.
+"""Selects models whose tests are slow, for a whole file or one test.
 
 A file names them in `SLOW_MODELS`, a test by `@slow_for(...)`. Or else it names those of the quick lane, in
 `QUICK_MODELS` or by `@quick_for(...)`, and all others are slow. tests/cad/conftest.py reads these.

@@ -1,4 +1,4 @@
-"""Fixed parts beside a model, without the service: clearances and interferences by a second method."""
+"""Clearances and interferences of fixed parts agree with a second method, without the service."""
 
 import hashlib
 from math import hypot, pi
@@ -231,10 +231,13 @@ def test_every_pair_that_may_overlap_is_measured_and_counted():
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("capp", "bolt: may_overlap names 'capp', which is no part. Did you mean cap? There are journal"),
+        (
+            "capp",
+            "bolt: may_overlap names 'capp', which is not a part. Did you mean cap? The parts are journal",
+        ),
         (
             "zz",
-            "which is no part. There are journal, upper_back, upper_lining, lower_back, lower_lining, block",
+            "The parts are journal, upper_back, upper_lining, lower_back, lower_lining, block",
         ),
     ],
 )

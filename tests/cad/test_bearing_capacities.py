@@ -1,4 +1,4 @@
-"""Tables of load ratings, typed without the standards: against theory, and against ratings that makers list.
+"""Load ratings, typed without the standards, agree with theory and with makers' lists.
 
 Origins of the numbers here. *NTN*: NTN's catalogue of deep groove ball bearings (series 67, 68, 69, 60, 62,
 63), read in a stored copy: bore, outer diameter, width, C, C0 and f_0. The catalogue names no balls. *Balls

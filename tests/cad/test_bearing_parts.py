@@ -1,4 +1,4 @@
-"""Random and hostile parameters of the parts beside shafts: a checked solid, or a refusal by name.
+"""Random and hostile parameters of parts other than shafts give a checked solid or a refusal by name.
 
 A solid passes the checks of `regenerate`: volume by its closed form, box, and every parameter read back.
 """

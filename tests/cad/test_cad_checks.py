@@ -1,4 +1,4 @@
-"""Wrong solids that the kernel calls valid are refused: each check, with a wrong shape."""
+"""The checks refuse wrong solids that the kernel calls valid, one wrong shape for each check."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -49,7 +49,7 @@ def test_two_solids_in_one_part(shell: PlainBearing) -> None:
         slit = func.cut(parts[0].shape, func.box(1000, 1000, 1).moved(z=5))
         return (replace(parts[0], shape=slit),)
 
-    with pytest.raises(GeometryError, match="full_back should be one solid; it is 2"):
+    with pytest.raises(GeometryError, match="full_back must be one solid, not 2"):
         write_step(halved(shell.build()), Header(shell.id, 1, {}, ""))
 
 

@@ -1,14 +1,18 @@
 """Each face of a drawn part follows from exactly one path of dimensions (ISO 129-1)."""
 
+import io
 from dataclasses import replace
 
 import pytest
+from ezdxf.filemanagement import read
 from slow_models import DRAWN, quick_for
 
 from benchmarks.drawing_completeness import faults
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
 from cad.drafting.content import Content, content_of
+from cad.export import derive
+from cad.file_kinds import bodies_of
 from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, regenerate_class
@@ -74,3 +78,34 @@ def test_a_closed_chain_is_listed_unless_it_is_in_brackets() -> None:
     assert "rest, 27, is given twice" in faults(doubled)
     in_brackets = replace(bush, dimensions=[*bush.dimensions, replace(rest, is_reference=True)])
     assert faults(in_brackets) == []
+
+
+@quick_for(("connecting_rod", 1), ("ball_bearing", 1))
+def test_each_part_has_a_complete_sheet_and_the_first_sheet_lists_them(model: type[CadModel]) -> None:
+    step = sized(model, 1.0).step
+    whole, header = read_step(step), read_header(step)
+    for body in whole if len(whole) > 1 else ():
+        assert faults(content_of(bodies_of(f"dxf#{body.name}", whole), header, whole)) == []
+    if len(whole) > 1:
+        first = words_of(derive(step, "dxf"))
+        own = words_of(derive(step, f"dxf#{whole[0].name}"))
+        assert f"1/{len(whole) + 1}" in first
+        assert {f"{n}  {body.name.replace('_', ' ')}" for n, body in enumerate(whole, 1)} <= first
+        assert {str(n) for n in range(1, len(whole) + 1)} <= first  # in the balloons
+        assert f"2/{len(whole) + 1}" in own
+        assert whole[0].name.replace("_", " ") in own
+
+
+def words_of(dxf: bytes) -> set[str]:
+    space = read(io.StringIO(dxf.decode())).modelspace()
+    return {text.dxf.text for text in space.query("TEXT")}
+
+
+def test_a_sheet_of_one_part_has_only_its_own_tolerances() -> None:
+    model = models().get("connecting_rod", 1)
+    given = {"cap_height": "36 mm +0.1/0 mm", "centre_distance": "144 mm +0.2/0 mm"}
+    step = regenerate_class(model, as_text(model.from_quantities({**model.example, **given}))).step
+    whole, header = read_step(step), read_header(step)
+    for part, shown in (("rod", "centre_distance"), ("cap", "cap_height")):
+        sheet = content_of(bodies_of(f"dxf#{part}", whole), header, whole)
+        assert {one.name for one in sheet.dimensions if one.limits} == {shown}

@@ -1,4 +1,4 @@
-"""Crank models: closed forms, symmetry, refusals, and measurements that a change would alter."""
+"""Crank models agree with closed forms, symmetry and recorded measurements, and refuse wrong parameters."""
 
 from math import isclose, pi, radians, tan
 from typing import Any

@@ -1,4 +1,4 @@
-"""What cranks measured when they were released: frozen records do not cover the geometry that they share.
+"""Cranks measure the same as at their release; frozen records do not cover their shared geometry.
 
 A change in `cad/cranks` that moves one of these makes other solids of the same parameters: it belongs in a
 new version of the models, beside the old geometry. `python tests/cad/test_cranks_golden.py` writes it again.

@@ -1,4 +1,4 @@
-"""Random and hostile parameters of `crank_throw`: a checked solid, or a refusal by name before it is drawn.
+"""Random and hostile parameters of `crank_throw` give a checked solid, or a refusal by name before drawing.
 
 `regenerate` lets nothing pass but one valid solid of the right volume, box and dimensions; that dimensions
 are those requested is asserted here once more.

@@ -1,4 +1,4 @@
-"""Random and hostile parameters of `crankshaft`: a checked solid, or a refusal by name before drawing."""
+"""Random and hostile parameters of `crankshaft` give a checked solid, or a refusal by name before drawing."""
 
 import math
 from collections.abc import Callable

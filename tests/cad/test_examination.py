@@ -1,4 +1,4 @@
-"""What an import of a STEP file finds: the file is built as every design builds it, and losses are told."""
+"""An import builds a STEP file as designs do and reports what was lost."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Free spread of half shells: the free state, against measurements that share no code with it."""
+"""The free spread of half shells agrees with measurements that share no code with the model."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The rules of a technical drawing as a checklist on its DXF entities; texts do not overlap."""
+"""The DXF entities of drawings obey a checklist of rules, and texts do not overlap."""
 
 import io
 from collections.abc import Sequence

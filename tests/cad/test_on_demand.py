@@ -1,4 +1,4 @@
-"""A process that builds no shape does not load the kernel; one that does gets it."""
+"""A process loads the kernel only when it builds a shape."""
 
 import hashlib
 import subprocess

@@ -1,4 +1,4 @@
-"""A second way to a bearing with axial grooves: its lands one by one, with rupture after Swift and Stieber.
+"""A second method for axially grooved bearings: each land separately, with rupture after Swift and Stieber.
 
 The independent check of `templates.physics.cavities.fed_film`, which solves the whole circle with cavities
 that

@@ -1,4 +1,4 @@
-"""Elastic bearings: ring and liner by other methods, the elastic film against limits and balances."""
+"""Ring and liner agree with other methods, and the elastic film with limits and balances."""
 
 from dataclasses import replace
 

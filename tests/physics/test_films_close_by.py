@@ -1,4 +1,4 @@
-"""Analytic: films by differences, by a finer mesh and by an exhaustive search, where errors hide."""
+"""Analytic: films agree with differences, a finer mesh and an exhaustive search."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: each rule of a gas cycle's data at the edge of what it accepts."""
+"""Analytic: each rule for a gas cycle's data is tested at the edge of the accepted range."""
 
 import numpy as np
 import pytest

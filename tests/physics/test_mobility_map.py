@@ -1,4 +1,4 @@
-"""Mobility: the short half film, the full solution under a load, and the map of it.
+"""The mobility agrees with the short half film and the full solution under a load, and the map with both.
 
 Literature: Butenschön 1976, pure squeeze. Analytic: quadrature, short bearing, equilibrium, symmetry.
 """

@@ -1,4 +1,4 @@
-"""Roots of many equations at the same time."""
+"""The solver finds the roots of many equations at the same time."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: closed forms, meshes and rules of the films, each by a second method or at its limits."""
+"""Analytic: closed forms, meshes and rules of the films agree with second methods or limits."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic, literature: signs, speeds and printed coefficients that no other quick test checks."""
+"""Analytic and literature: signs, speeds and printed coefficients that no other quick test checks."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-r"""The film in a bore that gives way, by a second method: finite elements in the film and in its gap.
+r"""A second method for the film in an elastic bore: finite elements in the film and in its gap.
 
 `templates.physics.elastic.bore_film` balances flows between nodes, takes the gap midway between two as their
 mean, and seeks the turn of the bore by secants around a balance. Here is the weak form

@@ -1,4 +1,4 @@
-"""Reference of a second program: openTorsion 0.3.2, order by order, on trains of our own.
+"""Reference values from a second program, openTorsion 0.3.2, order by order, on our own trains.
 
 Writes forced_torsion.json beside this file: the inputs as `forced_torsion` takes them, and the amplitude of
 each shaft's torque at each speed and order from openTorsion's angles. It is not needed by the tests:

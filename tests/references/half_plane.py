@@ -1,4 +1,4 @@
-"""A stepped shaft by elements in its half plane (r, z) alone, a second method beside `cad.analysis`.
+"""A stepped shaft by elements in its half plane (r, z), as a second method to `cad.analysis`.
 
 A body of revolution under a bending moment moves in the first harmonic: u_r = U cos θ, u_θ = V sin θ,
 u_z = W cos θ, with U, V and W in the half plane (Wilson 1965). In torsion u_θ = r ψ is all there is

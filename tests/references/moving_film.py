@@ -1,4 +1,4 @@
-"""The film of a journal that moves: rotation and squeeze solved together, over the direction of motion.
+"""The film of a moving journal: rotation and squeeze solved together, over the direction of motion.
 
 Rotation at omega_h is a motion of the journal's centre with −eps omega_h/2 across the line of centres, as
 the film sees it; so one direction angle describes every state of motion at an eccentricity.

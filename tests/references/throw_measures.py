@@ -1,4 +1,4 @@
-"""Measures of a shaft of many throws: its rotating couple, and its throws apart, cut at mid-mains.
+"""Measures a shaft of several throws: its rotating couple, and each throw cut out at mid-mains.
 
 Mass moments are complex, x + i y. The unbalance of a throw is ∫ (x + i y) dm, its couple ∫ z (x + i y) dm
 about z = 0: over ω² the force and the couple with which it shakes its bearings. Both are additive, as is the
@@ -52,7 +52,7 @@ def throws_measured(
     """
     bodies = read_step(step)
     if len(bodies) != 1:
-        raise GeometryError("not_one_solid", f"a shaft is one solid; this file has {len(bodies)}")
+        raise GeometryError("not_one_solid", f"a shaft must be one solid; the file has {len(bodies)}")
     pieces = cut(bodies[0], planes)
     measured = [_measured(piece, density * 1e-9) for piece in pieces]
     whole, total = measure(bodies[0]).volume * density * 1e-9, sum(one.mass for one in measured)

@@ -1,4 +1,4 @@
-"""Compare the choices of levels: each one's optimum, its promise, and the value at the confirming level."""
+"""Compares choices of levels: the optimum, its predicted value, and the value at the confirming level."""
 
 from __future__ import annotations
 

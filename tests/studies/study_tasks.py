@@ -1,4 +1,4 @@
-"""Studies as calculation processes get them, without a service."""
+"""Studies in the form in which calculation processes get them, without a service."""
 
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.discovery import find_templates

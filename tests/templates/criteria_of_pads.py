@@ -1,4 +1,4 @@
-"""Cases of the criteria of pads, collars, films that rub, give way or heat, for `test_criteria_of_families`.
+"""Cases for the criteria of pads, collars and mixed, elastic or heated films: `test_criteria_of_families`.
 
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """

@@ -1,4 +1,4 @@
-"""Cases of the criteria of shafts, for `test_criteria_of_families`: by hand.
+"""Cases for the criteria of shafts, by hand, used by `test_criteria_of_families`.
 
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """

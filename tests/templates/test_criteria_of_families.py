@@ -1,4 +1,4 @@
-"""The criteria of each family: a case that meets it and one that does not, with value and limit.
+"""Each criterion of each family has a case that meets it and one that does not, with value and limit.
 
 Closed forms stand as a hand calculation; a film, pressure or load that a solver finds stands with its digits,
 which the tests of that template hold against the literature.

@@ -1,4 +1,4 @@
-"""All golden cases, bad points and outputs of the versions that take long; the quick lane takes a sample.
+"""All golden cases, bad points and outputs of slow versions; the quick lane tests a sample.
 
 Each version is imported, so that its slow tests are related to all that it calculates with.
 """

@@ -1,4 +1,4 @@
-"""Tolerances in the text of a quantity: what they mean, what is refused, and that nothing else changes."""
+"""Tolerances in the text of a quantity are read or refused, and change nothing else."""
 
 import csv
 from collections import defaultdict

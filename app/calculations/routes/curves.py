@@ -24,7 +24,7 @@ CHARSETS = (
     "latin1",
     "windows-1252",
 )
-"""What a content type may say; the file itself shows what it is."""
+"""Accepted content types; the content of the file determines its type."""
 
 EXAMPLE = "crank angle [deg], pressure [bar]\n0, 1.0\n180, 1.0\n360, 60.0\n540, 3.5\n"
 BODY = {

@@ -167,4 +167,4 @@ class Worksheet(Evaluation):
 
 
 AnyCalculation = Solution | Worksheet | Evaluation
-"""The answer of a calculation that went on as a job."""
+"""The answer of a calculation that became a job."""

@@ -105,7 +105,7 @@ def _words(cls: type[Template]) -> Mapping[str, str]:
 
 
 Marks = Mapping[Key, Mapping[str, SheetMark]]
-"""The worksheet's part of an answer, by id and version."""
+"""The worksheet's fields in an answer, by id and version."""
 
 
 def marks(catalogues: Catalogues) -> Marks:

@@ -42,7 +42,7 @@ from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
 from cad.drafting.paper import TYPESETTER
 from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import with_deflection, with_part
+from cad.file_kinds import plain_kind, with_deflection, with_part
 from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -77,8 +77,8 @@ PartName = Annotated[
     str | None,
     Query(
         max_length=120,
-        description="of GLB, STL, 3MF and BREP, the one part of an assembly that the file holds, in its own "
-        "coordinates; without it the file holds all parts at their positions",
+        description="of GLB, STL, 3MF, BREP and drawings, the one part of an assembly that the file holds, "
+        "in its own coordinates; without it the file holds all parts at their positions",
         examples=["upper_shell"],
     ),
 ]
@@ -146,17 +146,19 @@ class FileRequest:
         with self.database.read() as session:
             model = find(session)
             kind = self._stored_kind(wanted)
-            is_drawing = kind in DRAWINGS
+            is_drawing = plain_kind(kind) in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
             stamp = self.title_block.on(stamp, wanted)
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
         """Return the stored kind of file from which the requested kind is made."""
-        kind = wanted if self.deflection is None else with_deflection(wanted, self.deflection)
+        kind = PRINTED.get(wanted, wanted)
+        if self.deflection is not None:
+            kind = with_deflection(wanted, self.deflection)
         if self.part is not None:
             kind = with_part(kind, self.part)
-        return PRINTED.get(kind, kind)
+        return kind
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
         """Return None once the file exists, 202 if the client stops waiting, or why it cannot be created."""
@@ -176,7 +178,8 @@ class FileRequest:
             "Cache-Control": "no-cache",
             "Content-Disposition": disposition(plain, wide),
         }
-        content = stamped(self.store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
+        plain_one = plain_kind(file.kind)
+        content = stamped(self.store.read(file.sha256), plain_one, stamp) if plain_one in STAMPED else None
         if content is None:
             headers["ETag"] = f'"{file.sha256}"'
         else:  # of what is typeset, that from which and with what: so a client that has it waits for nothing

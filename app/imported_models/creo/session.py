@@ -28,10 +28,11 @@ from cad.errors import GeometryError, ProgramMissing
 from cad.imported_models import Description, ProgramResult
 
 Fields = Mapping[str, object]
-"""An object of JSON, whose values are checked where they are used."""
+"""A JSON object, whose values are checked where they are used."""
 LARGEST_STEP = 256 * 2**20
 LONGEST_NAME = 31
-"""Of a file in Creo, without its ending; CREOSON refuses longer ones (`JlinkUtils.validateFilename`)."""
+"""Longest name of a file in Creo without its ending; CREOSON refuses longer names
+(`JlinkUtils.validateFilename`)."""
 _GLANCE = 0.05  # [s]
 
 

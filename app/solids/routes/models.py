@@ -42,7 +42,7 @@ router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 PATIENCE = "wait=30"
-"""Time that an answer waits for a file that is still being made, unless the client prefers otherwise [s]."""
+"""Time that an answer waits for a file that is still being created, unless the client states another [s]."""
 FOR_EVER = "public, max-age=31536000, immutable"
 
 

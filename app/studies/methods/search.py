@@ -23,7 +23,7 @@ SCANNED = 4096
 STARTS = 6
 """Number of points that are polished if all variables are continuous."""
 AGAIN = 3
-"""The same, if starting points are given as well."""
+"""Number of points that are polished if starting points are given as well."""
 COMBINATIONS = 24
 """Combinations of list values that are polished, each from its best point."""
 RELAXED = 3

@@ -18,7 +18,7 @@ from app.web.shared.services import PageServices, Refused, ThePageServices
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 SHOWN = (403, 404, 409, 412, 422)
-"""Refusals that the page itself says."""
+"""Status codes of refusals that the page itself shows."""
 
 
 class Place(NamedTuple):

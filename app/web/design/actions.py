@@ -238,7 +238,7 @@ def _block(typed: Mapping[str, str]) -> Patch:
 
 
 _LIST = re.compile(r"/(designs(\?[!-~]*)?)?")
-"""An address of a list of designs on this service."""
+"""The address of a list of designs on this service."""
 
 
 @router.post("/designs/{id}/rename")

@@ -23,10 +23,11 @@ from app.web.verdict.banner import Banner, opened
 
 KEPT = 16 * 2**20  # largest size of the cached sections [characters]
 _kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
-"""Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
+"""Sections by all values that they show. Only the event loop writes pages, so no lock is needed."""
 
 MOST_IN_FULL = 12
-"""Steps of a design whose page has the inputs and results of each; of a longer one, those of a few."""
+"""Largest number of steps for which the page of a design shows all inputs and results; for more steps it
+shows those of a few."""
 
 
 def asked_step(request: Request, steps: Collection[str]) -> str | None:

@@ -81,7 +81,7 @@ GALLERY = {
         document=CRANK,
     ),
 }
-"""By the name that its form sends."""
+"""Designs of the gallery by the name that the form sends."""
 
 
 def offered(templates: Iterable[TemplateSummary], models: Iterable[TemplateSummary]) -> dict[str, Example]:

@@ -34,7 +34,7 @@ router = APIRouter(include_in_schema=False, route_class=StrictRoute)
 SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
-"""Largest error of the last angle against a whole cycle [deg], of the last value against the first [-]."""
+"""Largest difference of the last angle from a whole cycle [deg], and of the last value from the first [-]."""
 DIGITS = 12  # digits of a shifted angle, so that 0.1 + 0.2 is 0.3
 
 

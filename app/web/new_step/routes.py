@@ -27,7 +27,7 @@ from app.web.shared.services import PageServices, ThePageServices
 
 _NUMBER = re.compile(r"[0-9]{1,6}")
 FIELDS = ("design_name", "name", "template", "model")
-"""Fields of the form beside the values of the step."""
+"""Fields of the form other than the values of the step."""
 
 
 @dataclass(frozen=True)

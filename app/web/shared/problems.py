@@ -18,7 +18,7 @@ from app.web.shared.responses import go, show
 from app.web.shared.services import Refused
 
 BASE = "/api/v1"
-"""Where the paths of the interface begin."""
+"""Prefix of the paths of the interface."""
 _LONGEST = 2000  # characters of an address
 Handler = Callable[[Request, Exception], Awaitable[Response]]
 

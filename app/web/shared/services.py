@@ -39,7 +39,7 @@ MOMENT = 1.0
 _NUMBER = re.compile(r"[0-9]{1,6}")
 
 ERRORS = tuple(TABLE)
-"""The errors that are problems."""
+"""Errors that are reported as problems."""
 
 
 def with_related(detail: str, also: list[str]) -> str:

@@ -16,7 +16,8 @@ from app.web.shared.session import keep_signed_in
 from app.web.sign_in.routes import own, sent
 
 COOKIE = "crankwright_begun"
-"""The cookie with which a sign-in began. A page of another site leads back to it, so it is not Strict."""
+"""Name of the cookie of a started sign-in. The provider's site redirects back to the service, so the
+cookie is not Strict."""
 PLACE = "/sign-in/oidc"
 _MINUTES = 10
 _KEPT = re.compile(r"([\w-]{43})\.([\w-]{43})\.([\w-]{43})\.((?:[0-9a-f]{2}){1,2000})")

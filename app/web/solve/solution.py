@@ -14,9 +14,9 @@ from app.web.shared.answers import AnswerOrJob
 from app.web.shared.services import Refused
 
 PATIENCE = 5.0
-"""Time that a page waits for an answer [s]; it shows how a longer calculation goes on."""
+"""Time that a page waits for an answer [s]; then it shows the progress."""
 WRONG = 422
-"""Status of a question that is wrong, which its page shows beside the form."""
+"""Status of a faulty question, which the page shows next to the form."""
 Kind = TypeVar("Kind")
 
 

@@ -23,7 +23,7 @@ from app.web.shared.responses import show
 from app.web.shared.services import PageServices, Refused
 
 LINES = 4
-"""Places that the form can vary; the interface takes more."""
+"""Number of places that the form can vary; the interface accepts more."""
 METHODS = {
     "grid": "every combination of evenly spaced values (sweeps, contours)",
     "sample": "rows spread over all intervals (histograms, parallel coordinates)",

@@ -19,7 +19,7 @@ from app.schemas.problems import Fault
 CONTROL = "cell."
 _ADDRESS = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,3})")
 FIRST_VARIANT = 2
-"""The row of the first variant, from 0: below headings and units."""
+"""Index of the first variant's row, from 0: below headings and units."""
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ _TURNS = 5  # attempts to send an order, if machines are lost before it arrives
 _FETCH = 120.0  # longest time to receive a result [s]
 
 Messages = queue.SimpleQueue[tuple[float, str] | None]
-"""From a task: how far it is; None when it has ended."""
+"""Messages of a task: its progress; None at its end."""
 
 
 class Cluster:

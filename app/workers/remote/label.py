@@ -18,7 +18,7 @@ import templates
 from app.workers.base import Lane
 
 LIBRARIES = ("distributed", "cadquery", "cadquery-ocp", "netgen-mesher", "ngsolve", "numpy", "scipy")
-"""What carries jobs, and what their results depend on."""
+"""Packages that transport jobs, and packages on which results depend."""
 _PACKAGES = (Path(__file__).parents[2], Path(cad.__file__).parent, Path(templates.__file__).parent)
 
 

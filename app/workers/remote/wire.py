@@ -18,7 +18,7 @@ from app.workers.errors import RemoteError
 from app.workers.messages import Outcome, PackedMessage, Request
 
 MOST_BYTES = 2**30
-"""Of a request or a result; both are held in memory on both sides."""
+"""Largest size of a request or a result; both sides keep it in memory."""
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class Catalogue(Generic[T]):
             refused = (*self.quarantined, *self.unreleased)
             self._refuse_unusable(id, max((n for name, n in refused if name == id), default=0))
             raise UnknownTemplate(
-                id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
+                id, f"no {self.kind} is named {plain(id)!r}; use one of {', '.join(self.ids)}"
             )
         return classes
 
@@ -69,7 +69,9 @@ class Catalogue(Generic[T]):
         if (version_class := self.versions.get((id, version))) is None:
             self._refuse_unusable(id, version)
             listing = ", ".join(map(str, self.of(id)))
-            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
+            raise UnknownTemplate(
+                id, f"{self.kind} {id} has no version {version}; its versions are {listing}"
+            )
         return version_class
 
     def _refuse_unusable(self, id: str, version: int) -> None:
@@ -180,5 +182,5 @@ def declared_in(module: ModuleType, path: Path) -> type[Template]:
         if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
     ]
     if len(classes) != 1:
-        raise UnusableFile(str(path), f"it declares {len(classes)} templates; it must declare one")
+        raise UnusableFile(str(path), f"the file must declare one template, not {len(classes)}")
     return classes[0]

@@ -222,7 +222,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         contains an item, a condition or a list; or as raised by `parse`.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
-        raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
+        raise FaultyText("syntax", f"`require` must be a text of at most {LONGEST_REQUIRE} characters")
     sides = _SIGN.split(text)
     if len(sides) != 3 or "=" in sides[0] + sides[2]:
         form = "write it like `film.minimum_film_thickness >= 3 um`"
@@ -230,26 +230,29 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     sign: Sign = ">=" if sides[1] == ">=" else "<="
     value, limit = parse(sides[0].strip()), parse(sides[2].strip())
     if items := value.items + limit.items:
-        detail = f"a criterion takes no index; make {items[0].text} a parameter or an input, and compare that"
+        item = items[0].text
+        detail = (
+            f"a criterion cannot use an item of a list; make {item} a parameter or an input, and compare that"
+        )
         raise FaultyText("index", detail)
     for side in (value, limit):
         if side.has_conditions or side.has_lists:
             what, code = ("condition", "no_truth") if side.has_conditions else ("list", "shape")
-            detail = (
-                f"a side of a criterion holds no {what}; make {excerpt(side.text)} a parameter of the design"
-            )
-            raise FaultyText(code, f"{detail}, and compare that")
+            remedy = f"make {excerpt(side.text)} a parameter of the design and compare that"
+            raise FaultyText(code, f"a side of a criterion cannot contain a {what}; {remedy}")
     return value, sign, limit
 
 
 def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
     if not isinstance(raw, Mapping) or needed not in raw:
-        raise FaultyText("syntax", f"give a text, or an object with {needed!r}, not {excerpt(raw)}")
+        form = f"an object with the key {needed!r}"
+        wanted = f"a text or {form}" if needed == "require" else form
+        raise FaultyText("syntax", f"give {wanted}, not {excerpt(raw)}")
     for key, value in raw.items():
         if key not in keys:
             raise FaultyText("unknown_name", unknown_name(str(key), sorted(keys), "key").detail)
         if key not in _OBJECTS and not (isinstance(value, str) and value.strip()):
-            raise FaultyText("syntax", f"{key} is a text, not {excerpt(value)}")
+            raise FaultyText("syntax", f"{key} must be a text that is not empty, not {excerpt(value)}")
 
 
 def _mapping(raw: Any) -> Mapping[str, Any]:
@@ -271,7 +274,9 @@ def _default(text: str, meanings: Mapping[str, NameDescription], wanted: str) ->
     """Return the function and the name of a default such as `min(speed_range)`."""
     match = _DEFAULT.fullmatch(text)
     if match is None or match[2] not in meanings:
-        raise FaultyText("syntax", f"a default is min(NAME) or max(NAME) of an input, not {excerpt(text)}")
+        raise FaultyText(
+            "syntax", f"a default must be min(NAME) or max(NAME) of an input, not {excerpt(text)}"
+        )
     require_same_kind(meanings[match[2]].unit, wanted)
     return match[1], match[2]
 

@@ -101,9 +101,11 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
     """Return every limit for which the given row has a value."""
     library = _libraries.get(name)
     if library is None:
-        raise FaultyText("no_library", f"there is no library {name}; give the limits by hand")
+        raise FaultyText("no_library", f"no library is named {name}; give each limit with its unit")
     if not isinstance(raw, str):
-        raise FaultyText("not_a_row", f"{excerpt(raw)} is not a row; give the id of a row of {name}")
+        raise FaultyText(
+            "not_a_row", f"{excerpt(raw)} is not the id of a row; give the id of a row of {name}"
+        )
     try:
         row = library.row(raw)
     except KeyError:

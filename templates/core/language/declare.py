@@ -182,7 +182,7 @@ def units(
     named = (name for name in arguments if name is not None)
     for name in (*named, *([returns] if isinstance(returns, str) else returns)):
         if (scale := unit(name)).factor != 1 or scale.absolute:
-            raise TypeError(f"{name} is not SI; a physics function takes and returns SI values")
+            raise TypeError(f"{name} is not an SI unit; a physics function takes and returns SI values")
 
     def mark(function: F) -> F:
         function.border = (arguments, returns)  # type: ignore[attr-defined]

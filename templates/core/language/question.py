@@ -46,7 +46,9 @@ def read_question(
         if formula is None:
             faults.append(unknown_name(name, cls.formulas, "output").within("target"))
         elif isinstance(formula, (Profile, Text)):
-            faults.append(Fault(f"target.{name}", "not_a_number", "the target must be a single value"))
+            faults.append(
+                Fault(f"target.{name}", "not_a_number", "the target must be an output with a single value")
+            )
         else:
             wanted = _scalar(read_beside, value, formula.meaning.accepted, f"target.{name}", faults)
     faults += _faulty_inputs(cls, raw, unknown, declared, ends)
@@ -77,7 +79,9 @@ def _solvable(cls: type[Template]) -> list[str]:
 
 def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:
     if len(bounds) != 2:
-        faults.append(Fault("bounds", "two_values", "give the lowest and the highest value to try"))
+        faults.append(
+            Fault("bounds", "two_values", "give two bounds: the lowest and the highest value to try")
+        )
         return 0.0, 1.0
     low, high = (_scalar(read, end, declared.meaning.accepted, "bounds", faults) for end in bounds)
     if low >= high:
@@ -108,7 +112,9 @@ def _faulty_inputs(
     """Return the faults of the other inputs, checked with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
-    faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
+    faults = [
+        Fault(f"inputs.{n}", "not_a_number", "solve needs a single value here, not an array") for n in arrays
+    ]
     probe = {name: value for name, value in raw.items() if name not in arrays}
     if declared and np.all(np.isfinite(ends)):
         probe[unknown] = typed_values(declared, np.array(ends))

@@ -85,7 +85,7 @@ def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
     if level is None or level in cls.levels:
         return []
     if not cls.levels:
-        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; omit `level`")]
+        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has only one level; omit `level`")]
     return [unknown_name(level, cls.levels, "level").within("level")]
 
 

@@ -235,7 +235,7 @@ class Requirement:
         self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
         if not self.sentence:
             raise TypeError(
-                f"{function.__qualname__}: a requirement needs a docstring: the sentence that a user reads"
+                f"{function.__qualname__}: a requirement needs a docstring, which is shown to the user"
             )
 
     @cached_property

@@ -28,7 +28,7 @@ def returned(function: Callable[..., Any]) -> ast.expr:
     match statements:
         case [ast.Return(value=ast.expr() as expression)]:
             return expression
-    raise TypeError(f"{function.__qualname__}: a formula is one return")
+    raise TypeError(f"{function.__qualname__}: the body of a formula must be one return statement")
 
 
 def syntax(function: Callable[..., Any]) -> ast.FunctionDef:

@@ -150,7 +150,7 @@ def _called(template: Calculation, attribute: str) -> str:
         return declared.meaning.words
     shared = getattr(type(template), attribute, None)
     text = (inspect.getdoc(shared.function) or "").split(".")[0] if isinstance(shared, Shared) else ""
-    return text[:1].lower() + text[1:] if text else attribute
+    return text.removeprefix("Return ") or attribute
 
 
 def _given(template: Calculation, name: str) -> str:

@@ -171,7 +171,7 @@ class Writer:
 
     def _call(self, node: ast.Call) -> Written:
         if any(keyword.arg != "axis" for keyword in node.keywords):
-            raise TypeError(f"{ast.unparse(node)!r}: in a formula, arguments are given by position")
+            raise TypeError(f"{ast.unparse(node)!r}: in a formula, give the arguments by position")
         name = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
         if name in ("sqrt", "abs"):
             inside = self.write(node.args[0])[0]

@@ -164,8 +164,8 @@ class Builder:
         name = str(called)[:-1]
         self._check_new(statement, called, name)
         if axis := parameter.children[2]:
-            remedy = "omit `over` and the name behind it"
-            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis, remedy)
+            remedy = "omit `over` and the name after it"
+            raise statement.refuse("curve", "the parameter of a curve cannot be a list", axis, remedy)
         texts = (parameter.children[1], unit_text)
         along, of = (self.reader.declared_unit(statement, text) for text in texts)
         said = said_in(statement, clauses, self.reader)
@@ -178,7 +178,7 @@ class Builder:
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
             remedy = "write different words, for example `(walther | vogel)`"
-            raise statement.refuse("choice", "each option must be one word, given once", options, remedy)
+            raise statement.refuse("choice", "each option must be one word that occurs once", options, remedy)
         if default is not None and str(default) not in names:
             message = f"the default {default} is not an option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
@@ -201,7 +201,7 @@ class Builder:
         word = str(tree.children[0]) if tree.data == "name" else ""
         if word not in options:
             raise statement.refuse(
-                "choice", "the example is not an option", tree, f"write one of {', '.join(options)}"
+                "choice", "the example is not one of the options", tree, f"write one of {', '.join(options)}"
             )
         parts["example"] = word
 
@@ -268,8 +268,8 @@ class Builder:
         body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), of_items=of_items)
         blamed = body.inputs = self.built.inputs_beneath(body.uses)
         if not blamed:
-            advice = "compare a given with something"
-            raise statement.refuse("no_truth", "the rule mentions no input", tree, advice)
+            advice = "use at least one `given` quantity in it"
+            raise statement.refuse("no_truth", "the rule depends on no input", tree, advice)
         rule = Requirement(body, blamed, remedy or f"change {' or '.join(blamed)}", False, "")
         self.built.parts[f"{RULE} {statement.chunk.line}"] = rule
         self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
@@ -280,7 +280,9 @@ class Builder:
         said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
         name, criterion = criterion_of(statement, node, text, said, self.built.parts)
         if name in self.built.criteria:
-            raise statement.refuse("name", f"another check is named {name}", words, "use other words")
+            raise statement.refuse(
+                "name", f"another check already has the name {name}", words, "use other words"
+            )
         self.built.criteria[name] = criterion
         self.built.note(statement, name, "", text, node)
 

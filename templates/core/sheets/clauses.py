@@ -56,7 +56,7 @@ def _meaning(statement: ParsedStatement, unit_text: str, words: lark.Token, said
     try:
         return meaning(unit_text, text, **said.keywords)
     except TypeError:
-        message = f"the words {text[:60]!r} make no name: they need a letter first"
+        message = f"the words {text[:60]!r} cannot form a name: they must begin with a letter"
         raise statement.refuse("name", message, words, 'write words, such as `"bearing diameter"`') from None
 
 
@@ -71,7 +71,9 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
         message = f"words have at most {LONGEST_WORDS} characters"
-        raise statement.refuse("too_large", message, words, "write the rest as prose, after `>`")
+        raise statement.refuse(
+            "too_large", message, words, "move the rest to a line of prose that begins with `>`"
+        )
     if not text:
         raise statement.refuse("name", "the description is missing", words, "describe the quantity")
     return text
@@ -119,7 +121,7 @@ def _clause(
     if clause.data == "held" and statement.kind == "curve":
         return "held", True
     if unit_text is None or clause.data == "held":
-        message = f"{clause_name(clause)} has no place here"
+        message = f"{clause_name(clause)} is not allowed here"
         raise statement.refuse("clause", message, clause, 'write `(source "…")` or `(remedy "…")`')
     numbers = [part for part in clause.children if isinstance(part, lark.Tree)]
     if clause.data == "whole":
@@ -134,7 +136,7 @@ def _clause(
         return "published", tuple(limits)
     sign = str(clause.children[0])
     if sign not in _BOUNDS:
-        raise statement.refuse("limit", f"{sign} is not a bound", clause, "a bound is <, <=, > or >=")
+        raise statement.refuse("limit", f"{sign} is not a bound", clause, "use <, <=, > or >=")
     return _BOUNDS[sign], limits[0]
 
 
@@ -144,7 +146,7 @@ def _said(statement: ParsedStatement, clause: lark.Tree[Any]) -> tuple[str, Any]
     if key == "also":
         return "also", tuple(said)
     if len(said) > 1:
-        raise statement.refuse("clause", f"{key} takes one text", clause, "omit the other texts")
+        raise statement.refuse("clause", f"{key} takes only one text", clause, "omit the other texts")
     if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
         remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
         raise statement.refuse("clause", f"{said[0][:40]!a} is not a symbol", clause, remedy)

@@ -45,8 +45,8 @@ def curve_of(
         raise statement.refuse("curve", "a curve needs at least two points", points[0], "give another point")
     for before, after, point in zip(along, along[1:], points[1:], strict=False):
         if not before < after:
-            remedy = "sort the points, each once"
-            raise statement.refuse("curve", "the points of a curve must ascend", point, remedy)
+            remedy = "sort the points and give each one once"
+            raise statement.refuse("curve", "the points of a curve must be in ascending order", point, remedy)
     return _called(name, units, _operation(name, units, along, values, said, sides[0]))
 
 

@@ -84,7 +84,7 @@ def _value(
     part = reader.part(statement, tree)
     body = TreeBody(reader.fitting(statement, part, declared.meaning.unit, name, tree), statement.chunk.line)
     if body.uses:
-        raise statement.refuse("unknown_name", "a test takes numbers, not names", tree, "write its value")
+        raise statement.refuse("unknown_name", "a test needs numbers, not names", tree, "write its value")
     with np.errstate(all="ignore"):
         value = body(None)
     if not np.isfinite(value).all():
@@ -106,7 +106,7 @@ def _expected(
     size = TreeBody(tolerance, statement.chunk.line)
     if size.uses or sort.truth or sort.axis:
         raise statement.refuse(
-            "limit", "a tolerance is one number", within, "write one number, for example `within 0.2 %`"
+            "limit", "a tolerance must be one number", within, "write one number, for example `within 0.2 %`"
         )
     text = statement.text_of(within)
     number = float(size(None))
@@ -121,6 +121,6 @@ def _expected(
         difference = difference_in(declared.meaning.unit) if is_temperature else declared.meaning.unit
         reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
     if not 0 <= number < np.inf:
-        message = f"{text} is not a tolerance: it is finite, and not below 0"
+        message = f"the tolerance {text} must be finite and not negative"
         raise statement.refuse("limit", message, within, "write one number, for example `within 0.2 %`")
     return ExpectedResult(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

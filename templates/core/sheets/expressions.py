@@ -50,7 +50,7 @@ class Reader:
             self.names.spend(max(0, part[1].size - (before - self.names.fuel)))
         except FaultyText as error:
             raise statement.refuse(
-                error.code, str(error), tree, "give its parts names of their own"
+                error.code, str(error), tree, "define its parts under names of their own"
             ) from None
         return part
 
@@ -112,7 +112,7 @@ class Reader:
         part = self.part(statement, tree)
         constant, sort = part
         if not isinstance(constant, Constant):
-            raise statement.refuse("limit", "a limit is one number", tree, "write it like `<= 2 m`")
+            raise statement.refuse("limit", "a limit must be one number", tree, "write it like `<= 2 m`")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
         accepted = accepted or unit_text
@@ -205,4 +205,4 @@ def _given_in(unit_text: str) -> str:
 
 def _along_of(axis: str) -> str:
     """Return the advice to declare a value over an axis, or as a single value."""
-    return f"declare it over {axis}" if axis else "omit `over` and the name behind it"
+    return f"declare it over {axis}" if axis else "omit `over` and the name after it"

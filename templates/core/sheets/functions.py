@@ -100,7 +100,9 @@ def function_of(statement: ParsedStatement, reader: Reader) -> Function:
     for parameter in parameters:
         own, text, axis = parameter.children
         if str(own) in sorts:
-            raise statement.refuse("name", f"{own} stands twice", own, "name the parameters differently")
+            raise statement.refuse(
+                "name", f"the parameter {own} occurs twice", own, "name the parameters differently"
+            )
         units.append(reader.declared_unit(statement, text))
         sorts[str(own)] = replace(sort_of(units[-1], str(own)), axis=str(axis or ""))
     takes = ", ".join(map(_taken, parameters))

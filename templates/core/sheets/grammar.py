@@ -82,7 +82,7 @@ def parsed(chunk: Chunk) -> ParsedStatement:
         raise Refusal(_not_understood(chunk, error)) from None
     if _parts(tree) > MOST_PARTS or height(tree) > MOST_DEPTH:
         message = f"a statement has at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
-        remedy = "give its parts names of their own"
+        remedy = "define its parts under names of their own"
         raise Refusal(SheetFault(chunk.line, 1, "too_large", message, remedy=remedy))
     return ParsedStatement(chunk, tree, words)
 

@@ -154,14 +154,14 @@ def system_of(
     """
     node, sort = reader.part(statement, tree)
     if sort.axis:
-        message = f"the equations hold a list over {sort.axis}"
+        message = f"the equations contain a list over {sort.axis}"
         raise statement.refuse("axis_mismatch", message, tree, "take `max(…)` or `sum(…)` of it")
     equations = list(_joined(node))
     remedy = "write as many equations as unknowns, for example `x + y == 3 N and x - y == 1 N`"
     if not all(isinstance(one, Apply) and one.operation.sign == "==" for one in equations):
         raise statement.refuse("equation", "only equations can be joined by `and` here", tree, remedy)
     if len(equations) != len(unknowns):
-        message = f"for {len(unknowns)} unknowns there must be as many equations, not {len(equations)}"
+        message = f"{len(unknowns)} unknowns need {len(unknowns)} equations, not {len(equations)}"
         raise statement.refuse("equation", message, tree, remedy)
     try:
         rows = [
@@ -169,7 +169,9 @@ def system_of(
         ]
     except NotLinear:
         message = f"the equations are not linear in {', '.join(unknowns)}"
-        remedy = "let unknowns stand in sums, times or divided by what is known; or solve one between bounds"
+        remedy = (
+            "only add unknowns, or multiply or divide them by known values; or solve for one between bounds"
+        )
         raise statement.refuse("equation", message, tree, remedy) from None
     for name in unknowns:
         if not any(name in row for row in rows):

@@ -88,4 +88,6 @@ def _faults_of_size(chunks: list[Chunk]) -> Iterator[SheetFault]:
     for chunk in statements:
         if len(chunk.text) > LONGEST_STATEMENT:
             message = f"a statement has at most {LONGEST_STATEMENT} characters"
-            yield SheetFault(chunk.line, 1, "too_large", message, remedy="give its parts names of their own")
+            yield SheetFault(
+                chunk.line, 1, "too_large", message, remedy="define its parts under names of their own"
+            )

@@ -88,7 +88,7 @@ class Names:
         """
         self.fuel -= operations
         if self.fuel < 0:
-            detail = f"a worksheet has at most {FUEL} operations, its functions written out"
+            detail = f"a worksheet must have at most {FUEL} operations, including those in its functions"
             raise FaultyText("too_large", detail)
 
     def check_new(self, name: str) -> None:
@@ -100,9 +100,11 @@ class Names:
             With code `name`.
         """
         if name in self.sorts or name in self.functions:
-            raise FaultyText("name", f"{name[:LONGEST_NAME]} is declared above already")
+            raise FaultyText("name", f"{name[:LONGEST_NAME]} is already declared above")
         if len(name) > LONGEST_NAME or "." in name:
-            raise FaultyText("name", f"a name has at most {LONGEST_NAME} letters, digits and _, and no dot")
+            raise FaultyText(
+                "name", f"a name must have at most {LONGEST_NAME} letters, digits and _, and no dot"
+            )
         if (
             name in _WORDS
             or name in CONSTANTS

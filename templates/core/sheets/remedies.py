@@ -40,7 +40,7 @@ _GENERAL = {
     "unknown_unit": "write a unit, such as `kN`, `mm**2/s` or `W/(m*K)`",
     "syntax": "write it like `log(x)`, `max(a, b)` or `x[2]`",
     "not_finite": "write a number below 1e308",
-    "too_large": "give its parts names of their own, and call functions less often",
+    "too_large": "define its parts under names of their own, and call functions less often",
 }
 
 

@@ -110,7 +110,9 @@ class Sheet:
             If the id is not a name in snake_case, or the version is below 1.
         """
         if not _ID.fullmatch(id) or version < 1:
-            raise ValueError(f"{id!r} {version!r} is not an id in snake_case with a version from 1")
+            raise ValueError(
+                f"the id {id!r} must be in snake_case, and the version {version!r} must be at least 1"
+            )
         parts = {
             "__doc__": documentation_of(self.chunks) or id.replace("_", " ").capitalize(),
             "example": self.built.example,

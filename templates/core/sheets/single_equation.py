@@ -145,7 +145,7 @@ def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any]
     if not (isinstance(node, Apply) and node.operation.sign == "=="):
         raise statement.refuse("equation", "this is not an equation", tree, "write it like `F / A == 10 MPa`")
     if sort.axis:
-        message = f"the equation holds a list over {sort.axis}"
+        message = f"the equation contains a list over {sort.axis}"
         raise statement.refuse("axis_mismatch", message, tree, "take `max(…)` or `sum(…)` of it")
     if name not in names_in(node):
         raise statement.refuse("equation", f"{name} does not occur in the equation", tree)

@@ -62,9 +62,9 @@ def check_ranks(operation: Operation, ranks: list[int]) -> None:
         detail = "each item of a list is a single value, but an expression in it gives an array"
         raise FaultyText("shape", detail)
     if operation is ITEM and ranks[1]:
-        raise FaultyText("shape", "an index is a single number, not an array")
+        raise FaultyText("shape", "an index must be a single number, not an array")
     if operation in OVER_LISTS.values() and not ranks[0] and operation.sign not in ("min", "max"):
-        raise FaultyText("shape", f"{operation.sign} takes a list, and this is a single value")
+        raise FaultyText("shape", f"{operation.sign} takes a list; this is a single value")
 
 
 def applied_in(node: Any) -> Iterator[Apply]:

@@ -179,7 +179,7 @@ class _Builder:
         operation = first.get(called) or second.get(called)
         if operation is None:
             names = ", ".join(dict.fromkeys([*FUNCTIONS, *OVER_LISTS]))
-            raise FaultyText("unknown_function", f"{called[:60]} is not a function; there are {names}")
+            raise FaultyText("unknown_function", f"{called[:60]} is not a function; use one of {names}")
         if operation.arity not in (None, len(arguments)):
             count = f"{operation.arity} value{'s' if operation.arity != 1 else ''}"
             raise FaultyText("syntax", f"{called} takes {count}, not {len(arguments)}")
@@ -268,7 +268,9 @@ def _size(node: Any) -> int:
 
 def _place(shown: str, number: float) -> int:
     if not number.is_integer() or not 1 <= number <= MAX_INDEX:
-        raise FaultyText("syntax", f"{shown}: an index is a whole number from 1 to the length of the list")
+        raise FaultyText(
+            "syntax", f"{shown}: an index must be a whole number from 1 to the length of the list"
+        )
     return int(number)
 
 
@@ -300,5 +302,5 @@ def _unit(name: str) -> Unit:
 
 def _finite(value: float) -> float:
     if not np.isfinite(value):
-        raise FaultyText("not_finite", "a number in the expression is too large")
+        raise FaultyText("not_finite", "a number in the expression is too large; give one below 1.8e308")
     return value

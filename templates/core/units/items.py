@@ -23,11 +23,11 @@ def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
     if not isinstance(item.index, str):
         return
     if "." in item.index:
-        hint = "an index is a whole number or a parameter of the design"
+        hint = "an index must be a whole number or a parameter of the design"
         raise FaultyText("index", f"{item.text}: {hint}, such as bearing")
     if kinds[item.index].base != ONE:
         given = f"{kinds[item.index].base:~P}"
-        raise FaultyText("index", f"{item.text}: {item.index} is in {given}; an index is a pure number")
+        raise FaultyText("index", f"{item.text}: {item.index} is in {given}; an index must be a pure number")
 
 
 def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) -> Value:
@@ -64,7 +64,7 @@ def _places(item: Item, values: Mapping[str, Value], rows: Container[str], lengt
     """Return the index counted from 0: a single one, or one for each row."""
     raw = np.asarray(values[item.index] if isinstance(item.index, str) else item.index, dtype=float)
     if raw.ndim > (item.index in rows):
-        raise FaultyText("index", f"{item.text}: an index is a single number, not an array")
+        raise FaultyText("index", f"{item.text}: an index must be a single number, not an array")
     wrong = raw[~((raw == np.floor(raw)) & (raw >= 1) & (raw <= length))]
     if wrong.size:
         have = f"{item.name} has {length} item{'s' if length > 1 else ''}"

@@ -47,7 +47,7 @@ def _counted(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kin
 
 def _indexed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     if kinds[1].base != ONE:
-        raise FaultyText("index", f"an index is a pure number, not {in_words(kinds[1])}")
+        raise FaultyText("index", f"an index must be a pure number, not {in_words(kinds[1])}")
     return kinds[0]
 
 

@@ -259,7 +259,9 @@ def _read_each(raw: list[Any], declared: str) -> TypedQuantity:
     """Return a list of quantities, each typed in its own unit, in the declared unit."""
     parts = [read(item, declared) for item in raw]
     if len({np.shape(part.si) for part in parts}) > 1:
-        raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
+        raise FaultyText(
+            "uneven", "the items of an array must have the same length; give each a single value"
+        )
     si = np.array([part.si for part in parts], dtype=float)
     tolerance = joined([part.tolerance for part in parts])
     return TypedQuantity(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {}, tolerance)
@@ -330,7 +332,7 @@ def _array(raw: Sequence[Any]) -> Array:
 def _joined(rows: Sequence[Any], length: int) -> list[Any]:
     """Return the items of all rows, which must be lists of equal length."""
     if not all(isinstance(row, (list, tuple)) and len(row) == length for row in rows):
-        raise FaultyText("uneven", "the rows of an array must be of equal length")
+        raise FaultyText("uneven", "the rows of an array must have the same length")
     return [item for row in rows for item in row]
 
 

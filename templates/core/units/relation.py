@@ -165,7 +165,7 @@ def parse(text: str) -> Relation:
         With code `syntax` and the place, or `unknown_unit`, `unknown_function`.
     """
     if len(text) > MAX_LENGTH:
-        raise FaultyText("syntax", f"a relation has at most {MAX_LENGTH} characters")
+        raise FaultyText("syntax", f"a relation must have at most {MAX_LENGTH} characters")
     body = text.strip().removeprefix("=")
     try:
         parsed = _parser.parse(body)
@@ -173,7 +173,9 @@ def parse(text: str) -> Relation:
         raise FaultyText("syntax", _where(body, error)) from None
     parts = sum(1 for _ in parsed.iter_subtrees())
     if parts > MAX_PARTS or height(parsed) > MAX_DEPTH:
-        raise FaultyText("syntax", f"a relation has at most {MAX_PARTS} parts, {MAX_DEPTH} deep")
+        raise FaultyText(
+            "syntax", f"a relation must have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
+        )
     tree = built(parsed)
     nodes = list(nodes_of(tree))
     items = tuple(dict.fromkeys(node for node in nodes if isinstance(node, Item)))

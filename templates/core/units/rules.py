@@ -37,7 +37,7 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     if not (both := one.temperatures & other.temperatures):
         what = "a temperature and a difference of temperatures"
         remedy = _remedy(one.temperatures, other.temperatures, nodes)
-        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}; {remedy}")
+        raise FaultyText("unit_mismatch", f"{sign} needs values of the same kind, not {what}; {remedy}")
     return _kind(counted, both, is_literal=one.literal or other.literal)
 
 
@@ -214,19 +214,21 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
     relative(operation, kinds, arguments)
     base, exponent = kinds
     if not is_number(exponent):
-        raise FaultyText("unit_mismatch", f"an exponent is a pure number, not {in_words(exponent)}")
+        raise FaultyText("unit_mismatch", f"an exponent must be a pure number, not {in_words(exponent)}")
     if is_number(base):
         return Kind()
     plain = plain_number(arguments[1])
     if plain is None:
         raise FaultyText(
-            "unit_mismatch", "a quantity with a unit takes a plain number as exponent, for example `d**2`"
+            "unit_mismatch", "the exponent of a quantity with a unit must be a plain number, such as `d**2`"
         )
     if not abs(plain) <= MAX_EXPONENT:
-        raise FaultyText("unit_mismatch", f"an exponent of a quantity with a unit is at most {MAX_EXPONENT}")
+        raise FaultyText(
+            "unit_mismatch", f"an exponent of a quantity with a unit must be at most {MAX_EXPONENT}"
+        )
     degrees: list[Any] = list(registry.get_dimensionality(base.base).values())
     if any(abs(degree * plain) > MAX_UNIT_POWER for degree in degrees):
-        raise FaultyText("unit_mismatch", f"a unit to a power beyond {MAX_UNIT_POWER} has no meaning")
+        raise FaultyText("unit_mismatch", f"the power of a unit must not exceed {MAX_UNIT_POWER}")
     return _raised(base, plain)
 
 

@@ -74,10 +74,10 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
     truth = _truth(operation, sorts)
     depth = 1 + max(sort.depth for sort in sorts)
     if depth > MAX_NODES_DEEP:
-        raise FaultyText("too_large", f"an expression is at most {MAX_NODES_DEEP} operations deep")
+        raise FaultyText("too_large", f"an expression must be at most {MAX_NODES_DEEP} operations deep")
     size = 1 + sum(sort.size for sort in sorts)
     if size > MAX_NODES:
-        detail = f"an expression has at most {MAX_NODES} operations, its functions written out"
+        detail = f"an expression must have at most {MAX_NODES} operations, including those in its functions"
         raise FaultyText("too_large", detail)
     kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
     return Sort(kind, truth, axis, depth=depth, size=size)
@@ -92,7 +92,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
         if not truths[0]:
             raise FaultyText("no_truth", "`if` needs a condition, such as `x < 3 mm`, not a quantity")
         if truths[1] != truths[2]:
-            raise FaultyText("no_truth", "then and else are two quantities or two conditions")
+            raise FaultyText("no_truth", "then and else must be two quantities or two conditions")
         return truths[1]
     is_logic = operation in LOGIC.values()
     if is_logic and not all(truths):
@@ -113,7 +113,7 @@ def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
     if operation is LIST:
         if axes:
             raise FaultyText(
-                "axis_mismatch", f"an item of a list is a single value, not a list over {axes[0]}"
+                "axis_mismatch", f"an item of a list must be a single value, not a list over {axes[0]}"
             )
         return literal_axis(len(sorts)), False
     if operation is ITEM:
@@ -133,7 +133,7 @@ def _single_item(whole: Sort, index: Sort) -> str:
     if not whole.axis:
         raise FaultyText("axis_mismatch", "a single value has no items")
     if index.axis:
-        raise FaultyText("axis_mismatch", f"an index is a single number, not a list over {index.axis}")
+        raise FaultyText("axis_mismatch", f"an index must be a single number, not a list over {index.axis}")
     return ""
 
 

@@ -270,7 +270,7 @@ def _between(lower: float, upper: float, distribution: Distribution = "normal") 
     if not (math.isfinite(lower) and math.isfinite(upper)):
         raise FaultyText("not_finite", "a tolerance must be finite: not NaN, infinity or above 1.8e308")
     if lower > upper:
-        raise FaultyText("not_a_tolerance", "the lower limit lies above the upper one; swap them")
+        raise FaultyText("not_a_tolerance", "the lower limit is above the upper limit; swap them")
     return Tolerance(lower, upper, distribution)
 
 

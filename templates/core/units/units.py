@@ -143,7 +143,9 @@ def unit(text: str) -> Unit:
     except (pint.PintError, ArithmeticError, AttributeError, TypeError, ValueError):
         raise FaultyText("unknown_unit", f"{text!r} is not a known unit; {_hint(text)}") from None
     if not (0 < factor < math.inf and math.isclose(two, 2 * factor + zero, rel_tol=1e-9)):
-        raise FaultyText("unknown_unit", f"{text!r} has no fixed size (a logarithmic unit?)")
+        raise FaultyText(
+            "unknown_unit", f"{text!r} has no fixed size in SI; logarithmic units are not accepted"
+        )
     powers: dict[str, Any] = dict(registry.Quantity(1.0, named).unit_items())
     names = {str(name): float(power) for name, power in powers.items()}
     return Unit(

@@ -1,4 +1,4 @@
-"""Whoever checks or releases a revision with unconfirmed criteria must justify it."""
+"""A person who checks or releases a revision with unconfirmed criteria must justify it."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""Approval, comments and audit on the pages, by forms without scripts."""
+"""The pages offer approval, comments and audit as forms without scripts."""
 
 import re
 

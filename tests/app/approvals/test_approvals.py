@@ -1,4 +1,4 @@
-"""Approval over HTTP: three principals sign one after another, each the content that they saw."""
+"""Over HTTP, three principals sign a revision one after another, each the content that they saw."""
 
 import hashlib
 import re

@@ -1,4 +1,4 @@
-"""Outputs as a NumPy file over HTTP: the values of the JSON answer, or a refusal with its reason."""
+"""Outputs as a NumPy file over HTTP have the values of the JSON answer, or are refused with a reason."""
 
 from io import BytesIO
 from types import SimpleNamespace

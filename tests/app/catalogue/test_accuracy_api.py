@@ -1,4 +1,4 @@
-"""Measured errors over REST, and answers of levels as JSON."""
+"""REST returns the measured errors, and the answers of levels as JSON."""
 
 from serving import API
 

@@ -1,4 +1,4 @@
-"""Search of templates by standards, authors, symbols and names of textbooks."""
+"""The search finds templates by standards, authors, symbols and names of textbooks."""
 
 import numpy as np
 import pytest

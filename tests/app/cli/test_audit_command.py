@@ -1,4 +1,4 @@
-"""`crankwright audit verify` and `list` on sound, changed and unreadable databases."""
+"""`crankwright audit verify` and `list` work on sound, changed and unreadable databases."""
 
 import shutil
 import sqlite3

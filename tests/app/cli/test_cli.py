@@ -1,4 +1,4 @@
-"""The command line: evaluate, template list and show, freeze, serve."""
+"""The command line evaluates, lists and shows templates, freezes versions and serves."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""`crankwright keys …` on a data folder, and its effect on `serve`."""
+"""`crankwright keys …` changes the keys of a data folder, and `serve` obeys them."""
 
 import pytest
 from click.testing import CliRunner

@@ -1,4 +1,4 @@
-"""Variants by the typed clients and by `crankwright download`: the table, one file, all files."""
+"""The typed clients and `crankwright download` fetch variants: the table, one file, all files."""
 
 import asyncio
 import io

@@ -1,4 +1,4 @@
-"""A condition on the film sets a width, over HTTP: variants, study, explanation, network, report."""
+"""Over HTTP, a condition on the film sets a width; variants, studies, explanations and reports show it."""
 
 import pytest
 from serving import API, created

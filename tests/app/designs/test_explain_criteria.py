@@ -1,4 +1,4 @@
-"""The origin of a verdict: verdict ← value ← formula ← inputs, and limit ← its source."""
+"""An explanation traces a verdict to its value, formula and inputs, and its limit to the source."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Solving a design finds every value of one parameter that gives a wanted output, through relations."""
+"""Solving a design finds each value of one parameter that gives a wanted output, through relations."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Oil grades as they are printed, and radial clearances, in a design."""
+"""A design accepts oil grades as printed, and radial clearances."""
 
 import pytest
 from serving import API, created, faults, patched, revision

@@ -1,4 +1,4 @@
-"""Every route of the interface × everybody, on objects that there are: nobody does what no role includes.
+"""Every principal tries every route on existing objects; nobody can do what the role does not include.
 
 The declarations of the routes say what is expected; `test_gate_matrix.py` compares those with its tables.
 Here everything is sent for real: whoever may not learns nothing, not even whether there is such an object.

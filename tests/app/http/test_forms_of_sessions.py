@@ -1,4 +1,4 @@
-"""Forms of a session carry its token: every route of a page that takes one refuses another, or none.
+"""Forms of a session contain its token; every page route that needs the token refuses a wrong or missing one.
 
 The browser is signed in and everything else about the request is right, as if a page of this origin sent it.
 """

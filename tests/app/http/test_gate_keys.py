@@ -1,4 +1,4 @@
-"""Keys: to whom a request belongs, the answer to an invalid key, and the rights of a role."""
+"""A key determines the principal of a request and its rights; an invalid key is refused."""
 
 from datetime import UTC, datetime, timedelta
 

@@ -1,4 +1,4 @@
-"""Every route × every role × what there is: of objects nothing is shown or changed beyond the role.
+"""For every route, role and object, the service shows and changes nothing beyond the role.
 
 `test_gate_matrix.py` asks by paths that name nothing. Here each route is asked for the design, the job, the
 study, the worksheet, the key of an author. Whoever may not is refused in words that give nothing away, and no

@@ -1,4 +1,4 @@
-"""The files to which rows refer: a backup contains them and a check verifies them."""
+"""A backup contains, and a check verifies, the files to which rows refer."""
 
 import json
 import sqlite3

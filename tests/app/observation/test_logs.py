@@ -1,4 +1,4 @@
-"""Logs, request ids and metrics: what an operator sees."""
+"""Logs, request ids and metrics show an operator what the service does."""
 
 import asyncio
 import io

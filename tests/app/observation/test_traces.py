@@ -1,4 +1,4 @@
-"""Traces: the spans for a change of a design; nothing is loaded without the setting."""
+"""A change of a design produces the expected spans; without the setting no tracing code is loaded."""
 
 import os
 from collections import Counter

@@ -1,4 +1,4 @@
-"""A report never says "met" of what was not judged: every template, without one optional input or limit.
+"""A report never says "met" of a criterion that was not judged, whichever optional input or limit is missing.
 
 The reports are built without a server: document, calculation, content, page.
 """

@@ -1,4 +1,4 @@
-"""Refused analyses of designs: undeclared ones, ones without such an output, and impossible ones."""
+"""Designs refuse undeclared and impossible analyses, and analyses without the requested output."""
 
 import pytest
 from serving import API, created, faults

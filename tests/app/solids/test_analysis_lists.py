@@ -1,4 +1,4 @@
-"""A shaft of several throws as a chain: lists as outputs of an analysis, stored, answered, used by relations.
+"""A shaft of several throws is analysed as a chain; its lists are stored, answered and used by relations.
 
 The solver is replaced by rows that it would have written; one slow test goes the whole way.
 """

@@ -1,4 +1,4 @@
-"""Tables as outputs of analyses: stored, answered, shown, and handed to a step by a relation.
+"""Tables as outputs of analyses are stored, answered, shown, and passed to a step by a relation.
 
 The solver is replaced by rows that it would have written; one slow test goes the whole way.
 """

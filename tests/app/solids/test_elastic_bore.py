@@ -1,4 +1,4 @@
-"""From a drawn housing to its elastic film: the matrix of the analysis reaches the step by a relation.
+"""A relation passes the matrix of a housing's analysis to the step of its elastic film.
 
 The solver is replaced by a matrix that it wrote once; a slow test goes the whole way.
 """

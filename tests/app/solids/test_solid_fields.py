@@ -1,4 +1,4 @@
-"""What can be painted on a crankshaft: the use of its fillets, its torsional modes; as GLB, as a picture.
+"""A crankshaft can be coloured by the use of its fillets or by torsional modes, as GLB and as a picture.
 
 The solver is replaced by rows that it would have written.
 """

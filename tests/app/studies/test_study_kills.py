@@ -1,4 +1,4 @@
-"""Studies whose service is killed at random moments: nothing is lost or doubled, and the bytes are the same.
+"""A study loses and doubles nothing if its service is killed at random moments, and its bytes stay the same.
 
 The moments are uniform over what the studies have to do: solids that are built and chunks that are recorded.
 So the last kill, like the first, meets a study that runs.

@@ -1,4 +1,4 @@
-"""Studies that vary a value set by a relation: only on request, and always shown."""
+"""A study may vary a value that a relation sets only on request, and always says so."""
 
 import pytest
 from serving import API, faults

@@ -1,4 +1,4 @@
-"""Criteria as the interface answers them, for tests of the page and the report: one of each verdict."""
+"""Sample criteria with each verdict, as the interface returns them, for tests of the page and the report."""
 
 WORST = {
     "name": "film.film",

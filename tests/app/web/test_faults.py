@@ -1,4 +1,4 @@
-"""How and where a design page shows faults, in a browser."""
+"""A design page shows each fault at its place, in a browser."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""A newcomer's way from the gallery to a STEP file, in a browser."""
+"""In a browser, a newcomer gets from the gallery to a STEP file."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""A newcomer's three questions, by mouse, from the gallery: a clearance, a tolerance, a width."""
+"""By mouse, a newcomer answers three questions from the gallery: a clearance, a tolerance, a width."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Property: pages as the server writes them, without a browser."""
+"""Property: the pages that the server writes are correct and complete, tested without a browser."""
 
 import json
 

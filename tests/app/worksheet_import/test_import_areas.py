@@ -1,4 +1,4 @@
-"""Regions in areas, compressed sheets, the second count of regions, and names that nothing defines."""
+"""The import reads regions in areas, compressed sheets, repeated region counts, and undefined names."""
 
 import gzip
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Random sheets of Mathcad: every one becomes a draft that can be read, or is refused; nothing else.
+"""Each random Mathcad sheet becomes a readable draft or is refused.
 
 `CRANKWRIGHT_TEST_FUZZ` says how many, 10⁵ at night.
 """

@@ -1,4 +1,4 @@
-"""Worksheets over a restart: a start, a tampered database, kill -9, backup and restore."""
+"""Worksheets survive restarts, `kill -9`, backup and restore; a tampered database is detected."""
 
 import json
 import sqlite3

@@ -1,4 +1,4 @@
-"""Compliance of a split bore: a sleeve against Lamé and Michell, and what energy demands of real housings."""
+"""The compliance of a split bore agrees with Lamé and Michell; real housings satisfy energy bounds."""
 
 from functools import cache
 

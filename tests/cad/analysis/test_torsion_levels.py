@@ -1,4 +1,4 @@
-"""Property: the estimated error bounds the true one, filleted or sharp; two runs give the same, nearly."""
+"""Property: the estimated error bounds the true one, with fillets and sharp edges; two runs nearly agree."""
 
 from types import SimpleNamespace
 from typing import Any

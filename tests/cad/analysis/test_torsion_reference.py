@@ -1,4 +1,4 @@
-"""Literature: the reference throw of shared/references, whose stiffness was found by converged elements."""
+"""Literature: the reference throw of shared/references, with stiffness from converged elements."""
 
 import pytest
 

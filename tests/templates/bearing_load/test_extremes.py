@@ -1,4 +1,4 @@
-"""bearing_load 1 and flywheel 1 with absurd inputs: a finite result, or a refusal by name."""
+"""bearing_load 1 and flywheel 1 with absurd inputs give a finite result or a refusal by name."""
 
 import json
 

@@ -92,7 +92,7 @@ def checked(folder, text, name="bush_duty_v1.py"):
         ('"rpm", "speed"', '"upm", "speed"', "unit", "omega: Array", "'upm'"),
         ("import Array", "import Aray, Array", "import", "import Aray", "Aray"),
         (SPEED, SPEED + ")", "syntax", SPEED, "unmatched"),
-        ("class BushDuty(Template)", "class BushDuty", "declares", None, "declares 0"),
+        ("class BushDuty(Template)", "class BushDuty", "declares", None, "one template, not 0"),
     ],
 )
 def test_a_fault_is_reported_once_with_its_line(tmp_path, old, new, code, place, words):

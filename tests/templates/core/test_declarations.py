@@ -48,7 +48,7 @@ class TestInputs:
             ({"web_shape": {"value": "round", "unit": "mm"}}, "web_shape", "not_an_option", "is not one of"),
             ({"load": "5 kN"}, "load", "not_a_curve", "give an array over the cycle"),
             ({"bor": "5 mm"}, "bor", "unknown_name", "did you mean bore"),
-            ({"\ud800": 1}, "\\ud800", "unknown_name", "known are bore"),
+            ({"\ud800": 1}, "\\ud800", "unknown_name", "use one of bore"),
             (
                 {"outer_diameter": "50 mm"},
                 "bore",
@@ -152,5 +152,5 @@ class TestLimits:
     def test_property_tolerance_that_nobody_measured(self):
         (warning,) = evaluate(Shaft, Shaft.example, tolerance=0.01).warnings
         assert warning.code == "tolerance_unmet"
-        with pytest.raises(InvalidInputs, match="one level only"):
+        with pytest.raises(InvalidInputs, match="only one level"):
             evaluate(Shaft, Shaft.example, level="map")

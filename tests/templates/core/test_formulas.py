@@ -48,7 +48,7 @@ class TestLanguage:
             given("mm", **keywords)
 
     def test_property_border_must_be_si(self):
-        with pytest.raises(TypeError, match="mm is not SI"):
+        with pytest.raises(TypeError, match="mm is not an SI unit"):
             units("mm", returns="m")
 
     def test_property_rule_needs_a_sentence(self):
@@ -67,7 +67,7 @@ class TestLanguage:
                     return self.a
                 return -self.a
 
-        with pytest.raises(TypeError, match="a formula is one return"):
+        with pytest.raises(TypeError, match="the body of a formula must be one return statement"):
             describe_formulas(Branching)
 
 

@@ -1,4 +1,4 @@
-"""The keywords that editors and type checkers see are those that declarations take."""
+"""Editors and type checkers see the keywords that declarations accept."""
 
 import inspect
 import subprocess

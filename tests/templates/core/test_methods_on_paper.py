@@ -1,4 +1,4 @@
-"""Property: a line of the report is a formula, or says how its result is calculated, and no tautology."""
+"""Property: each line of a report is a formula or states its method; none is a tautology."""
 
 from itertools import product
 

@@ -130,7 +130,7 @@ class TestUnits:
             ("= d + 1", "+ needs equal units"),
             ("= d - 1 kN", "- needs equal units"),
             ("= max(d, 2)", "max needs equal units"),
-            ("= 2 ** d", "exponent is a pure number"),
+            ("= 2 ** d", "exponent must be a pure number"),
             ("= d ** scale", "plain number"),
             ("= d ** 13", "at most 12"),
             ("= sin(d)", "sin takes an angle or a pure number"),

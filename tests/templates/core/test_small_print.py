@@ -202,5 +202,5 @@ class TestFiles:
         base = "from templates.core.language.template import Template\n"
         one = base + "class {0}(Template):\n    example = {{}}\n"
         (tmp_path / "two_v1.py").write_text(one.format("A") + one.format("B"))
-        with pytest.raises(UnusableFile, match="2 templates"):
+        with pytest.raises(UnusableFile, match="one template, not 2"):
             find([tmp_path], Template)

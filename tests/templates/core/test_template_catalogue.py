@@ -80,9 +80,9 @@ class TestFinding:
 
     def test_property_unknown_ids_and_versions_say_what_there_is(self, tmp_path):
         catalogue = find([written(tmp_path / "own")], Template, "model")
-        with pytest.raises(UnknownTemplate, match="no model 'owl'; there are own"):
+        with pytest.raises(UnknownTemplate, match="no model is named 'owl'; use one of own"):
             catalogue.latest("owl")
-        with pytest.raises(UnknownTemplate, match="model own has no version 7; it has 1"):
+        with pytest.raises(UnknownTemplate, match="model own has no version 7; its versions are 1"):
             catalogue.get("own", 7)
 
     @pytest.mark.parametrize("source", ["x = 1", SOURCE + "\n\nclass Second(Own):\n    '''Two.'''\n"])

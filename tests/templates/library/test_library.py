@@ -172,7 +172,7 @@ def test_a_whole_table_is_read(tmp_path):
     ("tin,a metal,inf,150,book,,,yes", "'inf' is not a number"),
     ("tin,a metal,,,book,,,yes", "no value"),
     ("tin,,5.5,150,book,,,yes", "no description"),
-    ("Tin 1,a metal,5.5,150,book,,,yes", "not a name"),
+    ("Tin 1,a metal,5.5,150,book,,,yes", "not a valid name"),
     ("tin,a metal,5.5,150,book,,,yes,more", "more cells"),
 ])  # fmt: skip
 def test_a_row_that_is_not_whole_is_refused(tmp_path, line, message):

@@ -1,4 +1,4 @@
-"""The criteria of `oil_film_cycle`, each met and not met, as if the model's error were no matter.
+"""Each criterion of `oil_film_cycle` is met in one case and not in another, with the model's error ignored.
 
 A table of errors may come to state one, or another: the verdicts with it are not held here.
 """

@@ -1,4 +1,4 @@
-"""Inputs that once gave wrong results (no warning, an exception), with the right result."""
+"""Inputs that once gave wrong results, a missing warning or an exception now give the right result."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""`oil_film_cycle`: the load that a groove's pressure bears, holes under the load, warnings.
+"""`oil_film_cycle`: load supported by a groove's pressure, holes under the load, warnings.
 
 Analytic: the pressure integrated by hand, a load that is less by as much. Property: errors that are stated
 for grooves.

@@ -1,4 +1,4 @@
-"""`oil_film` 2: inputs left out, and extremes, which are finite or refused."""
+"""`oil_film` 2 with missing or extreme inputs gives finite results or refuses them."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""`crankshaft_strength` 1: the printed rule in its own units, its factors, and the life that takes it."""
+"""`crankshaft_strength` 1 agrees with the printed rule in its own units, and feeds the life template."""
 
 from math import sqrt
 

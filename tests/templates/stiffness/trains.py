@@ -1,4 +1,4 @@
-"""Trains for the tests of `forced_torsion`: inputs as typed, a pure tone, the reference's cases."""
+"""Trains for the tests of `forced_torsion`: typed inputs, a pure tone, the cases of the reference."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The button "Decide": finer levels where a criterion is undecided; nothing is saved."""
+"""The button "Decide" uses finer levels where a criterion is undecided, and saves nothing."""
 
 import pytest
 from browsing import CHROMIUM

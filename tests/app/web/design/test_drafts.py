@@ -1,4 +1,4 @@
-"""Typed but unsaved values, in a browser."""
+"""The browser keeps typed but unsaved values."""
 
 import re
 

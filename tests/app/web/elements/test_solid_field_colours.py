@@ -1,4 +1,4 @@
-"""A throw in the colours of its life, in a browser: from finite elements to the corners of its surface."""
+"""In a browser, a throw has the colours of its life, from finite elements to the corners of its surface."""
 
 import pytest
 from patience import until

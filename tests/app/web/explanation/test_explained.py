@@ -1,4 +1,4 @@
-"""From a verdict to its origin, and from a fault to related fields, in a browser."""
+"""In a browser, links lead from a verdict to its origin, and from a fault to related fields."""
 
 import re
 

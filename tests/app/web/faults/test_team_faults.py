@@ -1,4 +1,4 @@
-"""A team's faulty file in a browser: the template list links its faults, a design gives the reason."""
+"""In a browser, the template list links the faults of a team's file, and a design gives the reason."""
 
 import re
 

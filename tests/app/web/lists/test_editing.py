@@ -1,4 +1,4 @@
-"""Lists, curves, analyses and iterations edited in the page without JSON, by keyboard and at 390 px."""
+"""Users edit lists, curves, analyses and iterations without JSON, by keyboard and at 390 px."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The page on which a team brings a model, without scripts."""
+"""A team imports a model on its page, without scripts."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Sentences of models and templates on their pages: what stands between backticks is code."""
+"""Pages show text between backticks in sentences of models and templates as code."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Temperature differences and speeds in turns, as pages show and accept them."""
+"""Pages show and accept temperature differences, and speeds in turns."""
 
 import pytest
 from playwright.sync_api import expect

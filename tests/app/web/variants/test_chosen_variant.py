@@ -1,4 +1,4 @@
-"""A variant that is chosen on the page of its design: its criteria and its curves, without scripts."""
+"""Without scripts, the design page shows the criteria and curves of the chosen variant."""
 
 import re
 

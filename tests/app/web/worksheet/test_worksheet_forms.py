@@ -1,4 +1,4 @@
-"""The pages of worksheets without scripts: everything is a form, and faults stand under their lines."""
+"""Without scripts, every worksheet page is a form, and faults are shown below their lines."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""A newcomer's way from three lines of a worksheet to a STEP file, in a browser."""
+"""In a browser, a newcomer gets from three lines of a worksheet to a STEP file."""
 
 import re
 

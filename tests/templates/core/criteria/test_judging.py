@@ -1,4 +1,4 @@
-"""Verdicts against hand calculations: each of the four, edges, arrays, curves, expressions, temperatures."""
+"""Verdicts agree with hand calculations: each verdict, edges, arrays, curves, expressions, temperatures."""
 
 import math
 
@@ -388,7 +388,7 @@ def test_a_limit_may_have_a_default_and_a_value_a_reason_for_its_absence():
     ({"unit": "um", "default": "max(films)"}, None, "min.NAME. or max.NAME. of an input"),
     ({"unit": "um", "default": "mean(film)"}, None, "min.NAME. or max.NAME. of an input"),
     ({"unit": "um", "default": "max(load)"}, None, "a length"),
-    ({"unit": "um", "default": 3}, None, "default is a text"),
+    ({"unit": "um", "default": 3}, None, "default must be a text"),
     (LIMITED, {"load": REASON}, "load"),
     (LIMITED, {"film": {**REASON, "with": "loads"}}, "loads"),
     (LIMITED, {"film": {"with": "load"}}, "reason"),

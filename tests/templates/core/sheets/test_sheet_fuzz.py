@@ -1,4 +1,4 @@
-"""Random worksheets, made of pieces of the language: read, or refused with lines and columns; nothing else.
+"""Random worksheets made of pieces of the language are read, or refused with lines and columns.
 
 `CRANKWRIGHT_TEST_FUZZ` says how many, 10⁵ at night.
 """

@@ -1,4 +1,4 @@
-"""Turns, radians and hertz in worksheets: one meaning, both readings reported, every remedy executed."""
+"""Turns, radians and hertz have one meaning in worksheets; ambiguities are reported, and remedies work."""
 
 import math
 import re

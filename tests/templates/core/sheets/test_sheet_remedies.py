@@ -26,7 +26,7 @@ def test_every_fault_has_a_remedy(attack):
         ('f(w [mm]) [mm] = w + F', "unit_mismatch", "write both in the same unit; w is in m, F in N"),
         ('q [bar] = max(sum(F), 1 bar) "q"', "axis_mismatch", "give a list, for example `max([a, b])`"),
         ('q [bar] = g "q"', "axis_mismatch", "declare it over cycle, or take `max(…)` of it"),
-        ('q [1] over cycle = x "q"', "axis_mismatch", "omit `over` and the name behind it"),
+        ('q [1] over cycle = x "q"', "axis_mismatch", "omit `over` and the name after it"),
         ('q [N] = if F then F else F "q"', "no_truth", "write a comparison behind `if`"),
         ('q [N] = laws * F "q"', "unknown_name", "did you mean law?"),
         ('q [N] = F "q"\ntest "t" with FF = 1 N gives q = 1 N within 1 %', "unknown_name", "did you mean F?"),

@@ -1,4 +1,4 @@
-"""Random expressions: one point as many, closures as trees, both as NumPy; any text is at most refused."""
+"""Random expressions give equal results at one point and at many, as trees, closures and NumPy."""
 
 from __future__ import annotations
 
