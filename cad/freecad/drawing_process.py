@@ -39,6 +39,7 @@ LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
 CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
 MOST_PARAMETERS = 100
 MOST_SOLIDS = 100
+OTHER_VALUES = "choose values nearer to those of the file, at which its parts are the same"
 MOST_LEFT_OUT = 20
 """Largest number of sentences about objects that are left out."""
 LARGEST_FILE = 256 * 2**20
@@ -397,20 +398,21 @@ def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -
         thing = document.getObject(name)
         if not is_drawn(thing):
             said = f"{thing.Label if thing else name} has no solid at these values"
-            raise Refused("no_solid", f"{said}; at the import it had one")
+            raise Refused("no_solid", f"{said}, but had one at the import: {OTHER_VALUES}")
     there.require_solids()
     found = {thing.Name: count_solids(thing) for thing in there.ends}
     for name, count in found.items():
         label = document.getObject(name).Label
         if name not in wanted:
-            raise Refused("other_ends", f"{label} is a part at these values; at the import it was none")
+            said = f"{label} is a part at these values, but was none at the import"
+            raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
         if count != wanted[name]:
-            said = f"{label} has {count} solids at these values; at the import it had {wanted[name]}"
-            raise Refused("other_ends", said)
+            said = f"{label} has {count} solids at these values, but had {wanted[name]} at the import"
+            raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
     for name in wanted:
         if name not in found:
             said = f"{document.getObject(name).Label} is no part at these values"
-            raise Refused("other_ends", f"{said}; at the import it was one")
+            raise Refused("other_ends", f"{said}, but was one at the import: {OTHER_VALUES}")
 
 
 def left_out(document: Any, there: Census) -> Iterator[str]:
