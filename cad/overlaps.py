@@ -24,9 +24,10 @@ from cad.errors import GeometryError
 from cad.step import Body
 
 MOST_CLEARANCES = 200
-"""Pairs of parts of which the distance is measured, those with the closest boxes first."""
+"""Largest number of pairs of parts whose distance is measured; pairs with the closest boxes come first."""
 MOST_MEETING = 2000
-"""Pairs of solids with boxes that meet: two plain ones take 10 ms, two filleted bolts 250 ms."""
+"""Largest number of pairs of solids with intersecting boxes: two plain solids take 10 ms, two filleted
+bolts 250 ms."""
 _SHOWN_EVERY = 0.1  # [s] between progress reports; a pair may take less
 _MOST_NAMED = 3  # number of fixed parts with the most pairs that are named
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap

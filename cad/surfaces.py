@@ -26,7 +26,7 @@ X = constant(lambda: Vector(1, 0, 0))
 Y = constant(lambda: Vector(0, 1, 0))
 Z = constant(lambda: Vector(0, 0, 1))
 AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector(0, 0, 1)})
-"""The directions by their letters; one stand-in where the kernel is postponed, which loading it replaces."""
+"""The directions by letter; while the kernel is postponed, a placeholder that loading the kernel replaces."""
 
 _COINCIDENT = 1e-6  # [mm], also used as the sine of an angle: ten times the kernel's own precision
 
@@ -35,9 +35,9 @@ Face = tuple[str, int]
 """The name of a part, and the number of one of its faces in the order of the solid."""
 Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
 Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
-"""What a size is. The faces of a `distance` from an axis are those about it; a `circle` has the diameter of
-that through the axes of its faces, which are holes; a `chamfer` is of 45°;
-an `edge` is where its faces meet, dimensioned from the axis."""
+"""Kind of a size. The faces of a `distance` from an axis lie around that axis; a `circle` is the pitch
+circle through the axes of its faces, which are holes; a `chamfer` has 45°; an `edge` is where its faces
+meet, dimensioned from the axis."""
 
 
 @dataclass(frozen=True)
