@@ -101,8 +101,9 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     `group` returns the fixed part of a body.
 
     Solids of the same fixed part are not compared with each other, nor are solids that belong to no fixed
-    part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
-    may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
+    part. All pairs whose boxes meet are compared. Of the other pairs, only two kinds are compared: pairs with
+    the closest boxes, and pairs that may be closer to a fixed part than the parts already compared with it.
+    `report` receives the progress.
 
     Raises
     ------

@@ -42,7 +42,7 @@ meet, dimensioned from the axis."""
 
 @dataclass(frozen=True)
 class Place:
-    """The faces of a size; those of a distance or an angle are on two sides."""
+    """The faces of a size; a distance or an angle has faces on two sides."""
 
     first: tuple[Face, ...]
     second: tuple[Face, ...] = ()
@@ -51,7 +51,7 @@ class Place:
 class Size(float):
     """A length [mm] or an angle [deg] read from faces, which can be used as a number.
 
-    A repeated length, such as that of all pins of a shaft, has a place for each repetition.
+    A repeated length, such as the length of all pins of a shaft, has a place for each repetition.
     """
 
     kind: Kind
