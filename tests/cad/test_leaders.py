@@ -1,4 +1,4 @@
-"""No leader crosses a dimension line or a foreign view; no words or frames overlap, with tolerances or not."""
+"""No leader crosses a dimension line or a foreign view; no words overlap, with tolerances or without."""
 
 import numpy as np
 import pytest
