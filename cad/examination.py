@@ -19,7 +19,7 @@ from cad.regenerate import as_text, regenerate_shape
 from cad.step import Body, read_step
 
 MOST_COMPARED = 200
-"""Pairs of solids whose boxes meet, of which overlaps are examined at an import; a plain pair takes 75 ms."""
+"""Largest number of pairs of solids with intersecting boxes whose overlap an import examines; 75 ms each."""
 _MOST_NAMED = 5
 _LEAST = 1e-9  # relative change of a volume that is stated
 

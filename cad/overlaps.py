@@ -24,9 +24,10 @@ from cad.errors import GeometryError
 from cad.step import Body
 
 MOST_CLEARANCES = 200
-"""Pairs of parts of which the distance is measured, those with the closest boxes first."""
+"""Largest number of pairs of parts whose distance is measured; pairs with the closest boxes come first."""
 MOST_MEETING = 2000
-"""Pairs of solids with boxes that meet: two plain ones take 10 ms, two filleted bolts 250 ms."""
+"""Largest number of pairs of solids with intersecting boxes: two plain solids take 10 ms, two filleted
+bolts 250 ms."""
 _SHOWN_EVERY = 0.1  # [s] between progress reports; a pair may take less
 _MOST_NAMED = 3  # number of fixed parts with the most pairs that are named
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap
@@ -112,8 +113,9 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     `group` returns the fixed part of a body.
 
     Solids of the same fixed part are not compared with each other, nor are solids that belong to no fixed
-    part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
-    may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
+    part. All pairs whose boxes meet are compared. Of the other pairs, only two kinds are compared: pairs with
+    the closest boxes, and pairs that may be closer to a fixed part than the parts already compared with it.
+    `report` receives the progress.
 
     Raises
     ------
