@@ -66,7 +66,7 @@ MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
 SOLVED = ("reynolds", "mass_conserving")
-"""Levels that know bearings that are not plain."""
+"""Levels that also solve bearings that are not plain."""
 FEWER_POINTS = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]

@@ -110,10 +110,10 @@ COUNTED: dict[str, Callable[[], Files]] = {
     "PATCH of one closed-form step": changed_step,
     "evaluate": evaluation,
 }
-"""What is counted."""
+"""The kinds of requests whose files are counted."""
 
 LIMITS = dict(zip(COUNTED, (50, 45, 20), strict=True))
-"""The most files of `app` that each may enter."""
+"""Largest number of files of `app` that each kind may enter."""
 
 
 def _counted(calls: Calls, root: Path, ask: Callable[[int], httpx.Response]) -> Files:

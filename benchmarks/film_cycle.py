@@ -37,7 +37,7 @@ RECIPROCATING, TURNING, PEAK = 120.0, 60.0, 7.5e6
 CASES = 1000
 ROD_RATIO = 4.0
 LEVELS = ("mobility_short", "mobility", "flooded")
-"""Those of a bearing without a stated supply."""
+"""Levels for a bearing without a stated supply."""
 
 
 def firing(angle: Array, at: float, width: float, period: float) -> Array:

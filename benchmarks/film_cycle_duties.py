@@ -31,7 +31,7 @@ from templates.physics.supplied.supply_geometry import SupplyGeometry, feed_unde
 KEPT = Path("benchmarks/results/film_cycle_ensemble.jsonl")
 TRUTHS = Path("build/film_cycle_truths")
 MARCH = 3
-"""Version of `oil_film_cycle` whose level supplied the lines are of: raise it where its results change."""
+"""Version of level supplied from which the lines come; increase it when the results of that level change."""
 KINDS = {
     "half_groove": ("half_groove",),
     "full_groove": ("full_groove",),
@@ -41,16 +41,16 @@ KINDS = {
 """Kinds of supply that have bounds, and their names in `supplied_duties`."""
 GROOVED = ("half_groove", "full_groove", "part_groove", "several")
 LOADS, WIDTHS = [0.3, 6.0, 105.0], [0.15, 0.4, 1.2]
-"""Bands of load number and B/D, each of which has as many duties."""
+"""Bands of load number and B/D; all bands have the same number of duties."""
 ENOUGH, MORE, FRESH = 60, 93, 100
-"""Duties in each band, at first and then: of 93 the second largest bounds what the largest of 59 does; duties
-with the other seed."""
+"""Duties in each band at first, then in total, and with the other seed. The second largest of 93 gives
+the same confidence as the largest of 59."""
 SEED, OTHER_SEED = 1, 3
 """Seed 2 belongs to version 2, on which the law of mobility_grooved was chosen."""
 CLEAR = 0.1
-"""Share of the cycle for which a well placed hole is under the load at most."""
+"""Largest share of the cycle for which a well placed hole is under the load."""
 PRESSURES = 0.02, 1.0
-"""Relative supply pressures of the duties that count [-]."""
+"""Range of the relative supply pressures of the counted duties [-]."""
 CHEAP = ("mobility_short", "mobility", "mobility_grooved")
 OUTPUTS = ("minimum_film_thickness", "maximum_eccentricity", "film_thickness", "eccentricity_x",
            "eccentricity_y", "power_loss", "side_flow")  # fmt: skip

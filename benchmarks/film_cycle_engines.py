@@ -56,7 +56,7 @@ KEPT = Path("benchmarks/results/film_cycle_engines.jsonl")
 SUPPLIES = ("half_groove", "full_groove", "pin_hole", "sleeve_hole", "slot", "part_groove", "several")
 FINER = 1.5
 FITTED, TRIED, JUDGED = (101, 202), 303, 404
-"""Seeds on which the bounds stand; one by which they may be withdrawn; one that changes nothing."""
+"""Seeds from which the bounds are derived; a seed that may withdraw bounds; a seed that only judges them."""
 LOWEST, HIGHEST = 0.02, 4.0
 """Relative supply pressures [-]."""
 Line = dict[str, Any]

@@ -90,7 +90,7 @@ FILE = Path("templates/oil_film/oil_film_cycle_v1.accuracy.json")
 QUANTILE, CONFIDENCE = 0.95, 0.95
 WITHOUT = ("maximum_pressure", "peak_pressure")
 RIGID = "rigid film"
-"""The truth: the name of the model, in verdicts too."""
+"""Name of the model that is the truth, also in verdicts."""
 OWN = {
     "minimum_film_thickness": 0.03,
     "maximum_eccentricity": 0.03,
@@ -100,30 +100,31 @@ OWN = {
     "side_flow": 0.03,
     "supply_flow": 0.03,
 }
-"""Errors that level supplied states of its answers, and what to expect of them (`film_cycle_engines`)."""
+"""Outputs whose error level supplied states, each with the expected error (`film_cycle_engines`)."""
 COMPARED = tuple(dict.fromkeys((*OUTPUTS, *WITHOUT, *OWN)))
 SMALLEST = OUTPUTS[0]
 BOUNDED = "minimum_film_thickness", "maximum_eccentricity", "power_loss"
 """Outputs with bounds. Curves err at places by as much as they are large, and the flow from the ends by
 several times that: a bound of 1 or more says nothing of them."""
 HOLDS = 0.95
-"""Share of the duties on which a bound is tried that it has to hold for, in each case and each band."""
+"""Share of the duties for which a bound must hold, in each case and each band."""
 ENGINES_HOLD, FEWEST = 0.97, 59
-"""The same of engines alone, by which a factor is chosen; fewest duties that support a bound."""
+"""Share of engines for which a bound must hold when its factor is chosen; fewest duties that support a
+bound."""
 PARTS = 5
 ENGINES = engines.FITTED
-"""Seeds of engines on which the bounds stand."""
+"""Seeds of the engines from which the bounds are derived."""
 PRESSURE_BANDS = [PRESSURES[0], 0.15, PRESSURES[1]]
-"""Within each band of load number and B/D the bound has to hold at either supply pressure [-]."""
+"""Bands of supply pressure; within each band of load number and B/D the bound must hold in both [-]."""
 MOTIONS = ("fixed", "swinging")
 STARTS = "mobility_grooved", "mobility"
 """Levels at which designs start, with a groove and without."""
 ATTRIBUTES = ("S_max", "b", "wide", "peak", "turns", "whirls", "P_s")
-"""Of the template: what errors depend on."""
+"""Attributes of the template on which errors depend."""
 FOLLOWED, REIN, SMOOTH = 0.9, 0.03, 0.05
-"""Quantile that the powers follow, what keeps exponents from growing, and the width of a rounded kink [-]."""
+"""Quantile to which the powers are fitted, penalty on the exponents, and width of a rounded kink [-]."""
 LEAST = 3e-3
-"""Errors below it count as this where powers are sought; level supplied resolves no less [-]."""
+"""Smaller errors count as this when powers are fitted, because level supplied does not resolve them [-]."""
 
 
 def least_factor(excess: list[float], share: float) -> float | None:
@@ -174,7 +175,7 @@ class Law:
     """A bound: a factor times powers of attributes."""
 
     factors: Cells
-    """By band of load number and B/D; None: no bound."""
+    """Factors by band of load number and B/D; None if there is no bound."""
     powers: dict[str, float]
     within: dict[str, tuple[float, float]]
     """Range of each attribute among the duties."""

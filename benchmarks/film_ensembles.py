@@ -36,9 +36,9 @@ from templates.physics.roughness.flow_factors import rough_journal
 SEED, OTHER_SEED = 36, 63
 CHUNK = 50
 MESH = 64, 16
-"""Intervals of the truth of `thrust_bearing`, twice those of its level each way."""
+"""Intervals of the truth for `thrust_bearing`, twice as many in each direction as at its level."""
 ROUGH_MESH = 128, 16
-"""Those of the truth of `mixed_friction`."""
+"""Intervals of the truth for `mixed_friction`."""
 
 Numbers = NDArray[np.float64]
 Values = dict[str, Numbers]

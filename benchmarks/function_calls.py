@@ -31,7 +31,7 @@ BACKGROUND = (
     *("jobs-", "leases", "progress", "operation-clock"),
     *("audit-sealer", "retention", "worksheets", "imported models"),
 )
-"""How the names of threads begin that serve no request, and look from time to time whether there is work."""
+"""Prefixes of the names of threads that serve no request but check for work from time to time."""
 BEGINS, LOCATION = 0, 3  # the argument of RESUME where a function begins, and the bits that say where it is
 
 

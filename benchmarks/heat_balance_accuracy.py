@@ -41,15 +41,16 @@ SEED = 13
 MARGIN = 1.5
 GRADES = ("iso_vg_10", "sae_15w_40", "iso_vg_320")
 LEVELS = {"short_bearing": "short_bearing", "fit": "fit", "map": "map", "reynolds": "map"}
-"""Levels, and at which one it is measured: level reynolds changes with the viscosity as the map does."""
+"""Each level, and the level at which it is measured: level reynolds depends on the viscosity as the map
+does."""
 SLOW, PICKED = "mass_conserving", 64
-"""A level that is measured on fewer bearings, and on how many of each oil and way of cooling."""
+"""A level that is measured on fewer bearings, and their number for each oil and kind of cooling."""
 HOT = 250.0 + 273.15
 """Bearings hotter than this are left out: their oil would burn [K]."""
 HEAT_CAPACITY = 1.8e6
 """The template's default [J/(m³ K)]."""
 ZERO = ("couple_across_load", "couple_along_load")
-"""Outputs that vanish in an aligned bearing, as all of these are."""
+"""Outputs that are zero for these bearings, which are all aligned."""
 ANGLES = ("attitude_angle", "maximum_pressure_angle")
 INPUTS = ("supply_temperature", "ambient_temperature")
 

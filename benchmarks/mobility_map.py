@@ -40,9 +40,10 @@ POINTS = 800
 MARGIN = 2.5
 MESH = 96, 12
 CENTRE = 0.05
-"""The place on a chord, over sqrt(h exp(h)), that stands for its middle, where a mesh gives no direction."""
+"""Position on a chord, over sqrt(h exp(h)), used for its middle, where a mesh gives no direction."""
 WIDE = 1.95
-"""The last gap with nodes; beyond it chords are too short to tell the direction, and the cubic goes on."""
+"""Largest gap with nodes; beyond it chords are too short to determine the direction, and the cubic
+continues."""
 
 
 def axes() -> Axes:

@@ -44,7 +44,7 @@ STATED = {
     "pressure": "pressure_error",
     "side_flow": "flow_error",
 }
-"""What is compared, and the stated error that has to bound its own."""
+"""Compared outputs, each with the stated error that must bound its error."""
 PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0)))
 
 

@@ -26,7 +26,7 @@ from templates.physics.journals.static_journal import static_film_at
 RESULTS = Path("benchmarks/results/static_film.json")
 COUNT, SEED = 1000, 3608
 FEWER = {"mass_conserving": 200}
-"""How many of the places a level that takes long is calculated at."""
+"""Number of points at which a slow level is calculated."""
 D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 100.0
 
 

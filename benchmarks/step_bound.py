@@ -38,12 +38,12 @@ class Shares:
 
     orbits: int
     bounded_before: float
-    """By `step_error`, the smallest gap at the nodes."""
+    """Share of duties bounded by `step_error`, for the smallest gap at the nodes."""
     known: float
     known_usual: float
-    """With a `step_bound`, and the same of usual loads."""
+    """Share of duties with a `step_bound`, of all loads and of usual loads."""
     bounded: float
-    """Duties with a bound."""
+    """Share of these duties for which the bound is right."""
     worst: float
     """Largest error over its bound."""
     excess: float

@@ -37,11 +37,11 @@ REASONS: dict[str, str] = {
     "app.workers.remote.strays": "the rule by which a task counts as lost, tested by itself",
     "app.worksheets.imports.job": "all that a process of its own imports to read a file of a user",
 }
-"""Short modules with a single importer, and why each is a file of its own."""
+"""Short modules with a single importer, each with the reason why it is a separate file."""
 
 ENDINGS = re.compile(r"(?:ings?|eds?|ions?|ers?|es|e|s|d)$")
 NOUNS = frozenset({"spring", "string", "bearing", "typesetting", "imported_models"})
-"""Names that end like a gerund and are nouns of the field."""
+"""Names that end like a gerund but are nouns of the field."""
 
 
 def layers() -> tuple[frozenset[str], ...]:
@@ -54,7 +54,7 @@ def layers() -> tuple[frozenset[str], ...]:
 
 
 LAYERS = layers()
-"""From the top down: a part imports parts of lower layers only."""
+"""The layers from top to bottom: a part imports only parts of lower layers."""
 
 
 def part_of(module: str) -> str:

@@ -43,9 +43,9 @@ from templates.physics.supplied.supplied_orbit import (
 RESULTS = Path("benchmarks/results/supplied_orbits.json")
 SEED, DUTIES = 17, 300
 MISS = 0.02
-"""Change of the least gap by a finer mesh of which the cause is looked for [-]."""
+"""Change of the smallest gap on a finer mesh above which the cause is investigated [-]."""
 FINEST = MeshSettings(384, 10, FINE.step / 2, FINE.most, near_edges=True, cells=3.0)
-"""The mesh against which those near holes are held."""
+"""The mesh with which the meshes near holes are compared."""
 FILMS = (Verdict.REPEATING.value, Verdict.WANDERING.value)
 """Verdicts that report a film."""
 Row = dict[str, Any]

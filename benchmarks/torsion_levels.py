@@ -122,7 +122,7 @@ Row = dict[str, Any]
 
 
 PASSES = (LEVELS[:-1], LEVELS[-1:])
-"""The level that takes longest is measured last, so that a run that is broken off has the others."""
+"""Order of the measurements: the slowest level is last, so that an interrupted run has the others."""
 
 
 def measure(row: Row, levels: Iterable[Level]) -> None:

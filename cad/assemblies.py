@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
 MOST_COMPONENTS = 30
 MOST_SOLIDS = 300
-"""Of all fixed parts, each counted as often as it stands in its file."""
+"""Largest number of solids of all fixed parts; each counts as often as it occurs in its file."""
 FARTHEST = 1e5
-"""A fixed part stands within this distance of its datum, along each axis [mm]."""
+"""Largest distance of a fixed part from its datum along each axis [mm]."""
 SHIFTS, TURNS = ("x", "y", "z"), ("turn_x", "turn_y", "turn_z")
 _DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
 _WITHIN = ":"  # separates the name of a fixed part from that of one of its solids

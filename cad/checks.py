@@ -16,7 +16,7 @@ from cad.step import Body, is_single, rigid
 from cad.surfaces import PartSurfaces
 
 MOST_NAMED = 20
-"""Of interferences in a refusal."""
+"""Largest number of interferences that a refusal lists."""
 _BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are accurate to about 1e-7
 _DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
 _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)

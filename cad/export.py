@@ -37,10 +37,10 @@ MEDIA_TYPES = {
     "dxf": "image/vnd.dxf",
     "drawing.pdf": "application/pdf",
 }
-"""Every kind of file in which a build can be had; the last kind of a media type is its usual one."""
+"""Media types of all kinds of files of a build; the last kind with a media type is its default."""
 
 DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
-"""Kinds that show dimensions; they take longer than a picture."""
+"""Kinds of files that show dimensions; they take longer than a picture."""
 
 
 def derive(step: bytes, kind: str) -> bytes:
@@ -113,7 +113,7 @@ _DRAWERS: dict[str, Drawer] = {
 }
 
 DERIVED = (VALIDATED, *_WRITERS, *_DRAWERS)
-"""The kinds that are derived from the STEP file."""
+"""Kinds of files that are derived from the STEP file."""
 
 
 def is_derived(kind: str) -> bool:

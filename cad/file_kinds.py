@@ -19,17 +19,17 @@ from templates.core.units.quantity import read
 from templates.core.units.units import unit
 
 MESHES = ("glb", "stl", "3mf")
-"""Kinds of files that are triangles, of which a user may choose the deflection."""
+"""Kinds of files made of triangles; a user may choose their deflection."""
 BY_PART = (*MESHES, "brep", "drawing.svg", "dxf")
-"""Kinds of files that can hold one part alone, in its own coordinates."""
+"""Kinds of files that can contain a single part, in its own coordinates."""
 
 FINEST, COARSEST = 1e-4, 0.1
-"""Least and largest deflection as parts of the diagonal of the largest body's box."""
+"""Smallest and largest deflection over the diagonal of the largest body's bounding box."""
 LEAST, MOST = 1e-6, 1e5
-"""Of any solid [mm]: a nanometre, and 100 m."""
+"""Smallest and largest deflection for any solid [mm]: a nanometre, and 100 m."""
 
 STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
-"""Of deflections, within a decade."""
+"""Steps of the deflection within a decade."""
 
 _AT, _OF, _UNIT = "@", "#", "mm"
 _SAME = 1e-9  # relative; so 0.1 mm and 100 um are the same step

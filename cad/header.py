@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from cad.part21 import description, plain, quoted
 
 LONGEST_HEADER = 65536
-"""Part of a file that is searched for its header [bytes]; what `write_header` writes is a few thousand."""
+"""Number of bytes that are searched for the header; `write_header` writes a few thousand."""
 
 _LONGEST_PART = 180  # longest part of a value in one string, after its name
 _NO_TIME = "1970-01-01T00:00:00"

@@ -29,9 +29,9 @@ from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
 
 Program = Literal["freecad", "creo", "step", "assembly"]
 Role = Literal["", "diameter", "radius", "distance"]
-"""Ways in which a parameter shows on the solid; empty where no trial showed it."""
+"""How a parameter can be measured on the solid; empty if no trial showed it."""
 Side = Literal["", "inside", "outside"]
-"""Whether the cylinders of a diameter are holes or bosses; empty if both, or not known."""
+"""Whether the cylinders of a diameter are holes or bosses; empty for both or unknown."""
 
 NAMES: Mapping[Program, str] = {
     "freecad": "FreeCAD",
@@ -40,15 +40,15 @@ NAMES: Mapping[Program, str] = {
     "assembly": "an assembly",
 }
 VOLUME_TOLERANCE = 1e-3
-"""Of the volume of an imported solid, relative: against the program's own figure (FreeCAD integrates to no
-stated accuracy, 5e-5 off on a half shell), and against the solid that is written again and read back, because
-solids of other kernels change by that."""
+"""Relative tolerance of an imported solid's volume, compared with the program's own figure (FreeCAD
+states no accuracy and is off by 5e-5 on a half shell) and with the solid written again and read back,
+because solids of other kernels change in this step."""
 Sizes = Mapping[str, list[float]]
 """Diameters and distances [mm] of a solid."""
 MOST_PLANES = 300
-"""Of a part whose distances between planes are compared, pair by pair."""
+"""Largest number of planes of a part whose distances are compared, pair by pair."""
 LONGEST_NAME = 100
-"""Of a part, in letters."""
+"""Largest length of a part's name [letters]."""
 
 _DRAWN, _PARTS = "as drawn", "parts as drawn"  # a declaration cannot have these names
 
@@ -70,7 +70,7 @@ class Parameter:
 
 
 _LATER: Mapping[str, Any] = {"side": "", "moves": "", "ends": None, "overlapping": None, "findings": ()}
-"""Fields that older descriptions do not have, with their values there."""
+"""Fields that older descriptions lack, with the values that these descriptions imply."""
 
 
 @dataclass(frozen=True)
@@ -341,7 +341,7 @@ class Trial:
 
 
 NOTHING = "nothing"
-"""What a parameter moves that changes no solid."""
+"""Value of `moves` for a parameter that changes no solid."""
 _MOST_SIZES = 3  # that a parameter changes, and that are written out
 
 

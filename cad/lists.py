@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 LONGEST_TEXT = 2000
-"""Longer texts are not read as lists: the time to read a text is linear in its length, and this is enough."""
+"""Longest text that is read as a list; this limits the reading time, which is linear in the length."""
 
 _LIST = re.compile(r"\s*\[([^\[\]]*)\]([^\[\]]*)")
 _NOISE = 12  # decimals of an item in its unit; a sine's rounding error stays below

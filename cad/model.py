@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 Colour = tuple[float, float, float]
 Dimension = float | list[float]
-"""A parameter as it is read back from a solid: a number, or a list."""
+"""A parameter as read back from a solid: a number, or a list."""
 
 STEEL: Colour = (0.62, 0.65, 0.70)
 BRIGHT_STEEL: Colour = (0.86, 0.88, 0.91)
@@ -131,24 +131,24 @@ class Box:
 
 
 BETWEEN = {"clearance": "mm", "overlap": "mm**3"}
-"""What is measured between a fixed part of an assembly and all other parts: the ends of names, and units."""
+"""Measurements between a fixed part of an assembly and all other parts: endings of their names, and units."""
 
 
 class CadModel(TolerancedTemplate):
     """Base class of all models."""
 
     film_bore: ClassVar[str | None] = None
-    """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
+    """API name of the parameter that is the bore of the oil film; only plain bearings have one."""
 
     sections: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
-    """Removed sections of its drawing, in the words of `cad.drafting.removed_section`."""
+    """Removed sections of the model's drawing, with the keys of `cad.drafting.removed_section`."""
 
     rounds_noise: ClassVar[bool] = False
     """Whether coordinates nearer to zero than 1e-12 mm are written as zero: the kernel leaves such noise on
     faces that stand askew, another in each run."""
 
     keeps_apart: ClassVar[bool] = False
-    """Whether its parts are mated as in a machine, so that no two may overlap."""
+    """Whether the parts are mated as in a machine, so that no two may overlap."""
 
     rewriting: ClassVar[float] = 0.0
     """By how much the box of the file may differ from that of the parts, relative to its diagonal: solids of

@@ -26,9 +26,9 @@ from typing import TypeVar, cast
 T = TypeVar("T")
 
 PACKAGES = frozenset({"cadquery", "OCP", "ezdxf", "typst", "PIL"})
-"""What is postponed together."""
+"""Packages whose imports are postponed together."""
 DISPLAY = frozenset({"vtkmodules", "OCP.IVtk", "OCP.IVtkOCC", "OCP.IVtkVTK"})
-"""What stays postponed when the kernel is loaded; it takes 110 MB."""
+"""Packages that stay postponed when the kernel is loaded; they take 110 MB."""
 
 
 def postpone() -> None:
@@ -245,7 +245,7 @@ class _Finder(MetaPathFinder, Loader):
 
 _PYTHON = os.path.dirname(os.__file__)
 _asking: set[str] = set()
-"""The packages of which a module has asked for something of the kernel."""
+"""Packages from which a module has requested something of the kernel."""
 _finder, _display = _Finder(PACKAGES, _Module), _Finder(DISPLAY, _DisplayModule)
 _loading = threading.RLock()
 _following: list[Callable[[], object]] = []

@@ -24,9 +24,10 @@ from cad.errors import GeometryError
 from cad.step import Body
 
 MOST_CLEARANCES = 200
-"""Pairs of parts of which the distance is measured, those with the closest boxes first."""
+"""Largest number of pairs of parts whose distance is measured; pairs with the closest boxes come first."""
 MOST_MEETING = 2000
-"""Pairs of solids with boxes that meet: two plain ones take 10 ms, two filleted bolts 250 ms."""
+"""Largest number of pairs of solids with intersecting boxes: two plain solids take 10 ms, two filleted
+bolts 250 ms."""
 _SHOWN_EVERY = 0.1  # [s] between progress reports; a pair may take less
 _MOST_NAMED = 3  # number of fixed parts with the most pairs that are named
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap
@@ -48,13 +49,25 @@ class Overlap:
 
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
-    """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap."""
+    """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap.
+
+    Raises
+    ------
+    GeometryError
+        `kernel`, if two bodies cannot be compared.
+    """
     for (one, shape), (other, beside) in _meeting(bodies):
-        properties = GProp_GProps()
-        common = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped).Shape()
-        BRepGProp.VolumeProperties_s(common, properties)
-        if properties.Mass() > _SPECK:
-            yield Overlap(one, other, properties.Mass())
+        volume = _shared_volume(one, shape, other, beside)
+        if volume > _SPECK:
+            yield Overlap(one, other, volume)
+
+
+def _shared_volume(one: str, shape: Shape, other: str, beside: Shape) -> float:
+    common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
+    if not common.IsDone():
+        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
+    BRepGProp.VolumeProperties_s(common.Shape(), properties)
+    return float(properties.Mass())
 
 
 def count_meeting(bodies: Sequence[Body]) -> int:
@@ -100,8 +113,9 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     `group` returns the fixed part of a body.
 
     Solids of the same fixed part are not compared with each other, nor are solids that belong to no fixed
-    part. All parts whose boxes meet are compared; of the others, those with the closest boxes, and those that
-    may be closer to a fixed part than the parts already compared with it. `report` receives the progress.
+    part. All pairs whose boxes meet are compared. Of the other pairs, only two kinds are compared: pairs with
+    the closest boxes, and pairs that may be closer to a fixed part than the parts already compared with it.
+    `report` receives the progress.
 
     Raises
     ------
@@ -201,11 +215,7 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
         raise GeometryError("kernel", f"the distance between {one} and {other} cannot be measured")
     if (distance := float(measured.Value())) > _TOUCHING:
         return Clearance(one, other, distance)
-    common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
-    if not common.IsDone():
-        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
-    BRepGProp.VolumeProperties_s(common.Shape(), properties)
-    volume = float(properties.Mass())
+    volume = _shared_volume(one, shape, other, beside)
     if volume > _SPECK:
         return Clearance(one, other, 0.0, volume)
     if _has_corner_inside(shape, beside) or _has_corner_inside(beside, shape):

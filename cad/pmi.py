@@ -43,7 +43,7 @@ _FORMS: Mapping[Form, str] = {
     "perpendicularity": "XCAFDimTolObjects_GeomToleranceType_Perpendicularity",
     "parallelism": "XCAFDimTolObjects_GeomToleranceType_Parallelism",
 }
-"""Names of the kernel's types, which is asked for them when it writes."""
+"""Names of the kernel's types, which are looked up when a file is written."""
 
 _ASCII = str.maketrans(
     {"Ø": "diameter ", "±": "+/-", "⌭": "cylindricity", "⊥": "perpendicularity", "∥": "parallelism"}

@@ -14,7 +14,7 @@ from OCP.BRep import BRep_Builder
 from OCP.TopoDS import TopoDS_Compound
 
 _HEIGHT = 0.025
-"""Height of the letters as a part of the diagonal of the box of the solid."""
+"""Height of the letters over the diagonal of the solid's bounding box."""
 _WIDE, _TALL = 4.0, 6.0  # grid on which letters are drawn
 _ADVANCE, _ROW = 6.0, 11.0  # spacing of letters and of rows on this grid
 
@@ -29,7 +29,7 @@ _STROKES: dict[str, str] = {
     "⊥": "00 40,20 26", "∥": "10 26,20 36", "A": "00 26 40,13 33", "B": "00 06 36 43 00,03 33 40 00",
     "C": "46 06 00 40", "D": "00 06 36 43 40 30 00", " ": "",
 }  # fmt: skip
-"""Strokes of a letter on the grid: points `xy`, parted by spaces; a comma lifts the pen."""
+"""Strokes of a letter on the grid: points `xy`, separated by spaces; a comma lifts the pen."""
 
 
 class Sheet:

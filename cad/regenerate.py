@@ -52,13 +52,13 @@ __all__ = [
 ]  # fmt: skip
 
 Value = float | str | list[float]
-"""A parameter: a number, a word, or a list; beside it its limit deviations and their zone."""
+"""Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
 RECIPE = 4
-"""Raised whenever this package makes other bytes or other measures of the same parameters."""
+"""Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
-"""What a build's key holds beside its model and parameters, for people."""
+"""Readable form of what a build's key contains besides its model and parameters."""
 
 
 def made_by(cls: type[CadModel]) -> str:

@@ -25,7 +25,7 @@ _COMMA = re.compile(r"\s*,\s*")
 _VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", re.MULTILINE)
 
 MARK = "stamp:"
-"""In the extended data of a DXF text: behind it stands which line of the block the text is."""
+"""Prefix in the extended data of a DXF text; the line of the title block follows it."""
 
 LONGEST_LINE = 44  # letters that fit into the title block of an older drawing
 _SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)[^<]*')
@@ -268,7 +268,7 @@ _WRITERS: dict[str, Callable[[str, Stamp], str]] = {
     "dxf": _stamped_dxf,
 }
 STAMPED = tuple(_WRITERS)
-"""The kinds of files that carry a stamp."""
+"""Kinds of files that have a stamp."""
 
 _ENCODING = {"step": "latin-1", "validated.step": "latin-1", "drawing.svg": "utf-8", "dxf": "utf-8"}
 _MARKS = {"drawing.svg": b'data-stamp="', "dxf": MARK.encode()}

@@ -23,14 +23,14 @@ UNITS = {
     "dimension": "mm", "cylindricity": "mm", "perpendicularity": "mm", "parallelism": "mm",
     "volume": "mm**3", "surface area": "mm**2", "centroid": "mm", "density": "kg/m**3",
 }  # fmt: skip
-"""The units of what a statement of each kind states; texts have none."""
+"""Unit of each kind of statement; texts have none."""
 
 MOST_MORE = 10
-"""Statements of a kind beyond those expected that a comparison lists."""
+"""Largest number of unexpected statements of a kind that a comparison lists."""
 
 LONGEST, MOST = 2**16, 50_000
-"""Characters of an entity that is taken apart, and how many entities are. A file of ours has far less: longer
-ones, and those after so many, are left out."""
+"""Longest entity that is parsed [characters], and largest number of parsed entities. Our files stay far
+below these limits; longer and further entities are skipped."""
 
 _DEEPEST = 10  # levels of references to which the datums of a geometric tolerance are followed
 _PIECE = re.compile(rb"'[^']*'|;|[^';]+|'")

@@ -26,7 +26,7 @@ X = constant(lambda: Vector(1, 0, 0))
 Y = constant(lambda: Vector(0, 1, 0))
 Z = constant(lambda: Vector(0, 0, 1))
 AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector(0, 0, 1)})
-"""The directions by their letters; one stand-in where the kernel is postponed, which loading it replaces."""
+"""The directions by letter; while the kernel is postponed, a placeholder that loading the kernel replaces."""
 
 _COINCIDENT = 1e-6  # [mm], also used as the sine of an angle: ten times the kernel's own precision
 
@@ -35,14 +35,14 @@ Face = tuple[str, int]
 """The name of a part, and the number of one of its faces in the order of the solid."""
 Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
 Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
-"""What a size is. The faces of a `distance` from an axis are those about it; a `circle` has the diameter of
-that through the axes of its faces, which are holes; a `chamfer` is of 45°;
-an `edge` is where its faces meet, dimensioned from the axis."""
+"""Kind of a size. The faces of a `distance` from an axis lie around that axis; a `circle` is the pitch
+circle through the axes of its faces, which are holes; a `chamfer` has 45°; an `edge` is where its faces
+meet, dimensioned from the axis."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """The faces of a size; those of a distance or an angle are on two sides."""
+    """The faces of a size; a distance or an angle has faces on two sides."""
 
     first: tuple[Face, ...]
     second: tuple[Face, ...] = ()
@@ -51,7 +51,7 @@ class Place:
 class Size(float):
     """A length [mm] or an angle [deg] read from faces, which can be used as a number.
 
-    A repeated length, such as that of all pins of a shaft, has a place for each repetition.
+    A repeated length, such as the length of all pins of a shaft, has a place for each repetition.
     """
 
     kind: Kind

@@ -86,7 +86,7 @@ class TolerancedTemplate(Template):
     """Base class of models, whose parameters may have tolerances on the faces of the solid."""
 
     toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
-    """Which parameters may have limits in the STEP file, in the words of this module."""
+    """Parameters that may have limits in the STEP file, with the keys of this module."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

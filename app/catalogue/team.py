@@ -128,7 +128,7 @@ class TeamFiles:
 
 
 def _scanned(folders: Iterable[Path]) -> Iterator[tuple[Path, tuple[Path, Signature]]]:
-    """Yield every file whose name is, or resembles, that of a version, with its signature.
+    """Yield every file whose name is, or resembles, the file name of a version, with its signature.
 
     Folders that are missing are also reported.
     """

@@ -39,7 +39,7 @@ _BEGINNING_OF_TIME = (1980, 1, 1, 0, 0, 0)
 class _Source:
     """The source of a fixed part: its file, its origin in words, and its component models.
 
-    The file is a stored one, or that of an imported model, which its program draws.
+    The file is stored, or belongs to an imported model, whose program draws it.
     """
 
     sha: str

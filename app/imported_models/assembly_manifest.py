@@ -20,7 +20,7 @@ _DATUM = r"^[^\x00-\x1f\x7f]{1,200}$"
 
 
 class Base(Bounded):
-    """The base model of the assembly, one of this program; its parameters are those of the assembly."""
+    """The base model of the assembly, a model of this program; the assembly has all its parameters."""
 
     model_config = STRICT
 

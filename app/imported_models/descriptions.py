@@ -15,7 +15,7 @@ from app.imported_models.programs import Programs, given_to_freecad
 from app.jobs.context import JobContext
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
-from app.workers.errors import DeadlineExceeded
+from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import GeometryError, UnreadableModel
 from cad.examination import examine
 from cad.freecad.admission import admitted
@@ -212,8 +212,9 @@ def _after_step(
     for value in (float(f"{one.value + sign * step:.12g}") for sign in (1, -1)):
         try:
             after = context.run(tried, ask([given_to_freecad(one, value)]), limits=deadline.limits)
-        except GeometryError as error:
-            refused = refused or f"not known: {value:g} is refused ({error.code})"
+        except (GeometryError, MemoryExceeded) as error:
+            code = error.code if isinstance(error, GeometryError) else "memory"
+            refused = refused or f"not known: {value:g} is refused ({code})"
             continue
         role, side = role_of(one.value, value, before.sizes, after.sizes) if _is_size(one) else ("", "")
         moves = before.moved(after)

@@ -136,7 +136,8 @@ class Batch:
     started
         Function that passes a request to a new process.
     keeper
-        Lends the process of an earlier batch, and takes back the process of this one; None for neither.
+        Lends the process of an earlier batch, and takes back the process of this one; None if processes are
+        not reused.
     """
 
     def __init__(

@@ -22,9 +22,10 @@ from benchmarks.mutation import ROOT
 OURS = {"app", "cad", "templates", "benchmarks", "tests"}
 MEMORY = 12 << 30  # address space of a mutant [bytes], which stops one that would fill the memory
 USED = "import sys, app.main, httpx, hypothesis, pytest, scipy.integrate, scipy.optimize; print(*sys.modules)"
-"""Prints the modules that the program and most tests import."""
+"""Program that prints the modules that Crankwright and most tests import."""
 REWRITTEN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
-"""Options of pytest: they say that Hypothesis, which is imported already, asserts as it is written."""
+"""Options of pytest that hide the warning that the asserts of Hypothesis, already imported, are not
+rewritten."""
 
 
 def start(

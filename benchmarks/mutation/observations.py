@@ -22,14 +22,14 @@ from benchmarks.mutation import ROOT
 from benchmarks.mutation.targets import targets
 
 MOST_TESTS = 60
-"""Single tests of a line that are tried before whole files."""
+"""Largest number of single tests of a line that are tried before whole files."""
 MOST_SECONDS = 30.0
-"""Time that these tests may take on the original [s], of which the first may take more."""
+"""Longest total time of these tests on the original [s]; the first test alone may exceed it."""
 FARTHER = 0.3
-"""Time that a test may take longer if its file is one place nearer [s]."""
+"""Additional time that a test may take for each position by which its file is nearer [s]."""
 _ONE_AT_A_TIME = Lock()  # several threads need the same observations
 IN_SERVER = ("app/designs/", "app/jobs/", "app/storage/")
-"""Folders whose code runs in the process of the server, not in those where it calculates."""
+"""Folders whose code runs in the server's process, not in its calculation processes."""
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Case = tuple[str, float]
 """A test and the time that it took [s]."""

@@ -18,11 +18,11 @@ import pytest
 from coverage import Coverage
 
 FILES = "CRANKWRIGHT_OBSERVED_FILES"
-"""Names the variable with the file that lists the files to look at, one a line."""
+"""Environment variable with the path of the list of files to observe, one per line."""
 TARGET = "CRANKWRIGHT_OBSERVED_IN"
-"""Names the variable with the file to write."""
+"""Environment variable with the path of the file to write."""
 WORKERS = "app.workers"
-"""Stands in the command of every process in which the service calculates."""
+"""Text that occurs in the command of every calculation process."""
 
 
 class Observer:

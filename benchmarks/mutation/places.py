@@ -62,7 +62,8 @@ ALIKE = (
     {"Not", "Delete"},
     {"Invert", "Delete"},
 )
-"""Signs that replace each other. Cosmic Ray also puts `<<` for a product of floats: any test sees that."""
+"""Operators that replace each other. Cosmic Ray also replaces a product of floats by `<<`, which any test
+detects."""
 
 
 def is_plausible(name: str) -> bool:

@@ -20,7 +20,7 @@ REASONS = ROOT / ".ci" / "mutants.toml"
 LEAST_KILLED = 0.85
 MOST_EQUIVALENT = 0.10
 UNDECIDED = ("unclear", "undecided")
-"""Outcomes where a test fails without the mutant too, and where a first pass left a mutant for the second."""
+"""Outcomes if a test also fails without the mutant, and if the first pass left a mutant for the second."""
 
 
 @dataclass(frozen=True)

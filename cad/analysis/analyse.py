@@ -24,7 +24,7 @@ MODE = "torsional_frequency"
 """The output for which the same system is solved many times."""
 
 WORST = 0.25
-"""The relative error from which on no value is returned."""
+"""Relative error from which no value is returned."""
 
 
 @dataclass(frozen=True)

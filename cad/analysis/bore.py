@@ -45,7 +45,7 @@ from templates.core.arrays import Array
 BORE = "bore"
 
 RIGID = np.array([name in ("c1", "s1") for name in mode_names()])
-"""The modes that are a motion of the bore as a whole."""
+"""The modes that move the bore as a whole."""
 
 _NEAR = 1e-5  # [mm], distance within which a point lies on a surface
 _ALIKE = 1e-6  # relative difference of volumes, centres and moments of mirrored halves

@@ -18,10 +18,10 @@ LEVELS: dict[Level, tuple[BoreFineness, int]] = {
     "default": (BoreFineness(bore=0.4, body=0.8), 4),
     "fine": (BoreFineness(bore=0.25, body=0.5), 4),
 }
-"""Elements and their order of each level."""
+"""Mesh and order of the elements at each level."""
 
 WORST = 0.25
-"""The relative error from which on no value is returned."""
+"""Relative error from which no value is returned."""
 
 _PER_GPA = 1e6  # mm/MPa in um/GPa
 

@@ -26,10 +26,10 @@ from cad.shaft import PlacedThrow, ThrowsApart
 Report = Callable[[float, str], None]
 
 OF_THE_CHAIN = {"stiffness": 0.003, "throw_stiffnesses": 0.005, "torsional_frequency": 0.01}
-"""What the chain leaves, relative."""
+"""Relative error of the chain model."""
 
 WORST = 0.25
-"""The relative error from which on no value is returned."""
+"""Relative error from which no value is returned."""
 
 
 @dataclass(frozen=True)

@@ -21,13 +21,14 @@ UNIT_LOADS = "unit_loads"
 """The kind whose outputs are tables: stress tensors at the fillets of a throw under unit loads."""
 
 CHAIN = "chain"
-"""The kind that puts a shaft of throws together: throws by finite elements, the shaft by their matrices."""
+"""The kind that assembles a shaft from its throws: each throw by finite elements, the shaft by their
+matrices."""
 
 BORE_COMPLIANCE = "bore_compliance"
-"""The kind whose output is a matrix: how far a split bore gives way to modes of an oil film's pressure."""
+"""The kind whose output is a matrix: the compliance of a split bore to modes of an oil film's pressure."""
 
 HARMONICS = 9
-"""The highest harmonic around of those modes."""
+"""The highest circumferential harmonic of these modes."""
 
 
 def mode_names() -> tuple[str, ...]:
@@ -54,19 +55,20 @@ KINDS: dict[str, dict[str, str]] = {
     BORE_COMPLIANCE: {"compliance": "um/GPa", "modulus": "GPa", "poisson_ratio": "1", "bore_width": "mm"},
     CHAIN: {"stiffness": "N*m/rad", "throw_stiffnesses": "N*m/rad", "torsional_frequency": "Hz"},
 }
-"""The outputs of each kind with their units; stress is that under a torque or moment of 1 N·m."""
+"""The outputs of each kind with their units; the stress is for a torque or moment of 1 N·m."""
 
 TABLES: dict[str, tuple[str, ...]] = {
     **{output: ("x", "y", "z") if output == "points" else _TENSOR for output in KINDS[UNIT_LOADS]},
     "compliance": mode_names(),
 }
-"""The columns of those outputs that are tables; they have a row for each point, or for each mode."""
+"""The columns of the outputs that are tables; a table has a row for each point or mode."""
 
 LISTS = frozenset({"throw_stiffnesses"})
-"""Those outputs that are lists; they have a number for each throw."""
+"""The outputs that are lists; a list has a number for each throw."""
 
 SURFACE = "surface"
-"""An output of torsion and bending, the surface for a picture. No relation can use it: it is no quantity."""
+"""An output of torsion and bending: the surface for a picture. No relation can use it, because it is not
+a quantity."""
 
 STRESSES = frozenset({"maximum_stress"})
-"""Outputs proportional to the load, computed on meshes of their own, whatever the level."""
+"""Outputs proportional to the load; they are computed on their own meshes at every level."""

@@ -30,7 +30,7 @@ from cad.errors import AnalysisError
 MOST_ELEMENTS = 60_000
 
 ONE_THREAD = {"parallel_meshing": False}
-"""On several threads Netgen makes the same mesh, but they wait in loops: 3 to 7 times the processor time."""
+"""On several threads Netgen makes the same mesh, but waits in busy loops: 3 to 7 times the processor time."""
 
 _GRADING = 0.5  # growth rate from one element to the next
 _SAMPLES = 16  # points on an edge, to measure its angle

@@ -25,7 +25,7 @@ from cad.analysis.stress import recover, von_mises
 from templates.core.arrays import Array, Integers
 
 MOST_TRIANGLES = 16_000
-"""Elements are divided as finely as keeps the whole within this number, but for the coarsest division."""
+"""Largest number of triangles that dividing elements may give; undivided elements may exceed it."""
 
 LOADS = {"torsion": "a torque of 1 N*m about z", "bending": "a moment of 1 N*m about y"}
 

@@ -20,7 +20,7 @@ LEVELS: dict[Level, tuple[Fineness, int]] = {
     "default": (Fineness(size=0.7, curvature=0.8, turn=pi / 4), 3),
     "fine": (Fineness(size=0.6, curvature=1.1, turn=pi / 5), 3),
 }
-"""Mesh and order of elements of each level."""
+"""Mesh and order of the elements at each level."""
 
 NO_ERROR = "how far these tensors depend on the mesh is not estimated: compare two levels"
 

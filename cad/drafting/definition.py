@@ -153,7 +153,7 @@ class Definition:
         return (one, other) if one and other and one != other else None
 
     def known(self, direction: Direction, at: float) -> Station | None:
-        """Return the station at a coordinate; of a cylinder about the shaft, that of its radius."""
+        """Return the station at a coordinate; for a cylinder about the shaft, the station of its radius."""
         found = [station(direction, at)]
         if direction in ("across", "up"):
             found.append(station("round", abs(at)))

@@ -104,7 +104,7 @@ def laid_out(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> tuple[Content, Laid]:
-    """Return the first sheet on which everything has room; if there is none, one without removed sections."""
+    """Return the first sheet on which everything has room, else a sheet without removed sections."""
     for content in contents(bodies, seen, header, declared):
         tried = [*islice(content.plans(), _MOST_PLANS)]
         for plan in tried:

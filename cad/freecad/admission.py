@@ -22,7 +22,7 @@ from cad.errors import UnreadableModel
 
 MOST_PARTS = 2000
 MOST_BYTES = 64 * 2**20
-"""Of all parts, unpacked; counted while they are read, whatever the package says."""
+"""Largest size of all parts, unpacked; it is counted while reading, because the package may state another."""
 LONGEST_DOCUMENT = 16 * 2**20
 DEEPEST = 100
 DOCUMENT = "Document.xml"
@@ -43,7 +43,7 @@ _DAMAGES = (
     zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
     NotImplementedError,
 )  # fmt: skip
-"""What `zipfile` raises for bytes that are not ZIP, or no longer one."""
+"""Errors that `zipfile` raises for invalid or damaged packages."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DIRECTORY, _LARGE_DIRECTORY = b"PK\x05\x06", b"PK\x06\x07"  # end records of ZIP and of ZIP64
 

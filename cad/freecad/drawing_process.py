@@ -39,8 +39,9 @@ LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
 CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
 MOST_PARAMETERS = 100
 MOST_SOLIDS = 100
+OTHER_VALUES = "choose values nearer to those of the file, at which its parts are the same"
 MOST_LEFT_OUT = 20
-"""Sentences about objects that are left out."""
+"""Largest number of sentences about objects that are left out."""
 LARGEST_FILE = 256 * 2**20
 LINKS = ("App::PropertyLink", "App::PropertyXLink")
 PLACING = frozenset(
@@ -49,7 +50,7 @@ PLACING = frozenset(
         "ReferenceAxis", "Spine", "Support", "UpToFace", "UpToShape",
     }
 )  # fmt: skip
-"""Links by which an object is only placed or directed; its shape is not made of theirs."""
+"""Links that only place or orient an object; its shape does not include the linked shapes."""
 BINDERS = ("PartDesign::ShapeBinder", "PartDesign::SubShapeBinder")
 REPEATING = ("App::Link", "App::LinkGroup", "App::LinkElement")
 
@@ -69,10 +70,10 @@ DENIED = {
          138, 240, 424, 140, 30, 157, 154, 45, 52, 53, 452, 55, 54),
     ),
 }  # fmt: skip
-"""By machine: its number in audit records, that of the call `seccomp`, and the calls that are refused."""
+"""For each machine: its number in audit records, the number of the call `seccomp`, and the refused calls."""
 
 OWN = {"x86_64": (234, 302, 56), "aarch64": (131, 261, 220)}
-"""tgkill, prlimit64 and clone: this process may signal and limit itself alone, and start threads alone."""
+"""tgkill, prlimit64 and clone: the process may signal and limit only itself, and may start only threads."""
 CLONE3, CLONE_THREAD = 435, 0x10000
 
 
@@ -148,7 +149,7 @@ READABLE = (
     "/usr", "/lib", "/lib64", "/opt", "/sys", "/proc/self", "/etc/fonts", "/etc/ld.so.cache",
     "/etc/localtime", "/etc/passwd", "/dev/null", "/dev/zero", "/dev/random", "/dev/urandom",
 )  # fmt: skip
-"""Programs and what they need of the system; not the settings and the processes of others."""
+"""Readable folders: programs, and the system files that they need; no settings or processes of others."""
 
 
 def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
@@ -397,20 +398,21 @@ def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -
         thing = document.getObject(name)
         if not is_drawn(thing):
             said = f"{thing.Label if thing else name} has no solid at these values"
-            raise Refused("no_solid", f"{said}; at the import it had one")
+            raise Refused("no_solid", f"{said}, but had one at the import: {OTHER_VALUES}")
     there.require_solids()
     found = {thing.Name: count_solids(thing) for thing in there.ends}
     for name, count in found.items():
         label = document.getObject(name).Label
         if name not in wanted:
-            raise Refused("other_ends", f"{label} is a part at these values; at the import it was none")
+            said = f"{label} is a part at these values, but was none at the import"
+            raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
         if count != wanted[name]:
-            said = f"{label} has {count} solids at these values; at the import it had {wanted[name]}"
-            raise Refused("other_ends", said)
+            said = f"{label} has {count} solids at these values, but had {wanted[name]} at the import"
+            raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
     for name in wanted:
         if name not in found:
             said = f"{document.getObject(name).Label} is no part at these values"
-            raise Refused("other_ends", f"{said}; at the import it was one")
+            raise Refused("other_ends", f"{said}, but was one at the import: {OTHER_VALUES}")
 
 
 def left_out(document: Any, there: Census) -> Iterator[str]:

@@ -86,9 +86,10 @@ class Engine(ArticulatedEngine):
     an articulated rod is articulation_radius from the crankpin, at articulation_angle from the axis of the
     master rod. Master and articulated rod share throw, pin and position: give pin_angles with firing_order,
     then each fires when its own piston is at top dead centre. The stroke of an articulated cylinder is a
-    result. crankpin_load of an articulated cylinder is the load of its own pin, and that of a master the load
-    of the crankpin with all rods. For balance by orders the mass at an articulated pin counts as rotating
-    with the crankpin; shaking force and couple use its exact path, and orders of its piston are exact.
+    result. crankpin_load of an articulated cylinder is the load of its own pin; crankpin_load of a master is
+    the load of the crankpin with all rods. For balance by orders the mass at an articulated pin counts as
+    rotating with the crankpin; shaking force and couple use its exact path, and orders of its piston are
+    exact.
     cylinder_offset is the distance of the cylinder's axis from the shaft, positive on the side to which the
     pin moves first; an offset of the piston pin adds to it.
     rod_centre is measured from the big end. Without rod_inertia the rod is two masses at its pins.

@@ -63,7 +63,7 @@ class Flywheel(Cylinder):
     The crank angle is measured from the position at which the first cylinder of the firing order begins its
     intake stroke (four strokes) or fires (two strokes).
     Crank i is at −(firing interval) · (its position in the firing order, from 0), plus the angle of its bank;
-    angles of balancing masses are measured likewise, in the sense of the crank angle.
+    angles of balancing masses are also measured in the sense of the crank angle.
     Positions are along the shaft, from any plane; couples are about reference_position.
     Bank angles (V engines) are measured from the x axis in the sense of rotation. Each cylinder includes its
     own crank masses, so two rods on one pin share the given value. Bank angles with opposite signs describe

@@ -15,7 +15,7 @@ def nearest(name: str, declared: Iterable[str]) -> list[str]:
     """Return at most three names similar to `name`, the most similar first.
 
     The cost of `difflib` grows with the square of the length, so it compares only the names that share most
-    letters with this one.
+    letters with `name`.
     """
     letters = Counter(name[:LONGEST_NAME])
     compared = islice(declared, MOST_COMPARED)

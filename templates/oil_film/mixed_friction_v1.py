@@ -62,7 +62,7 @@ class MixedFriction(Oil):
     Limits
     ------
     Static load, aligned rigid bearing without grooves; only the journal rotates. There is one viscosity,
-    given or that of the oil temperature. Far from the operating speed the oil would be warmer or colder; the
+    given or from the oil temperature. Far from the operating speed the oil would be warmer or colder; the
     curve neglects this.
     Contact after Greenwood and Tripp: elastic summits of one radius with normally distributed heights.
     Plastic contact, running-in and boundary layers are neglected; the friction coefficient of the contact is

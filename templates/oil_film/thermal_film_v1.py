@@ -270,7 +270,7 @@ class ThermalFilm(Oil, Template):
         "degC", "bush temperature", along=AROUND, symbol=r"T_{b}\left(\theta\right)", absent=ONE_HAS_NONE
     )
     def T_bush(self) -> Array:
-        """Temperature of the bush's surface; in the groove, that of the oil there."""
+        """Temperature of the bush's surface; in the groove, temperature of the oil."""
         return in_kelvin(self.film.bush)
 
     @formula("degC", "greatest bush temperature", symbol="T_{b,max}")

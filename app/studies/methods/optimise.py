@@ -37,9 +37,9 @@ class Optimum:
     Attributes
     ----------
     state
-        `settled`: prediction and fine level agree, and all criteria are met. `unconfirmed`: the same, but the
-        error of a criterion at the fine level is unknown. `undecided`: they agree, but a limit lies in the
-        error band of the fine level. `infeasible`: they agree, and no examined point meets all criteria.
+        `settled`: prediction and fine level agree, and all criteria are met. `unconfirmed`: as `settled`, but
+        the error of a criterion at the fine level is unknown. `undecided`: they agree, but a limit lies in
+        the error band of the fine level. `infeasible`: they agree, and no examined point meets all criteria.
         `not_settled`: they do not agree after the last round, or the fine level refuses the point.
     best
         The round with the best objective among those that meet all criteria; if none does, the round of least

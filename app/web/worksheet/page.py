@@ -119,7 +119,7 @@ async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
 
 @dataclass(frozen=True)
 class Row:
-    """A typeset statement, its faults and its test's outcome; `worksheet/typeset.js` draws the same."""
+    """A typeset statement, its faults and its test's outcome; `worksheet/typeset.js` draws such rows too."""
 
     line: SheetLine | None
     faults: list[SheetFault]

@@ -26,7 +26,7 @@ _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 class Place:
     """Location of the worst value: a point of an array, counted from 1, or a place along a curve.
 
-    A place without a unit is a name: that of a variant of a design.
+    A place without a unit is the name of a variant of a design.
     """
 
     name: str

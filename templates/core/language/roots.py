@@ -164,7 +164,7 @@ def _finer(
 
 
 def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Samples:
-    """Return the samples of a finer curve: those of the scan, or a few around its solutions, with these.
+    """Return a finer curve: at all samples of the scan or a few near solutions, and the solutions.
 
     Samples that the level refuses are left out.
     """

@@ -56,7 +56,7 @@ def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, ..
 
 
 def _summands(node: Any, sign: int = 1) -> Iterator[tuple[tuple[str, ...], int]]:
-    """Yield numbers typed in degC or degF that a sum adds or subtracts; those of min and max together."""
+    """Yield numbers typed in degC or degF that a sum adds or subtracts; `min` and `max` give one group."""
     match node:
         case Constant() if text := literal(node):
             yield (text,), sign

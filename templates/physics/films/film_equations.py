@@ -77,7 +77,7 @@ class Equations:
         return self._closed(total)
 
     def _closed(self, balance: Array) -> Array:
-        """Return the nodal balances; on a ring, those of the last node are added to the first."""
+        """Return the nodal balances; on a ring, the first node includes the balances of the last."""
         if self.ring:
             balance[0] += balance[-1]
             balance[-1] = 0

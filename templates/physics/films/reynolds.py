@@ -91,7 +91,7 @@ def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) 
 
 
 def _nested(eps: float, ratio: float, mesh: Mesh, coarser: Field | None = None) -> Field:
-    """Return the solution, started recursively from the next coarser mesh as long as there is one."""
+    """Return the solution, started recursively from the next coarser mesh, down to the coarsest."""
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
     if coarser is None and min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 2 == m % 2 == 0:
         coarser = _nested(eps, ratio, mesh.coarser())

@@ -15,7 +15,7 @@ def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Arr
 
     .. math:: F_f = \frac{2\pi r^2 b\,\eta\,\omega}{c}
 
-    The course prints :math:`4\pi^2 r^2\eta N b/(60 c)` with N in rpm, which is the same.
+    The course prints :math:`4\pi^2 r^2\eta N b/(60 c)` with N in rpm, which is equivalent.
 
     Parameters
     ----------

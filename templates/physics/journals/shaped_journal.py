@@ -266,7 +266,7 @@ def linear_of(
 
     With a fixed supply line, the line stays in place while the journal is displaced. With a moving line, it
     rotates with the journal's displacement; the film then rotates as a whole, which changes the stiffness
-    against displacement across the line of centres. Damping is the same. Lobes and grooves are stationary.
+    against displacement across the line of centres, but not the damping. Lobes and grooves are stationary.
     """
     K, B = (np.array(matrix, float) for matrix in (film.K, film.B))
     plain = np.isfinite(film.eps) & np.isnan(K).all(axis=(-1, -2))

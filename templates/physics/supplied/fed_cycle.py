@@ -194,7 +194,7 @@ class FedOrbit:
 
 
 def _of_points(texts: Sequence[str]) -> str:
-    """Return a text for all points, or one for each point; empty if there is none."""
+    """Return a text for all points, or a text for each point; empty if no text applies."""
     if len(set(texts)) <= 1:
         return next(iter(texts), "")
     return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)

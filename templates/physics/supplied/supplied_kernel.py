@@ -219,7 +219,7 @@ def edges(around: Array, seen: Array, i: int, j: int) -> float:
 def balances(
     mesh: Mesh, e: Array, P: Array, void: Array, seen: Array, supply: float, store: float, rest: Array
 ) -> tuple[tuple[Array, Array], Array, Array, Array, Array]:
-    """Return conductances, A, T, that of the feed, and the loss with derivatives by e, (3, n, m)."""
+    """Return conductances, A, T, conductance of the feed, and the loss with derivatives by e, (3, n, m)."""
     n, m = P.shape
     around, across, gap = coefficients(mesh, e)
     A, T, feeding = diagonal(mesh, around[0], across[0]), np.empty((n, m)), np.empty((n, m))

@@ -4,7 +4,7 @@ import json
 from math import pi
 
 import pytest
-from freecad_files import documents, imported, needs_freecad
+from freecad_files import documents, ended, imported, needs_freecad, post
 from serving import API, created, patched
 
 pytestmark = needs_freecad
@@ -78,12 +78,15 @@ def test_a_model_of_freecad_is_a_component_by_its_id(http, block):
     assert clearance["distance"]["value"] == pytest.approx(1, abs=1e-9)
     whole = {
         "program": "assembly",
-        "title": "Four blocks",
+        "title": "Three blocks",
         "components": [
             {"name": "first", "model": "two_blocks"},
             {"name": "one", "model": "bored_block", "x": "1 m"},
         ],
     }
+    itself = {**whole, "components": [{"name": "first", "model": "two_blocks"}]}
+    job = ended(http, post(http, "two_blocks", json.dumps(itself).encode()))
+    assert job["problem"]["errors"][0]["code"] == "cycle"
     nested = imported(http, "three_blocks", json.dumps(whole).encode(), file="three.json")
     answer = http.post(f"{nested}/build", json={"parameters": {}}, headers={"Prefer": "wait=60"}).json()
     assert answer["measurements"]["volume"]["value"] == pytest.approx(1.5 * volume, rel=1e-9)

@@ -9,7 +9,7 @@ import pytest
 from app.imported_models.descriptions import described_freecad
 from app.imported_models.freecad_process import FreeCadAnswer
 from app.workers.base import Limits
-from app.workers.errors import DeadlineExceeded
+from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.examination import Examination, examine
 from cad.imported_models import ProgramResult, Trial, sizes_of
 
@@ -64,6 +64,20 @@ def test_many_slow_drawings_have_one_deadline_together():
     assert late.value.seconds == 0.4  # the whole, not what was left for the last
     assert time.monotonic() - begun < 4  # 31 drawings of 0.1 s, each within 0.4 s, would be let through
     assert 2 <= warm.asked <= 5
+
+
+class FullWarm(SlowWarm):
+    """FreeCAD that has no memory for any other value than those of the file."""
+
+    def ask(self, sha, content, do, given, cancelled, seconds, ends=None):
+        if given:
+            raise MemoryExceeded(512)
+        return super().ask(sha, content, do, given, cancelled, seconds)
+
+
+def test_a_trial_without_memory_says_so_and_the_model_is_taken():
+    for one in described(FullWarm(30, 0)).parameters:
+        assert one.moves == f"not known: {1.01 * one.value:g} is refused (memory)"
 
 
 def test_quick_drawings_are_all_made():
