@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from cad.errors import GeometryError
 from cad.imported_models import ProgramResult
 from cad.inspect import measure
 from cad.model import Part
@@ -65,7 +66,10 @@ def examine(text: str, id: str, drawn: ProgramResult) -> Examination:
     if meeting > MOST_COMPARED:
         told = f"the boxes of {meeting} pairs of solids meet, and at most {MOST_COMPARED} are compared"
         return Examination((*findings, f"Overlaps were not examined: {told}."), None, build.step)
-    found = list(overlaps(bodies))
+    try:
+        found = list(overlaps(bodies))
+    except GeometryError as error:
+        return Examination((*findings, f"Overlaps were not examined: {error}."), None, build.step)
     findings += _twice(found)
     return Examination(tuple(findings), tuple((one.one, one.other) for one in found), build.step)
 

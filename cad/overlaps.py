@@ -49,13 +49,25 @@ class Overlap:
 
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
-    """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap."""
+    """Yield every pair of bodies that overlap at their positions; touching bodies do not overlap.
+
+    Raises
+    ------
+    GeometryError
+        `kernel`, if two bodies cannot be compared.
+    """
     for (one, shape), (other, beside) in _meeting(bodies):
-        properties = GProp_GProps()
-        common = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped).Shape()
-        BRepGProp.VolumeProperties_s(common, properties)
-        if properties.Mass() > _SPECK:
-            yield Overlap(one, other, properties.Mass())
+        volume = _shared_volume(one, shape, other, beside)
+        if volume > _SPECK:
+            yield Overlap(one, other, volume)
+
+
+def _shared_volume(one: str, shape: Shape, other: str, beside: Shape) -> float:
+    common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
+    if not common.IsDone():
+        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
+    BRepGProp.VolumeProperties_s(common.Shape(), properties)
+    return float(properties.Mass())
 
 
 def count_meeting(bodies: Sequence[Body]) -> int:
@@ -203,11 +215,7 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
         raise GeometryError("kernel", f"the distance between {one} and {other} cannot be measured")
     if (distance := float(measured.Value())) > _TOUCHING:
         return Clearance(one, other, distance)
-    common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
-    if not common.IsDone():
-        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
-    BRepGProp.VolumeProperties_s(common.Shape(), properties)
-    volume = float(properties.Mass())
+    volume = _shared_volume(one, shape, other, beside)
     if volume > _SPECK:
         return Clearance(one, other, 0.0, volume)
     if _has_corner_inside(shape, beside) or _has_corner_inside(beside, shape):

@@ -133,6 +133,23 @@ def test_positions_of_one_solid_overlap_too():
     assert found.overlapping == (("cube_1", "cube_2"),)
 
 
+def test_two_copies_in_one_place_overlap_wholly():
+    _, told = examined(step_of(box("cube", places=at((0, 0, 0), (0, 0, 0))))).findings
+    assert told.endswith("cube_1 and cube_2 overlap by 1000 mm³.")
+
+
+def test_solids_that_cannot_be_compared_are_told(monkeypatch):
+    def cannot(bodies):
+        raise GeometryError("kernel", "whether one and other overlap cannot be determined")
+
+    monkeypatch.setattr(examination, "overlaps", cannot)
+    found = examined(step_of(box("one"), box("other", places=at((4, 0, 0)))))
+    assert found.overlapping is None
+    assert found.findings[1] == (
+        "Overlaps were not examined: whether one and other overlap cannot be determined."
+    )
+
+
 def test_too_many_pairs_are_said_not_to_be_compared(monkeypatch):
     monkeypatch.setattr(examination, "MOST_COMPARED", 0)
     found = examined(step_of(box("one"), box("other", places=at((4, 0, 0)))))
