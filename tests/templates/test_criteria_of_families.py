@@ -286,7 +286,7 @@ def test_a_bearing_that_is_stable_at_every_speed_says_so():
     assert (weightless.verdict, weightless.reason) == ("met", NO_THRESHOLD)
     result = evaluate(built_in().get(*FILM), inputs(*FILM, {}), level="fit")
     fit = next(j for j in result.criteria if j.name == "whirl")
-    assert (fit.verdict, "level fit cannot tell" in fit.reason) == ("not_checked", True)
+    assert (fit.verdict, "level `fit` cannot tell" in fit.reason) == ("not_checked", True)
 
 
 def test_a_film_that_is_stable_only_within_its_error_is_undecided():

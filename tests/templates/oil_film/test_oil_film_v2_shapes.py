@@ -34,7 +34,7 @@ class TestShapes:
          {"bell_mouth_depth": "5 um", "bell_mouth_length": "5 mm"}],
     )  # fmt: skip
     def test_property_levels_of_a_plain_bore_refuse_others(self, level, shape):
-        with pytest.raises(InvalidInputs, match="need level reynolds or mass_conserving"):
+        with pytest.raises(InvalidInputs, match="need level `reynolds` or `mass_conserving`"):
             values(bearing(1.0, 0.5, **shape), FILM, level=level)
 
     def test_property_a_point_without_shape_is_that_of_the_plain_bore(self):
