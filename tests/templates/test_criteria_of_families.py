@@ -350,4 +350,4 @@ def test_the_source_of_a_limit_comes_from_its_row():
 
 
 def test_the_note_on_swapped_bank_signs():
-    assert "Bank angles with their signs" in built_in().get(*ENGINE).documentation()
+    assert "Bank angles with opposite signs" in built_in().get(*ENGINE).documentation()
