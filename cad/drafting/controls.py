@@ -93,7 +93,7 @@ class Controls:
         start = (left if target[0] < left + width / 2 else left + width), low + height / 2
         self.page.symbol(arrow(target, start))
         frame.draw(self.page, left, low)
-        self.room.add_line([target, start], is_drawn=True)
+        self.room.add_leader([target, start])
 
     def balloon(self, number: str, target: Point) -> None:
         """Draw the number of a part in a circle, with a leader that ends in a dot on the part."""
@@ -103,7 +103,7 @@ class Controls:
         drawn = Symbol(lines=[[target, foot]], circles=[((x, y), _ROUND), (target, 0.5)])
         self.page.symbol(drawn, "DIMENSIONS")
         self.page.write(number, x - width_of(number, TEXT) / 2, y - TEXT / 2, TEXT)
-        self.room.add_line([target, foot], is_drawn=True)
+        self.room.add_leader([target, foot])
 
     def _texture(self, placed: PlacedDimension, text: str) -> None:
         reach = width_of(text, 2.5)
@@ -111,7 +111,7 @@ class Controls:
         x, y = self._place(target, lambda x, y: (x - 3.5, y - 0.5, x + 6.5 + reach, y + 10.5), reach)
         self.page.symbol(texture(TEXT, reach).moved(x, y).joined(arrow(target, (x, y))))
         self.page.write(text, x + 5.5, y + 6.0, 2.5)
-        self.room.add_line([target, (x, y)], is_drawn=True)
+        self.room.add_leader([target, (x, y)])
 
     def _target(self, placed: PlacedDimension) -> Point:
         """Return a point of a face that carries a dimension, on the paper; within an edge, off its corner."""

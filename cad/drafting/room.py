@@ -24,6 +24,7 @@ class Room:
         self.boxes: list[Rectangle] = []
         self.words: list[Rectangle] = []
         self.views: list[Rectangle] = []
+        self.leaders: list[list[Point]] = []
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
         self._drawn: list[tuple[float, float, float, float]] = []  # of dimensions, leaders and frames
@@ -41,6 +42,11 @@ class Room:
         self._lines += [(*a, *b) for a, b in pairwise(points)]
         if is_drawn:
             self._drawn += [(*a, *b) for a, b in pairwise(points)]
+
+    def add_leader(self, points: Sequence[Point]) -> None:
+        """Occupy a leader, from what it is about to its words or frame."""
+        self.leaders.append([*points])
+        self.add_line(points, is_drawn=True)
 
     def add_outline(self, points: Sequence[Point]) -> None:
         """Keep a line of a view, which words within that view avoid."""

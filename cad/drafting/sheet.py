@@ -68,7 +68,7 @@ def _no_times() -> Iterator[None]:
 
 
 @dataclass(frozen=True)
-class _Laid:
+class Laid:
     """A sheet on which everything has a place."""
 
     page: Page
@@ -82,7 +82,7 @@ def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = 
     """Return the drawing as a document of ezdxf, and its sheet; `whole` are the parts of a part's model."""
     seen, declared = declared_of(bodies, header, whole)
     sheet = SheetNumber.of(bodies, whole)
-    content, laid = _laid_out(bodies, seen, header, declared)
+    content, laid = laid_out(bodies, seen, header, declared)
     page = laid.page
     section_label(page, content.section, laid.room)
     _fill(page, content.section, content.end, laid.centres, laid.placed)
@@ -98,12 +98,12 @@ def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = 
     return page.document, page.plan.format
 
 
-def _laid_out(
+def laid_out(
     bodies: Sequence[Body],
     seen: Mapping[str, PartSurfaces],
     header: Header | None,
     declared: DrawingDeclaration,
-) -> tuple[Content, _Laid]:
+) -> tuple[Content, Laid]:
     """Return the first sheet on which everything has room, else a sheet without removed sections."""
     for content in contents(bodies, seen, header, declared):
         tried = [*islice(content.plans(), _MOST_PLANS)]
@@ -118,7 +118,7 @@ def _laid_out(
 
 def _laid(
     content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
-) -> _Laid:
+) -> Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
     Raises
@@ -140,7 +140,7 @@ def _laid(
     datum = controls.draw(declared, placed)
     for number, target in balloons(content.section, bodies):
         controls.balloon(str(number), plan.paper(target))
-    return _Laid(page, room, centres, placed, datum)
+    return Laid(page, room, centres, placed, datum)
 
 
 def _fill(

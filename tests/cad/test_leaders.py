@@ -1,0 +1,62 @@
+"""No leader crosses a dimension line or a foreign view; no words overlap, with tolerances or without."""
+
+import numpy as np
+import pytest
+from seeds import seeded
+from slow_models import DRAWN, quick_for
+
+from cad.drafting.content import declared_of
+from cad.drafting.room import overlap
+from cad.drafting.sheet import laid_out
+from cad.header import read_header
+from cad.model import CadModel
+from cad.regenerate import as_text, regenerate_class
+from cad.step import read_step
+
+
+def laid(model: type[CadModel], share: float):
+    """The layout of the example's sheet, a share of its sizes with random limits."""
+    rng = np.random.default_rng(seeded(3702))
+    texts = as_text(model.from_quantities(model.example))
+    for name in model.toleranced:
+        if name in texts and not texts[name].startswith(("0 ", "[")) and rng.random() < share:
+            texts[name] = f"{texts[name]} +{rng.integers(2, 9) / 100}/-0.01 mm"
+    step = regenerate_class(model, texts).step
+    bodies, header = read_step(step), read_header(step)
+    seen, declared = declared_of(bodies, header)
+    return laid_out(bodies, seen, header, declared)[1]
+
+
+def cross(one, other) -> bool:
+    """Whether two straight lines cross within both."""
+    (a, b), (c, d) = (np.array(line, dtype=float) for line in (one, other))
+    u, v, w = b - a, d - c, c - a
+    across = u[0] * v[1] - u[1] * v[0]
+    if abs(across) < 1e-12:
+        return False
+    s, t = (w[0] * v[1] - w[1] * v[0]) / across, (w[0] * u[1] - w[1] * u[0]) / across
+    return bool(0.02 < s < 0.98 and 0.0 < t < 1.0)
+
+
+def is_in(point, box) -> bool:
+    return bool(box[0] - 1 <= point[0] <= box[2] + 1 and box[1] - 1 <= point[1] <= box[3] + 1)
+
+
+def sides(box):
+    left, low, right, high = box
+    corners = [(left, low), (right, low), (right, high), (left, high)]
+    return zip(corners, [*corners[1:], corners[0]], strict=True)
+
+
+@pytest.mark.parametrize("share", [0.4, 1.0])
+@quick_for(*DRAWN)
+def test_leaders_keep_off_dimension_lines_and_foreign_views(model: type[CadModel], share: float) -> None:
+    sheet = laid(model, share)
+    lines = [placed.ends for placed in sheet.placed if placed.ends]
+    for leader in sheet.room.leaders:
+        assert not [line for line in lines if cross(leader, line)], leader
+        foreign = [view for view in sheet.room.views if not is_in(leader[0], view)]
+        assert not [view for view in foreign if any(cross(leader, side) for side in sides(view))], leader
+    words = sheet.room.words
+    overlapping = [(a, b) for n, a in enumerate(words) for b in words[:n] if overlap(a, b, -0.2)]
+    assert overlapping == []
