@@ -1,4 +1,4 @@
-"""The ten-minute guide of the README: size the bearing by its width, rebuild it, meet the criterion."""
+"""The README's guide works: size the bearing by its width, rebuild it, meet the criterion."""
 
 import re
 from pathlib import Path

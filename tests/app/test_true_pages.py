@@ -1,4 +1,4 @@
-"""No sentence on a page, in a report or in a refusal contradicts its own numbers, on random designs."""
+"""On random designs, no sentence on a page, in a report or in a refusal contradicts its own numbers."""
 
 import random
 from html.parser import HTMLParser

@@ -1,4 +1,4 @@
-"""No sentence about a criterion contradicts its own numbers: random designs from examples of templates."""
+"""On random designs, no sentence about a criterion contradicts its own numbers."""
 
 import random
 import re

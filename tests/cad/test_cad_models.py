@@ -1,4 +1,4 @@
-"""Tests of single models: standard sizes, limits known in closed form, and rules."""
+"""Single models agree with standard sizes and closed forms at their limits, and obey their rules."""
 
 from math import isclose
 from typing import Any

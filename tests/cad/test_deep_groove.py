@@ -1,4 +1,4 @@
-"""Ball bearings by designation: standard sizes, makers' capacities, cages that clear the balls."""
+"""Ball bearings by designation have standard sizes, makers' capacities, and cages that clear the balls."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Fields on the surface of a crankshaft: their positions and colours in a GLB file."""
+"""Fields on the surface of a crankshaft have the right positions and colours in a GLB file."""
 
 import io
 import json

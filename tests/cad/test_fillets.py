@@ -1,4 +1,4 @@
-"""Positions of a throw's pin and fillets, from its model."""
+"""A model gives the positions of a throw's pin and fillets."""
 
 import pytest
 

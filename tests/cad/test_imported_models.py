@@ -1,4 +1,4 @@
-"""Descriptions of imported models as classes, and parameters read back from a solid."""
+"""Descriptions of imported models become classes, and their parameters are read back from a solid."""
 
 import io
 import pickle
@@ -86,7 +86,7 @@ def test_a_solid_that_does_not_follow_its_parameter_is_refused(tmp_path):
 
 
 def test_a_shape_that_nobody_drew_is_refused():
-    with pytest.raises(GeometryError, match="has not been drawn"):
+    with pytest.raises(GeometryError, match="must be drawn"):
         regenerate_shape(shape(), as_text(shape()))
 
 

@@ -1,4 +1,4 @@
-"""STL and GLB: closed, no degenerate triangles, within the requested deflection, with named nodes."""
+"""STL and GLB are closed, without degenerate triangles, within the deflection, with named nodes."""
 
 import json
 import struct

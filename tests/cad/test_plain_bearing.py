@@ -1,4 +1,4 @@
-"""Plain bearings in closed form: rings, grooves, holes; refusals; tolerances of wall and groove."""
+"""Plain bearings agree with closed forms for rings, grooves and holes, and refuse wrong parameters."""
 
 from math import pi
 

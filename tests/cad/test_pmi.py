@@ -1,4 +1,4 @@
-"""PMI and properties in STEP files, read by three readers and compared with the typed limits."""
+"""Three readers find PMI and properties in STEP files, and they agree with the typed limits."""
 
 import hashlib
 import io

@@ -1,4 +1,4 @@
-"""Section planes of assembly drawings, the parts that they cut, and the display of tolerances."""
+"""Assembly drawings have the right section planes, cut the right parts, and show tolerances."""
 
 import re
 from xml.etree import ElementTree

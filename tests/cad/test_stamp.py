@@ -1,4 +1,4 @@
-"""Stamps on finished files: escaped, read back by the kernel, and recognised by `is_copy`."""
+"""Stamps on finished files are escaped, read back by the kernel, and recognised by `is_copy`."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""Contact of rough faces and flow factors, against quadrature, the papers' tables and limits.
+"""Contact of rough faces and flow factors agree with quadrature, the papers' tables and limits.
 
 No public copy of Greenwood and Tripp's own table of F_{5/2} was at hand: the reference is quadrature. The
 tables of Patir and Cheng were read in the source of foam-extend 4.0, flowFactorsPatirCheng.C.

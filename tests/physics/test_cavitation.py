@@ -1,4 +1,4 @@
-"""Analytic: mass-conserving cavitation against the pocketed slider's closed form, and its balances."""
+"""Analytic: mass-conserving cavitation agrees with the pocketed slider's closed form and its balances."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Level `elastic` of `elastic_film` 1 against finite elements in the film."""
+"""Level `elastic` of `elastic_film` 1 agrees with finite elements in the film."""
 
 import numpy as np
 import pytest

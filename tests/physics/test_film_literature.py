@@ -1,4 +1,4 @@
-"""Literature: the film against published numbers, each with its table or equation.
+"""Literature: the film agrees with published numbers, each with its table or equation.
 
 Axes of the sources: eps and beta as here; S of Raimondi and Boyd is 1/(2 pi So) and their (r/c) f is
 friction over So; Butenschön's Q is side_flow; Lund and Thomsen's phi is the attitude.

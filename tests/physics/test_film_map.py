@@ -1,4 +1,4 @@
-"""The film map: property and analytic tests against fresh full solutions of another mesh."""
+"""Property and analytic: the film map agrees with fresh full solutions on another mesh."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: the energy fluctuation of a flywheel under a torque known in closed form."""
+"""Analytic: the energy fluctuation of a flywheel is right for a torque in closed form."""
 
 import numpy as np
 import pytest

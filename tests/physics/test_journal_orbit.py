@@ -1,4 +1,4 @@
-"""The orbit by mobility: a second integration, limits, symmetries, order of the step, robustness.
+"""The orbit by mobility agrees with a second integration, limits, symmetries and the order of the step.
 
 Analytic: everything here follows from the equation of the orbit, solved in another way or transformed.
 """

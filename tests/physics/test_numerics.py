@@ -1,4 +1,4 @@
-"""Analytic: the numerical methods beneath the films, each against an exact case or a second method."""
+"""Analytic: each numerical method beneath the films agrees with an exact case or a second method."""
 
 import numpy as np
 import pytest

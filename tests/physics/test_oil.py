@@ -1,4 +1,4 @@
-"""Literature: oils by grade against SAE J300, ISO 3448 and ASTM D2270; analytic: laws of viscosity."""
+"""Literature: oils by grade agree with SAE J300, ISO 3448 and ASTM D2270; analytic: laws of viscosity."""
 
 import csv
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Films of lobed, bell-mouthed and tilted bearings: limits, symmetry, a second method, published tables."""
+"""Films of lobed, bell-mouthed and tilted bearings agree with limits, a second method and tables."""
 
 from pathlib import Path
 

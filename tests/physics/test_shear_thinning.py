@@ -1,4 +1,4 @@
-"""Cross's law: limits, its own HTHS viscosity, monotone, and finite over any inputs.
+"""Cross's law keeps its limits and HTHS viscosity, is monotone, and is finite over any inputs.
 
 No published flow curve with Cross's constants of an engine oil was at hand.
 """

@@ -1,4 +1,4 @@
-"""Analytic and literature: the plane slider's closed forms."""
+"""Analytic and literature: the plane slider agrees with its closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Analytic: the slider-crank against geometry, by differences and by quadrature."""
+"""Analytic: the slider-crank agrees with geometry, differences and quadrature."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Orbits of supplied films: the static film, two short bearings, invariances, convergence, verdicts."""
+"""Orbits of supplied films agree with the static film, two short bearings, invariances and convergence."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The thermal film: integrals across, balances of oil and heat, closed forms of Couette flow, limits."""
+"""The thermal film agrees with integrals across, balances of oil and heat, Couette flow, and limits."""
 
 from dataclasses import replace
 

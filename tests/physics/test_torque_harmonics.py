@@ -1,4 +1,4 @@
-"""Harmonics of a torque and the swing of their sum, against closed forms and dense sampling."""
+"""Harmonics of a torque and the swing of their sum agree with closed forms and dense sampling."""
 
 import numpy as np
 import pytest

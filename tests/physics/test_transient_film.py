@@ -1,4 +1,4 @@
-"""The transient film with mass conservation: static limit, conservation of oil, and its own mesh."""
+"""The transient film conserves oil and agrees with the static limit."""
 
 import numpy as np
 import pytest

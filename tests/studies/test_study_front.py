@@ -1,4 +1,4 @@
-"""Analytic: Pareto fronts in closed form, and the front of a coarse level, confirmed."""
+"""Analytic: Pareto fronts agree with closed forms, and the front of a coarse level is confirmed."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Analytic: slopes, Morris effects and Sobol' indices of functions with closed forms."""
+"""Analytic: slopes, Morris effects and Sobol' indices agree with closed forms."""
 
 import sys
 

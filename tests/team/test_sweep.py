@@ -1,4 +1,4 @@
-"""Several servers sweep one store: one at a time, by the age of files, and no file still needed."""
+"""Several servers sweep one store one at a time, by the age of files, and delete no file still needed."""
 
 import threading
 import time

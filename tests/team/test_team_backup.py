@@ -1,4 +1,4 @@
-"""Backup, restore and check of PostgreSQL and S3 by the commands that the operator types."""
+"""Backup, restore and check of PostgreSQL and S3 work by the commands that the operator types."""
 
 import json
 

@@ -38,7 +38,7 @@ def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
     release = release_file(cls)
     recorded = _read(release) if release else None
     if release and recorded is not None and recorded.get("digest") != digest(cls):
-        what = f"the code is not that of the release: {release.name} holds another digest"
+        what = f"the code is not that of the release: {release.name} contains another digest"
         yield FileFault("released", what, NEW_VERSION, quarantines=False)
 
 

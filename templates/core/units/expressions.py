@@ -296,7 +296,7 @@ def _unit(name: str) -> Unit:
     try:
         return unit(name)
     except FaultyText as error:
-        hint = f"if {name[:60]} holds a name, put blanks around * and /"
+        hint = f"if {name[:60]} contains a name, put blanks around * and /"
         raise FaultyText("unknown_unit", f"{error} ({hint})") from None
 
 

@@ -1,4 +1,4 @@
-"""Comments on revisions, and audit rows in the same transaction as the change that they record."""
+"""Comments on revisions are stored with audit rows in the same transaction as the change."""
 
 import pytest
 from approving import Room

@@ -1,4 +1,4 @@
-"""The queue of expensive calculations: clients in turn, admission, lanes, cancellation."""
+"""The queue of expensive calculations serves clients in turn, limits admission, and cancels calculations."""
 
 import threading
 from concurrent.futures import wait

@@ -1,4 +1,4 @@
-"""Indicator diagrams in the formats of measuring programs, at `/curves` and pasted into a page."""
+"""`/curves` and a page's paste dialog read indicator diagrams in the formats of measuring programs."""
 
 import base64
 import io

@@ -1,4 +1,4 @@
-"""A measurement from a CSV file in a design, compared with a calculated curve, on page and report."""
+"""A design compares a measurement from a CSV file with a calculated curve, on its page and in its report."""
 
 from serving import API, created, revision
 

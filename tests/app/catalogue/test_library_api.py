@@ -1,4 +1,4 @@
-"""The library over REST and through the client."""
+"""REST and the client return the library."""
 
 import pytest
 from serving import API, pages, problem

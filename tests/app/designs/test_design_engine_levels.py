@@ -1,4 +1,4 @@
-"""Levels, chunks and estimated seconds of the rows of a design."""
+"""The engine chooses levels, chunks and estimated seconds for the rows of a design."""
 
 import copy
 

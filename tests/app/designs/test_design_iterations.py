@@ -1,4 +1,4 @@
-"""Measurements of solids in worksheets, and iterations through them."""
+"""Worksheets use measurements of solids, and designs iterate through them."""
 
 import pytest
 from designing import feedback, weighed

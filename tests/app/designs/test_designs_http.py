@@ -1,4 +1,4 @@
-"""HTTP rules for designs and their jobs: preconditions, repeated requests, waiting, full queues."""
+"""Designs and their jobs follow HTTP rules: preconditions, repeated requests, waiting, full queues."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace

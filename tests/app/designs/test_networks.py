@@ -1,4 +1,4 @@
-"""The network of relations in a design, over HTTP."""
+"""The service returns the network of relations in a design over HTTP."""
 
 from serving import API, created, paper, problem
 

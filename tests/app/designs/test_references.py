@@ -1,4 +1,4 @@
-"""Names as references in designs, the order of a network, and continued calculations."""
+"""Designs resolve names as references, order their network, and continue calculations."""
 
 import pytest
 

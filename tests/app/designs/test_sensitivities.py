@@ -1,4 +1,4 @@
-"""Analytic: sensitivities of explained values against closed forms, and the cases without any."""
+"""Analytic: sensitivities of explained values agree with closed forms; some values have none."""
 
 import copy
 

@@ -1,4 +1,4 @@
-"""The table of variants as CSV and XLSX: round trips, addresses of faulty cells, foreign files."""
+"""The table of variants survives round trips as CSV and XLSX, and faulty cells are named by address."""
 
 import io
 import zipfile

@@ -1,4 +1,4 @@
-"""The checks of test_contract.py on requests that cover each keyword of each schema."""
+"""The checks of test_contract.py run on requests that cover each keyword of each schema."""
 
 import pytest
 from hypothesis import Phase, settings

@@ -1,4 +1,4 @@
-"""The checks of test_contract.py on many more requests."""
+"""The checks of test_contract.py run on many more requests."""
 
 import pytest
 from hypothesis import seed, settings

@@ -1,4 +1,4 @@
-"""A hostile user with a viewer's key: headers that claim another identity, and races of checkers."""
+"""A hostile user with a viewer's key gains nothing by headers of another identity or by races."""
 
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier

@@ -1,4 +1,4 @@
-"""Objects of one principal: jobs, reviews, the author of a revision; no key appears anywhere."""
+"""Principals own their jobs, reviews and revisions, and no key appears anywhere."""
 
 import logging
 

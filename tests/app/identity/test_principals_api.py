@@ -1,4 +1,4 @@
-"""Principals, keys and usage over REST: administrators see all, other users their own."""
+"""Over REST, administrators see all principals, keys and usage; other users see their own."""
 
 import pytest
 from bare_shells import BUSH

@@ -1,4 +1,4 @@
-"""Signing in by a browser: cookie, redirect, forms of the session, its end."""
+"""A browser signs in with a cookie; the forms of the session, redirects and its end are correct."""
 
 import re
 

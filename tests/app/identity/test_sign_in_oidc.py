@@ -1,4 +1,4 @@
-"""Signing in with an OpenID provider in this process: required proofs, and the resulting principal."""
+"""Signing in with an OpenID provider requires the right proofs and gives the right principal."""
 
 import base64
 import hmac

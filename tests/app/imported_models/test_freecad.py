@@ -1,4 +1,4 @@
-"""A FreeCAD file as a model: parameters, checks, a design driven by the oil film, and hostile files."""
+"""A FreeCAD file becomes a model: parameters, checks, a design driven by the oil film, and hostile files."""
 
 import io
 import shutil

@@ -1,4 +1,4 @@
-"""Imported models by the typed clients and on the command line."""
+"""The typed clients and the command line import models."""
 
 import asyncio
 import inspect

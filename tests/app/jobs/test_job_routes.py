@@ -1,4 +1,4 @@
-"""Jobs over HTTP, and a server that stops although a client watches."""
+"""Jobs are available over HTTP, and a server stops even if a client watches."""
 
 import asyncio
 import json

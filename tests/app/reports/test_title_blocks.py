@@ -1,4 +1,4 @@
-"""Fields of a title block that a user types for the download of a drawing."""
+"""A user can type the fields of a title block when downloading a drawing."""
 
 import io
 

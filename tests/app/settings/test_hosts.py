@@ -1,4 +1,4 @@
-"""Accepted hosts and origins of requests: locally, in a network, behind a proxy."""
+"""The service accepts the right hosts and origins locally, in a network, and behind a proxy."""
 
 import asyncio
 import re

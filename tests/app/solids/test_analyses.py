@@ -1,4 +1,4 @@
-"""Analyses of solids over REST: a bar of known stiffness, refusals, and stored results."""
+"""Analyses of solids over REST give a bar's known stiffness, refusals, and stored results."""
 
 import hashlib
 import subprocess

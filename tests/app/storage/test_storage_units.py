@@ -1,4 +1,4 @@
-"""Counters, errors and damage marks, tested separately."""
+"""Counters, errors and damage marks of the storage are correct, tested separately."""
 
 import pickle
 import sqlite3

@@ -1,4 +1,4 @@
-"""Studies by the typed clients, the command line, files of rows, and an evaluation by an address."""
+"""The typed clients, the command line and files of rows run studies."""
 
 import asyncio
 import csv

@@ -1,4 +1,4 @@
-"""Parts of studies, tested separately: archives, fronts, files of rows, jobs that yield."""
+"""Parts of studies work separately: archives, fronts, files of rows, jobs that yield."""
 
 import io
 import threading

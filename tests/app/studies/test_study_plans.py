@@ -1,4 +1,4 @@
-"""The plan of a study: refusals, equal plans for equal studies, and estimates."""
+"""The plan of a study refuses wrong studies, is equal for equal studies, and estimates the time."""
 
 import pytest
 from serving import problem

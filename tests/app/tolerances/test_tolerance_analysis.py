@@ -1,4 +1,4 @@
-"""The tolerance analysis over HTTP, compared with single evaluations and random products."""
+"""The tolerance analysis over HTTP agrees with single evaluations and random products."""
 
 import itertools
 

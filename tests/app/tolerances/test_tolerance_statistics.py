@@ -1,4 +1,4 @@
-"""Limits, scatter, yields and shares of closed forms with known results."""
+"""Limits, scatter, yields and shares agree with known results of closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Properties of all pages: no external request, no error, accessible, small."""
+"""Every page makes no external request, raises no error, and is accessible and small."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Each construct of Mathcad as a line of a worksheet, compared with a stored result."""
+"""Each construct of Mathcad becomes a worksheet line whose value agrees with a stored result."""
 
 import math as python
 from pathlib import Path

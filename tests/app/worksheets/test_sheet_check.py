@@ -1,4 +1,4 @@
-"""The results of `check` for a text, and hostile texts."""
+"""`check` returns the right results for a text, and survives hostile texts."""
 
 import pytest
 from serving import API, HANG, faults, problem

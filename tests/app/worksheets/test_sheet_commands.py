@@ -1,4 +1,4 @@
-"""Worksheets by the typed clients and on the command line, as text files."""
+"""The typed clients and the command line handle worksheets as text files."""
 
 import asyncio
 import inspect

@@ -1,4 +1,4 @@
-"""A chain of throws' matrices: rigid motions, symmetry, and the finite elements of a whole shaft."""
+"""A chain of throws' matrices agrees with rigid motions, symmetry, and finite elements of a whole shaft."""
 
 import json
 from collections.abc import Sequence

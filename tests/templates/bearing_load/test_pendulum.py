@@ -1,4 +1,4 @@
-"""The rod's inertia from its pendulum period, as calculated and as printed in the report."""
+"""The rod's inertia follows from its pendulum period, in the calculation and in the report."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Criteria of small templates: refused with the class, judged with the evaluation."""
+"""Criteria of small templates are refused with the class, or judged with the evaluation."""
 
 import json
 

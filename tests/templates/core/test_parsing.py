@@ -1,4 +1,4 @@
-"""Syntax trees in several threads, and in a process forked in the meantime."""
+"""Syntax trees are right in several threads, and in a process forked in the meantime."""
 
 import ast
 import gc

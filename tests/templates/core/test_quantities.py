@@ -1,4 +1,4 @@
-"""Quantities and units as users, and attackers, type them."""
+"""The language reads quantities and units as users, and attackers, type them."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Checks of a calculation: bounds and rules in words, compared with values."""
+"""Checks of a calculation state bounds and rules in words, with the right values."""
 
 import numpy as np
 import pytest

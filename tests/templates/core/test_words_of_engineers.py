@@ -1,4 +1,4 @@
-"""Words that engineers type: mil, r/min, decimal commas, grades of oil, radial clearances."""
+"""The language reads words of engineers: r/min, mils, decimal commas, grades of oil, radial clearances."""
 
 import re
 

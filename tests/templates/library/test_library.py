@@ -1,4 +1,4 @@
-"""The library: required form of its files, refusals, and values compared with their sources."""
+"""The library's files have the required form, and their values agree with their sources."""
 
 import pytest
 

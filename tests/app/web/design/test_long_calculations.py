@@ -1,4 +1,4 @@
-"""A template's page during a long calculation: progress, cancellation, result."""
+"""During a long calculation, a template's page shows progress, allows cancellation, and shows the result."""
 
 import browsing  # noqa: F401 - makes the tests of the service importable
 import pytest

@@ -1,4 +1,4 @@
-"""A design's page during a slow step: progress, cancellation, results."""
+"""During a slow step, a design's page shows progress, allows cancellation, and shows the results."""
 
 import browsing  # noqa: F401 - makes the tests of the service importable
 import pytest

@@ -1,4 +1,4 @@
-"""Finite elements on the page: request, progress, results, picture; readable without scripts."""
+"""A page requests finite elements and shows progress, results and picture, also without scripts."""
 
 import re
 

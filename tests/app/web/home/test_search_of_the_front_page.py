@@ -1,4 +1,4 @@
-"""The template search on the home page, by keyboard."""
+"""The template search on the home page works by keyboard."""
 
 import pytest
 from browsing import CHROMIUM

@@ -1,4 +1,4 @@
-"""The pages of a version's impact and of upgrades, without scripts and in a browser."""
+"""The pages of a version's impact and of upgrades work without scripts and in a browser."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Arrays in table cells: short ones in full, long ones by their range, its positions and a sparkline."""
+"""Table cells show short arrays in full, and long ones by range, its positions and a sparkline."""
 
 import re
 

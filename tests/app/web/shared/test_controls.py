@@ -1,4 +1,4 @@
-"""Labels of form controls, and the handling of typed values, in a browser."""
+"""Form controls have labels and handle typed values, in a browser."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Limits on a template's page: by hand, by a row of the library; finishes for roughnesses."""
+"""A template's page accepts limits typed by hand or from the library, and finishes for roughnesses."""
 
 import re
 

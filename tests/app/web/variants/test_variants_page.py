@@ -1,4 +1,4 @@
-"""The table of variants on the page of a design: from a spreadsheet, edited in place, faults in place."""
+"""The design page edits the table of variants in place, pastes spreadsheets, and shows faults in place."""
 
 import io
 import zipfile

@@ -1,4 +1,4 @@
-"""Bands against hand calculations, and against their meaning: |v - t| ≤ e |t|."""
+"""Bands agree with hand calculations, and with their meaning: |v - t| ≤ e |t|."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""`oil_film` 1 written as a worksheet: the same results, refusals, description and record as the file."""
+"""`oil_film` 1 as a worksheet has the same results, refusals, description and record as the file."""
 
 import json
 import pickle

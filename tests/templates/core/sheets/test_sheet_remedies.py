@@ -1,4 +1,4 @@
-"""Messages of worksheets about faults: remedies, warnings, and by how much a test failed."""
+"""Messages of worksheets about faults give remedies and warnings, and by how much a test failed."""
 
 import pytest
 from test_sheet_attacks import ATTACKS, SHEET, faults

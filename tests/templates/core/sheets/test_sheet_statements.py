@@ -1,4 +1,4 @@
-"""The statements of a worksheet: what each means, calculated at one point and at many."""
+"""Each statement of a worksheet has its meaning, at one point and at many."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Relations and formulas of worksheets on paper: LaTeX and MathML of their trees."""
+"""Relations and formulas of worksheets are printed rightly as LaTeX and MathML."""
 
 from __future__ import annotations
 
