@@ -101,7 +101,7 @@ class BallRow(CadModel):
         """Return slightly more than half the ball diameter."""
         return 0.52 * self.D_w
 
-    @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or leave it out")
+    @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or omit it")
     def has_section(self) -> Truth:
         """The outer diameter is at least 2 % larger than the bore."""
         return self.D >= 1.02 * self.d

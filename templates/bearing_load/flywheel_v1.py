@@ -48,7 +48,7 @@ from templates.physics.numerics.crank_grid import CrankGrid, crank_grid
 
 CYCLE = "crank_angle"
 EVEN = "nothing is out of balance"
-AT_REST = "at rest, or without speed_fluctuation, there is no swing to even out"
+AT_REST = "at rest, or without `speed_fluctuation`, there is no swing to even out"
 NO_CRITERION = "needs speed_fluctuation (and a speed) or maximum_acceleration"
 
 

@@ -103,7 +103,7 @@ class RollingBearingLife(Template):
         """An axial load needs the calculation factor f0."""
         return factor_is_known(self.F_a, self.f_0)
 
-    @require("axial_load", "rolling_elements", remedy="give the equivalent load as radial_load")
+    @require("axial_load", "rolling_elements", remedy="give the equivalent load as `radial_load`")
     def axial_load_on_balls(self) -> Truth:
         """X and Y apply to deep groove ball bearings."""
         return is_bearable(self.F_a, self.elements)

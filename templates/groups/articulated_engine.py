@@ -50,7 +50,7 @@ class ArticulatedEngine(EngineMotion):
         return arms_are_given(self.masters, self.rho_a)
 
     @require("masters", "throws", "cylinder_positions", "pin_angles", missing=True,
-             remedy="name their throws, give pin_angles with firing_order, and one position")  # fmt: skip
+             remedy="name their throws, give `pin_angles` with `firing_order`, and one position")  # fmt: skip
     def rods_share_a_pin(self) -> Truth:
         """Articulated rods have the throw, pin, position and crank radius of their master."""
         return rods_share_a_pin(self.crank, self.layout, self.z_i)

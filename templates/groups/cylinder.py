@@ -127,7 +127,8 @@ class Cylinder(CylinderGas, CrankMechanism):
         return self.m_3 * self.a_g * self.b_g - self.I_3
 
     @formula("kg*m**2", "inertia correction", symbol=r"\Delta I_{c}", source=DYREMI,
-             remedy="level rigid needs rod_inertia or rod_pendulum_period; take level lumped")  # fmt: skip
+             remedy="level `rigid` needs `rod_inertia` or `rod_pendulum_period`;"
+             " choose `lumped`")  # fmt: skip
     def dI_c(self) -> Array:
         """0 if the rod is treated as two masses."""
         return excess_at(self.level, self.dI)

@@ -74,12 +74,14 @@ class CylinderGas(Template):
         """The engine has two or four strokes."""
         return self.strokes != 3
 
-    @require("crank_angle_step", "strokes", remedy="take 1 deg, 2 deg, 5 deg or the like")
+    @require(
+        "crank_angle_step", "strokes", remedy="take a divisor of the cycle, such as 1 deg, 2 deg or 5 deg"
+    )
     def step_divides(self) -> Truth:
         """The step divides the cycle evenly."""
         return abs(self.steps - np.round(self.steps)) < 1e-6
 
-    @require("gas_cycle", "strokes", remedy="take otto, diesel or a table for two strokes")
+    @require("gas_cycle", "strokes", remedy="choose `otto`, `diesel` or `table` for two strokes")
     def cycle_has_its_strokes(self) -> Truth:
         """The practical four-stroke cycle needs four strokes."""
         return (self.gas_cycle != "four_stroke") | (self.strokes != 2)
@@ -99,7 +101,11 @@ class CylinderGas(Template):
         """Cycles otto and four_stroke need a combustion pressure."""
         return known_for(self.gas_cycle, GIVEN_PEAK, self.p_3)
 
-    @require("pressure", remedy="give it in steps of 5 deg, say, or take another gas_cycle", missing=True)
+    @require(
+        "pressure",
+        remedy="give it, for example in steps of 5 deg, or choose another `gas_cycle`",
+        missing=True,
+    )
     def table_is_known(self) -> Truth:
         """The cycle table needs the pressure over one cycle."""
         return table_is_known(self.gas_cycle, self.p_t)
@@ -115,7 +121,7 @@ class CylinderGas(Template):
         """The table covers one full cycle: 720° in four strokes, 360° in two."""
         return full_cycle(self.gas_cycle, self.strokes, self.theta_p, self.p_t)
 
-    @require("pressure", remedy="leave the last point out")
+    @require("pressure", remedy="omit the last point")
     def table_closes(self) -> Truth:
         """A last point one cycle after the first repeats its pressure."""
         return table_closes(self.gas_cycle, self.strokes, self.theta_p, self.p_t)

@@ -69,8 +69,8 @@ from templates.physics.engine.harmonics import (
 )
 
 WEBS, ORDERS = "webs", "orders"
-NO_ORDER = "give firing_order or firing_angles"
-SIGN = "turn the sign of bank_angles, or say split with pins_of_a_throw"
+NO_ORDER = "give `firing_order` or `firing_angles`"
+SIGN = "turn the sign of `bank_angles`, or set `pins_of_a_throw` to `split`"
 
 
 class EngineBalance(EngineCylinders):
@@ -103,7 +103,7 @@ class EngineBalance(EngineCylinders):
         return mid_plane(self.z_i)
 
     @require("firing_order", "pin_angles", "firing_angles", missing=True,
-             remedy="give firing_order as [1, 3, 4, 2] for equal intervals")  # fmt: skip
+             remedy="give `firing_order` as [1, 3, 4, 2] for equal intervals")  # fmt: skip
     def layout_is_said(self) -> Truth:
         """The layout is defined by firing_order, by pin_angles with firing_order, or by firing_angles."""
         return says_layout(self.order, self.psi_g, self.phi_g)
@@ -120,7 +120,7 @@ class EngineBalance(EngineCylinders):
         return is_order(self.order, self.psi_g, self.phi_g)
 
     @require("pin_angles", "firing_order", "firing_angles", missing=True,
-             remedy="give firing_order too, or take gas_cycle none")  # fmt: skip
+             remedy="give `firing_order` too, or set `gas_cycle` to `none`")  # fmt: skip
     def times_are_said(self) -> Truth:
         """With gas forces a four-stroke engine needs firing data: pin angles leave two revolutions."""
         return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g, self.gas_cycle)
@@ -157,19 +157,19 @@ class EngineBalance(EngineCylinders):
         return throws_are_named(self.throws, self.order, self.psi_g, self.phi_g)
 
     @require("pin_angles", "firing_order", missing=True,
-             remedy="turn the firing order, or give firing_angles")  # fmt: skip
+             remedy="turn the firing order, or give `firing_angles`")  # fmt: skip
     def order_has_times(self) -> Truth:
         """With these pin angles the cylinders can fire in this order within one cycle."""
         return has_times(self.layout)
 
     @require("pin_angles", "firing_angles", "bank_angles", missing=True,
-             remedy="each pin stands at bank - firing angle; leave one of the lists out")  # fmt: skip
+             remedy="each pin stands at bank - firing angle; omit one of the lists")  # fmt: skip
     def pins_agree(self) -> Truth:
         """Pin angles and firing angles agree to 1e-6 deg."""
         return pins_agree(self.layout, self.crank.top)
 
     @require("firing_order", "firing_angles", "pin_angles", missing=True,
-             remedy="leave one of the lists out")  # fmt: skip
+             remedy="omit one of the lists")  # fmt: skip
     def order_agrees(self) -> Truth:
         """The cylinders fire in the given order."""
         return order_agrees(self.layout, self.order)
@@ -180,14 +180,14 @@ class EngineBalance(EngineCylinders):
         return pins_are_shared(self.layout, self.shares)
 
     @require("web_positions", "web_unbalance", "counterweights", "web_throws", missing=True,
-             remedy="give web_positions as one list, and throws that exist")  # fmt: skip
+             remedy="give `web_positions` as one list, and throws that exist")  # fmt: skip
     def webs_are_whole(self) -> Truth:
         """Webs with an unbalance or a counterweight have positions."""
         return webs_are_whole(self.z_w, self.U_w, self.U_k, self.t_w, self.layout.throws)
 
     @require("crank_unbalance", "web_unbalance", "counterweights", warning="massless_crank",
-             remedy="give crank_unbalance, or web_unbalance, counterweights and web_positions; main loads"
-             " and balance are of rods and pistons alone")  # fmt: skip
+             remedy="give `crank_unbalance`, or `web_unbalance`, counterweights and `web_positions`; main "
+             "loads and balance are of rods and pistons alone")  # fmt: skip
     def crank_has_mass(self) -> Truth:
         """At least one throw or web has an unbalance."""
         return has_any_unbalance(self.U_c, self.U_w, self.U_k)

@@ -22,19 +22,22 @@ from templates.physics.orbits.cyclic_film import Duty, cycle_length, largest_loa
 from templates.physics.supplied.supply_geometry import SupplyGeometry, is_back, supply_kind, within_bearing
 
 FED = (
-    "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
-    "in mm, and supply_pressure in bar"
+    "level `supplied` needs to know how oil comes in: give `groove_width`, `sleeve_hole_length` or "
+    "`pin_hole_length` "
+    "in mm, and `supply_pressure` in bar"
 )
 DESCRIBE = (
-    "give groove_width, sleeve_hole_length or pin_hole_length in mm, or oil_supply flooded_ends, for a film "
+    "give `groove_width`, `sleeve_hole_length` or `pin_hole_length` in mm, or `oil_supply` as "
+    "`flooded_ends`, for a film "
     "that is always full"
 )
 SLEEVE_BACK = (
     "give speeds in rpm with which it rests in the frame or turns by whole turns in a cycle, or a "
-    "groove_extent of 360 deg and no hole in the sleeve"
+    "`groove_extent` of 360 deg and no hole in the sleeve"
 )
 WIDTHS = (
-    "give bearing_width and bearing_diameter in mm in such a ratio; level mobility_short takes 0.01 … 100"
+    "give `bearing_width` and `bearing_diameter` in mm in such a ratio; "
+    "level `mobility_short` takes 0.01 … 100"
 )
 PIN_BACK = "give speeds in rpm with which it turns by whole turns in the frame in a cycle"
 EXAMPLE: dict[str, object] = {
@@ -134,7 +137,7 @@ class FedBearing(Template):
         """The bearing has an oil supply."""
         return (self.feeding.count > 0) | (self.fed_by == "flooded_ends")
 
-    @require("oil_supply", warning="unused_input", remedy="leave it out, or the groove and holes")
+    @require("oil_supply", warning="unused_input", remedy="omit it, or omit the groove and the holes")
     def flooded_ends_count(self) -> Truth:
         """Flooded ends apply only without groove and holes."""
         return (self.feeding.count == 0) | (self.fed_by != "flooded_ends")
@@ -198,7 +201,7 @@ class FedBearing(Template):
 
     @formula(
         "1", "land ratio", symbol="b_{g}", ge=0, absent="no groove is given",
-        remedy="each land beside the groove has at least 2 % of the diameter: give a narrower groove_width",
+        remedy="each land beside the groove has at least 2 % of the diameter: give a narrower `groove_width`",
         per_level={"mobility_grooved": limits(0.02, 5)},
     )  # fmt: skip
     def b_g(self) -> Array:

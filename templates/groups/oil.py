@@ -42,7 +42,9 @@ from templates.physics.journals.oil_grades import grades, viscosity_at_40, visco
 ISO = "ISO 7902-1:1998"
 NO_BALANCE = "needs supply_temperature, or ambient_temperature with heat_transfer"
 NO_SUPPLY = "needs supply_temperature"
-BELOW_POLE = "temperature_1 or temperature_2 lies below the pole of Vogel's law, at minus its offset in degC"
+BELOW_POLE = (
+    "`temperature_1` or `temperature_2` lies below the pole of Vogel's law, at minus its offset in degC"
+)
 
 
 class Oil(Template):
@@ -92,7 +94,9 @@ class Oil(Template):
         """The viscosity is not higher at the higher temperature."""
         return (self.nu_1 - self.nu_2) * (self.T_2 - self.T_1) >= 0
 
-    @require("viscosity_law", remedy="say viscosity_law vogel, or leave out vogel_factor and vogel_slope")
+    @require(
+        "viscosity_law", remedy="set `viscosity_law` to `vogel`, or omit `vogel_factor` and `vogel_slope`"
+    )
     def vogel_is_asked_for(self) -> Truth:
         """Vogel's constants are given only with Vogel's law."""
         return (self.law == "vogel") | (np.isnan(self.as_given("a_V")) & np.isnan(self.as_given("b_V")))
@@ -169,7 +173,8 @@ class WarmOil(Oil):
 
     @require(
         "oil_inlet_temperature", "oil_outlet_temperature", missing=True,
-        remedy="both; or supply_temperature; or ambient_temperature, heat_transfer; or dynamic_viscosity",
+        remedy="both; or `supply_temperature`; or `ambient_temperature`, `heat_transfer`; "
+               "or `dynamic_viscosity`",
     )  # fmt: skip
     def viscosity_follows(self) -> Truth:
         """The viscosity is given, or follows from a temperature."""
@@ -177,7 +182,7 @@ class WarmOil(Oil):
 
     @require(
         "oil_inlet_temperature", "oil_outlet_temperature", warning="unused_input",
-        remedy="leave them out, or the supply and ambient temperatures",
+        remedy="omit them, or omit the supply and ambient temperatures",
     )  # fmt: skip
     def mean_not_overruled(self) -> Truth:
         """Inlet and outlet temperature are used only if no heat balance gives the film temperature."""

@@ -42,7 +42,7 @@ class SteelEndurance(Template):
     r: Array = given("mm", "notch radius", alternative=True, gt=0, le=1e4)
 
     @require("notch_radius", "stress_concentration_factor", missing=True,
-             remedy="give its radius; beyond 1750 MPa its notch_sensitivity")  # fmt: skip
+             remedy="give its radius; beyond 1750 MPa its `notch_sensitivity`")  # fmt: skip
     def notch_is_known(self) -> Truth:
         """A stress concentration factor is given with the data of its notch sensitivity."""
         return both_or_none(self.K_t, self.q)
@@ -103,7 +103,7 @@ class SteelEndurance(Template):
         return slope_of_line(self.S_3, self.S_e, self.N_e)
 
     @derived("1", "notch sensitivity", symbol="q", shown=True, ge=0, le=1, source=NEUBER,
-             absent="give notch_radius; beyond 1750 MPa the sensitivity")  # fmt: skip
+             absent="give `notch_radius`; beyond 1750 MPa the sensitivity")  # fmt: skip
     def q(self) -> Array:
         """Default: notch sensitivity by Neuber."""
         return notch_sensitivity_Neuber(neuber_length(self.sigma_u), self.r)

@@ -80,12 +80,12 @@ class TorsionTrain(Template):
         return train_layout(self.J, self.s_i, self.s_j, self.g_i, self.g_j, self.i_g)
 
     @require("gear_to", "gear_from", missing=True,
-             remedy="leave the gear out that closes the loop: the others fix its ratio")  # fmt: skip
+             remedy="omit the gear that closes the loop: the other gears determine its ratio")  # fmt: skip
     def no_gear_loop(self) -> Truth:
         """Gears drive each inertia at most once, and not in a loop."""
         return has_no_loop(self.layout)
 
-    @require("shaft_from", "shaft_to", "inertias", remedy="join what hangs loose, or leave it out")
+    @require("shaft_from", "shaft_to", "inertias", remedy="connect the loose parts, or omit them")
     def joined(self) -> Truth:
         """Shafts and gears connect all inertias to one train."""
         return is_joined(self.layout)

@@ -52,15 +52,15 @@ LAWS = "ASTM D341; Vogel 1921"
 ISO = "ISO 7902-1:1998"
 NO_HTHS = "no HTHS viscosity is given: the oil does not thin by shear"
 BETWEEN = (
-    "give an hths_viscosity in mPa*s below that at low shear and 150 °C, see low_shear_viscosity_hot, and "
-    "above endless_shear_ratio times that"
+    "give an `hths_viscosity` in mPa*s below that at low shear and 150 °C, see `low_shear_viscosity_hot`, "
+    "and above `endless_shear_ratio` times that"
 )
-ALL_OF_IT = "the side flow of level supplied is all the oil that leaves, what the supply drives with it"
+ALL_OF_IT = "the side flow of level `supplied` is all the oil that leaves, what the supply drives with it"
 CYCLE = "crank_angle"
 UNBALANCED = (
     "no viscosity was found at which heat and viscosity agree: give more supply pressure or clearance, "
-    "cooler or thicker oil, or less load; without side flow nothing carries the heat off. At level supplied "
-    "a film may starve: see the verdict of oil_film_cycle 1"
+    "cooler or thicker oil, or less load; without side flow nothing carries the heat off. At level "
+    "`supplied` a film may starve: see the verdict of `oil_film_cycle` 1"
 )
 
 
@@ -150,27 +150,27 @@ class CycleHeatBalance(Oil, FedBearing):
     r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
     n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
 
-    @require("hths_viscosity", warning="unused_input", remedy="leave it out, or dynamic_viscosity")
+    @require("hths_viscosity", warning="unused_input", remedy="omit it, or omit `dynamic_viscosity`")
     def viscosity_follows(self) -> Truth:
         """Shear thinning applies only if the viscosity is not given."""
         return np.isnan(self.as_given("eta")) | np.isnan(self.eta_H)
 
-    @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
+    @require("groove_width", warning="unused_input", remedy="choose level `mobility_grooved` or `supplied`")
     def groove_counts(self) -> Truth:
         """A groove affects the film only at levels mobility_grooved and supplied."""
         return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
 
-    @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
+    @require("sleeve_hole_length", warning="unused_input", remedy="choose level `supplied`")
     def sleeve_hole_counts(self) -> Truth:
         """A hole in the sleeve feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.sleeve_holed
 
-    @require("pin_hole_length", warning="unused_input", remedy="take level supplied")
+    @require("pin_hole_length", warning="unused_input", remedy="choose level `supplied`")
     def pin_hole_counts(self) -> Truth:
         """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
-    @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
+    @require("supply_pressure", warning="unused_input", remedy="give `groove_width`, or omit it")
     def pressure_counts(self) -> Truth:
         """The supply pressure drives oil from a groove; from holes only at level supplied."""
         return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")

@@ -53,7 +53,7 @@ from templates.physics.journals.lubrication_regime import friction_coefficient
 
 LAME = "Lamé 1852; Michell 1899"
 ROELANDS = "Roelands 1966"
-RIGID_HAS_NONE = "level rigid has none; take level liner, housing or elastic"
+RIGID_HAS_NONE = "level `rigid` has none; choose level `liner`, `housing` or `elastic`"
 UNBORNE = (
     "no film was found that bears this: lower the load, or stiffen what gives way. Where a soft liner is "
     "pressed far into its backing, the ends of the bearing, which no pressure bends, almost touch the journal"
@@ -184,7 +184,7 @@ class ElasticFilm(Oil, Journal):
         return (self.D_h >= 1.001 * (self.D + 2 * self.t_l)) | np.isnan(self.D_h)
 
     @require(
-        "pressure_viscosity", warning="unused_input", remedy="take a level that is not rigid, or leave it out"
+        "pressure_viscosity", warning="unused_input", remedy="choose a level other than `rigid`, or omit it"
     )
     def thickening_counts(self) -> Truth:
         """The pressure–viscosity coefficient has no effect at level rigid."""
@@ -208,14 +208,14 @@ class ElasticFilm(Oil, Journal):
         return self.eta * self.omega_h / self.psi**2
 
     @formula(
-        "1", "liner ratio", symbol="t_{l}/D", remedy="level liner needs liner_thickness; take level rigid",
+        "1", "liner ratio", symbol="t_{l}/D", remedy="level `liner` needs `liner_thickness`; choose `rigid`",
         per_level={"liner": limits(1e-9)},
     )  # fmt: skip
     def liner_ratio(self) -> Array:
         return self.t_l / self.D
 
     @formula(
-        "1", "wall ratio", symbol="w", remedy="level housing needs housing_outer_diameter",
+        "1", "wall ratio", symbol="w", remedy="level `housing` needs `housing_outer_diameter`",
         per_level={"housing": limits(1.001)},
     )  # fmt: skip
     def wall(self) -> Array:
@@ -224,7 +224,7 @@ class ElasticFilm(Oil, Journal):
 
     @formula(
         "1", "compliance modes", symbol="n_{m}",
-        remedy="level elastic needs compliance, the matrix of an analysis bore_compliance",
+        remedy="level `elastic` needs compliance, the matrix of an analysis `bore_compliance`",
         per_level={"elastic": limits(38)},
     )  # fmt: skip
     def n_m(self) -> Array:

@@ -148,7 +148,7 @@ class HydrostaticPad(Template):
         """The recess has a positive width."""
         return (self.d_0 < self.D_0) | np.isnan(self.d_0)
 
-    @require("restrictor_diameter", missing=True, remedy="give it, or take constant_flow")
+    @require("restrictor_diameter", missing=True, remedy="give it, or choose `constant_flow`")
     def restrictor_is_known(self) -> Truth:
         """A capillary or an orifice has a diameter."""
         return (self.restrictor == CONSTANT_FLOW) | ~np.isnan(self.d_r)
@@ -163,17 +163,17 @@ class HydrostaticPad(Template):
         """A constant-flow pump has a given flow."""
         return (self.restrictor != CONSTANT_FLOW) | ~np.isnan(self.Q_p)
 
-    @require("capillary_length", warning="unused_input", remedy="leave it out, or take capillary")
+    @require("capillary_length", warning="unused_input", remedy="omit it, or choose `capillary`")
     def capillary_counts(self) -> Truth:
         """Only a capillary has a length; an orifice or a constant flow has none."""
         return (self.restrictor == CAPILLARY) | np.isnan(self.l_c)
 
-    @require("restrictor_diameter", warning="unused_input", remedy="leave it out, or take another restrictor")
+    @require("restrictor_diameter", warning="unused_input", remedy="omit it, or choose another restrictor")
     def restrictor_counts(self) -> Truth:
         """A constant flow needs no restrictor."""
         return (self.restrictor != CONSTANT_FLOW) | np.isnan(self.d_r)
 
-    @require("pump_flow", warning="unused_input", remedy="leave it out, or take constant_flow")
+    @require("pump_flow", warning="unused_input", remedy="omit it, or choose `constant_flow`")
     def pump_counts(self) -> Truth:
         """The pump's flow is used only for constant flow."""
         return (self.restrictor == CONSTANT_FLOW) | np.isnan(self.Q_p)

@@ -15,7 +15,7 @@ PETROV = "Petrov 1883"
 ISO = "ISO 7902-1:1998"
 AT_REST = "without speed there is no film"
 BEYOND = "no film bears this load, or the Reynolds solution ends: B/D 0.01 … 100, eps to 1 − 1e-7"
-USE = "the loaded film rubs more by this factor; oil_film 2 calculates it"
+USE = "the loaded film rubs more by this factor; `oil_film` 2 calculates it"
 
 
 class JournalFriction(Template):

@@ -40,25 +40,26 @@ BOOKER = "Booker 1965"
 ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
 ISO = "ISO 7902-1:1998"
 STARVED = (
-    "no film repeats at this point. Starved: the oil's inlet stays under the load, see feed_under_load, and "
-    "the film thins from cycle to cycle: move the groove or the hole. Unsettled: no orbit was found"
+    "no film repeats at this point. Starved: the oil's inlet stays under the load, see `feed_under_load`, "
+    "and the film thins from cycle to cycle: move the groove or the hole. Unsettled: no orbit was found"
 )
 UNBORNE = (
     "no orbit that repeats bears this load with a film thicker than 2e-6 of the clearance: give less load in "
-    "kN, or more dynamic_viscosity in mPa*s, speed in rpm or bearing_width in mm; no film bears a load that "
-    "turns at the mean speed of journal and sleeve; at level flooded it may not repeat in 8 cycles"
+    "kN, or more `dynamic_viscosity` in mPa*s, speed in rpm or `bearing_width` in mm; no film bears a load "
+    "that turns at the mean speed of journal and sleeve; at level `flooded` it may not repeat in 8 cycles"
 )
 OUTSIDE = (
     "below, the load does not hold the journal in an orbit: give more load in kN or a larger "
-    "diametral_clearance in mm; above, no film is left: give less load, or more dynamic_viscosity in mPa*s"
+    "`diametral_clearance` in mm; above, no film is left: give less load, or more `dynamic_viscosity` in "
+    "mPa*s"
 )
-SUPPLIED_ONLY = "level supplied alone follows the oil that is fed; a starved film has no flow that repeats"
-MARCHED_ONLY = "levels flooded and supplied alone are marched in time"
+SUPPLIED_ONLY = "level `supplied` alone follows the oil that is fed; a starved film has no flow that repeats"
+MARCHED_ONLY = "levels `flooded` and `supplied` alone are marched in time"
 UNKNOWN_STEP = (
     "no film repeats, or none on a coarser ring of crank angles from which to read an error; that of level "
     "flooded is not known"
 )
-MARCH_IT = "take level supplied"
+MARCH_IT = "choose level `supplied`"
 NO_FEED = "no groove and no hole is given"
 CYCLE = "crank_angle"
 
@@ -199,7 +200,7 @@ class OilFilmCycle(FedBearing):
     h_lim: Array = given("um", "permissible film", symbol=r"h_{lim}", alternative=True, ge=0)
     p_lim: Array = given("MPa", "permissible pressure", symbol=r"p_{lim}", alternative=True, gt=0)
 
-    @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
+    @require("groove_width", warning="unused_input", remedy="choose level `mobility_grooved` or `supplied`")
     def groove_counts(self) -> Truth:
         """A groove affects the film only at levels mobility_grooved and supplied."""
         return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
@@ -214,19 +215,19 @@ class OilFilmCycle(FedBearing):
         """A hole in the pin feeds the film only at level supplied."""
         return (self.level == "supplied") | ~self.feeding.pin_holed
 
-    @require("supply_pressure", warning="unused_input", remedy="leave it out, or see the other warnings")
+    @require("supply_pressure", warning="unused_input", remedy="omit it, or follow the other warnings")
     def pressure_counts(self) -> Truth:
         """The supply pressure affects only level supplied, and with a groove the mobility levels."""
         counts = self.feeding.grooved if self.level.startswith("mobility") else self.level == "supplied"
         return counts | np.isnan(self.p_s)
 
-    @require("permissible_film", warning="below_permissible_film", remedy="see minimum_film_angle")
+    @require("permissible_film", warning="below_permissible_film", remedy="see `minimum_film_angle`")
     def film_is_permitted(self) -> Truth:
         """The smallest film is not below the permissible one."""
         return above(self.h_lim, lambda: self.h_0)
 
     @require(
-        "permissible_pressure", warning="above_permissible_pressure", remedy="see maximum_pressure_angle"
+        "permissible_pressure", warning="above_permissible_pressure", remedy="see `maximum_pressure_angle`"
     )
     def pressure_is_permitted(self) -> Truth:
         """The largest pressure is at most the permissible pressure of the bearing material."""

@@ -52,10 +52,11 @@ from templates.physics.journals.smallest_film import smallest_film_ISO_7902
 from templates.physics.journals.static_journal import BOUNDARY, FED, is_fed, ladder
 
 NO_COEFFICIENTS = (
-    "level fit has none, nor a moving start line at level mass_conserving or with a tilt; take another level"
+    "level `fit` has none, nor a moving start line at level `mass_conserving` or with a tilt; "
+    "take another level"
 )
 NEVER_WHIRLS = (
-    "stable at every speed, or without mass; level fit cannot tell, nor where there is no stiffness"
+    "stable at every speed, or without mass; level `fit` cannot tell, nor where there is no stiffness"
 )
 NO_MESH = "a plain, aligned bearing without grooves has none; the error of its level is measured"
 UNBORNE = (
@@ -72,7 +73,7 @@ MESH_ERRORS = {
     "side_flow": attrgetter("flow_error"),
 }
 """Outputs with a mesh error if the bearing is not plain, and the attribute of the film with that error."""
-TAKE_A_SOLUTION = "lobes, bell mouth and tilt need level reynolds or mass_conserving"
+TAKE_A_SOLUTION = "lobes, bell mouth and tilt need level `reynolds` or `mass_conserving`"
 
 
 class OilFilm(WarmOil, Journal):
@@ -206,17 +207,19 @@ class OilFilm(WarmOil, Journal):
         """Each groove extends over 0° to 360° of the circumference."""
         return all(0 <= width <= 2 * np.pi + 1e-9 for _, width in self.grooves)
 
-    @require("grooves", "supply_pressure", warning="unused_input", remedy="take level mass_conserving")
+    @require("grooves", "supply_pressure", warning="unused_input", remedy="choose level `mass_conserving`")
     def feed_is_used(self) -> Truth:
         """In a plain, aligned bearing grooves and supply pressure affect only level mass_conserving."""
         return self.level == FED or self.is_shaped or not is_fed(self.p_s, self.grooves)
 
-    @require("preload", "bore_shape", remedy="take bore_shape lemon, offset or multi_lobe")
+    @require("preload", "bore_shape", remedy="set `bore_shape` to `lemon`, `offset` or `multi_lobe`")
     def lobes_are_asked_for(self) -> Truth:
         """A plain bore has no preload."""
         return (self.bore != "plain") | (self.preload == 0)
 
-    @require("preload", warning="unused_input", remedy="give preload, such as 0.5, or bore_shape plain")
+    @require(
+        "preload", warning="unused_input", remedy="give preload, such as 0.5, or set `bore_shape` to `plain`"
+    )
     def lobes_have_a_preload(self) -> Truth:
         """A lobed bore has a preload; without one it is a plain bore."""
         return (self.bore == "plain") | (self.preload > 0)
@@ -236,7 +239,7 @@ class OilFilm(WarmOil, Journal):
         """A bell mouth has both depth and length."""
         return (self.s_m > 0) == (self.l_m > 0)
 
-    @require("start_line", warning="unused_input", remedy="leave it out: grooves and lobes stand still")
+    @require("start_line", warning="unused_input", remedy="omit it: grooves and lobes stand still")
     def start_line_counts(self) -> Truth:
         """The start line can move only if the film is fed along its widest gap."""
         return self.start_line == "fixed" or not (self.grooves or np.any(self.preload > 0))
@@ -354,12 +357,15 @@ class OilFilm(WarmOil, Journal):
         """Estimated error of the smallest film due to the meshes from which it was extrapolated."""
         return self.film.mesh_error
 
-    @formula("MPa", "maximum pressure", absent="level fit has none; take another level")
+    @formula("MPa", "maximum pressure", absent="level `fit` has none; take another level")
     def p_max(self) -> Array:
         return self.film.P_max * self.eta * self.omega_h / self.psi**2
 
     @formula(
-        "deg", "maximum pressure angle", symbol=r"\theta_{p}", absent="level fit has none; take another level"
+        "deg",
+        "maximum pressure angle",
+        symbol=r"\theta_{p}",
+        absent="level `fit` has none; take another level",
     )
     def theta_p(self) -> Array:
         return self.film.peak

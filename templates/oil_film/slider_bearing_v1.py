@@ -160,12 +160,12 @@ class SliderBearing(Template):
         """The position lies under the pad."""
         return self.x <= self.l
 
-    @formula("1", "film ratio", remedy="level infinite has no such limit", gt=0,
+    @formula("1", "film ratio", remedy="level `infinite` has no such limit", gt=0,
              per_level={"finite": limits(1 / STEEPEST, STEEPEST)})  # fmt: skip
     def a(self) -> Array:
         return self.h_i / self.h_o
 
-    @formula("1", "width ratio", symbol=r"\lambda", remedy="level infinite has no such limit", gt=0,
+    @formula("1", "width ratio", symbol=r"\lambda", remedy="level `infinite` has no such limit", gt=0,
              per_level={"finite": limits(NARROWEST, WIDEST)})  # fmt: skip
     def ratio(self) -> Array:
         return self.b / self.l

@@ -27,7 +27,7 @@ from templates.physics.thermal.thermal_journal import (
 ISO = "ISO 7902-1:1998"
 DOWSON = "Dowson 1962"
 AROUND = "bush_angle"
-ONE_HAS_NONE = "level one_temperature has none; take level field or fine_field"
+ONE_HAS_NONE = "level `one_temperature` has none; choose level `field` or `fine_field`"
 UNBORNE = (
     "no film thicker than 1 % of the clearance was found that bears the load and sheds its heat below "
     "500 degC: change load, clearance, width or speed, the oil, its supply, the bush's cooling, or the "
@@ -166,7 +166,7 @@ class ThermalFilm(Oil, Template):
         """A bush that is cooled from behind has a heat transfer coefficient and a coolant temperature."""
         return np.isnan(self.h_b) == np.isnan(self.T_amb)
 
-    @require("held_bush_temperature", "heat_transfer_coefficient", remedy="leave one of them out")
+    @require("held_bush_temperature", "heat_transfer_coefficient", remedy="omit one of them")
     def one_bush(self) -> Truth:
         """The bush is either at a given temperature or cooled from behind."""
         return np.isnan(self.T_b) | np.isnan(self.h_b)

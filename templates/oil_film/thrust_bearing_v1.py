@@ -121,7 +121,7 @@ class ThrustBearing(Oil):
         """The inner diameter is smaller than the outer one."""
         return self.D_i < self.D_o
 
-    @require("supply_temperature", missing=True, remedy="give it, or dynamic_viscosity")
+    @require("supply_temperature", missing=True, remedy="give it, or `dynamic_viscosity`")
     def viscosity_follows(self) -> Truth:
         """The viscosity follows from the heat balance, or is given."""
         return ~(np.isnan(self.T_s) & np.isnan(self.as_given("eta")))

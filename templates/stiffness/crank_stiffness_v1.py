@@ -24,9 +24,11 @@ CARTER = "Carter 1928"
 WILSON = "Ker Wilson 1956"
 PAPER = "Punewale et al. 2015"
 SHORT = "below 0.2 (journal + pin diameter) Ker Wilson's web term turns negative"
-NOTHING_LEFT = "the throw is too short for Ker Wilson's formula: ask for stiffness_carter or finite elements"
+NOTHING_LEFT = (
+    "the throw is too short for Ker Wilson's formula: ask for `stiffness_carter` or finite elements"
+)
 COMPARABLE: dict[str, Any] = {"gt": -1e9, "lt": 1e9, "remedy": "the two are not of one kind: check units"}
-NOT_COMPARED = "give reference_stiffness, such as a measured one or one by finite elements"
+NOT_COMPARED = "give `reference_stiffness`, such as a measured one or one by finite elements"
 
 
 class CrankStiffness(Template):

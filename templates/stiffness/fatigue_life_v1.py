@@ -213,17 +213,19 @@ class FatigueLife(SteelEndurance):
         """Points, angles and curves give at most 200 000 stress tensors."""
         return is_manageable(self.loads, self.stresses)
 
-    @require("multiaxial_criterion", remedy="take findley, which needs no sign")
+    @require("multiaxial_criterion", remedy="choose `findley`, which needs no sign")
     def one_tensor_leads(self) -> Truth:
         """With signed von Mises one tensor accounts for 95 % of the squared stress at every point."""
         return one_tensor_leads(self.criterion, self.history)
 
-    @require("yield_strength", "compression_credit", missing=True, remedy="give it, or leave the credit out")
+    @require(
+        "yield_strength", "compression_credit", missing=True, remedy="give it, or omit `compression_credit`"
+    )
     def credit_needs_yield(self) -> Truth:
         """Credit for compressive mean stress needs the yield strength."""
         return (self.credit == NO) | (self.sigma_y > 0)
 
-    @require("compression_credit", "mean_stress_correction", remedy="take goodman or morrow")
+    @require("compression_credit", "mean_stress_correction", remedy="choose `goodman` or `morrow`")
     def credit_needs_a_line(self) -> Truth:
         """Gerber's parabola does not apply to compressive mean stress."""
         return (self.credit == NO) | (self.correction != GERBER)

@@ -64,8 +64,8 @@ from templates.physics.torsion.train_modes import mode_shapes, natural_frequenci
 
 CYLINDERS, ANGLE, SPEEDS, ORDERS = "cylinders", "crank_angle", "speeds", "engine_orders"
 RESONANT = (
-    "a speed lies on a resonance without damping, or values are out of scale: give shaft_damping, "
-    "loss_factors or absolute_damping, take other speeds, or check the units"
+    "a speed lies on a resonance without damping, or values are out of scale: give `shaft_damping`, "
+    "`loss_factors` or `absolute_damping`, take other speeds, or check the units"
 )
 NO_SECTION = "no section modulus is given"
 
@@ -214,12 +214,12 @@ class ForcedTorsion(TorsionTrain):
         """An inertia torque is given together with its speed."""
         return has_its_speed(self.T_m, self.n_m)
 
-    @require("gas_torque", "crank_angle", missing=True, remedy="leave the last point out")
+    @require("gas_torque", "crank_angle", missing=True, remedy="omit the last point")
     def gas_closes(self) -> Truth:
         """A last point of the gas torque that repeats the first angle repeats its torque."""
         return closes(self.theta, self.T_g)
 
-    @require("inertia_torque", "crank_angle", missing=True, remedy="leave the last point out")
+    @require("inertia_torque", "crank_angle", missing=True, remedy="omit the last point")
     def inertia_closes(self) -> Truth:
         """A last point of the inertia torque that repeats the first angle repeats its torque."""
         return closes(self.theta, self.T_m)

@@ -46,7 +46,7 @@ from templates.physics.shafts.stress_concentration import (
 )
 
 BASQUIN, SHIGLEY, PETERSON = "Basquin 1910", "Budynas, Nisbett 2011", "Pilkey, Pilkey 2008"
-NO_NOTCH = "give larger_diameter, smaller_diameter and fillet_radius"
+NO_NOTCH = "give `larger_diameter`, `smaller_diameter` and `fillet_radius`"
 NO_NOMINAL = "give it, or the nominal stress with its stress concentration"
 ENDLESS = (
     "endless: the equivalent amplitude does not exceed the endurance limit, or is so far below the fatigue "
@@ -187,7 +187,7 @@ class StressLife(Template):
         return either_is_given(self.as_given_mean, self.S_m)
 
     @require("stress_concentration_factor", "fillet_radius", missing=True,
-             remedy="give the factor, or larger_diameter, smaller_diameter and fillet_radius")  # fmt: skip
+             remedy="give it, or `larger_diameter`, `smaller_diameter` and `fillet_radius`")  # fmt: skip
     def nominal_stress_has_a_notch(self) -> Truth:
         """A nominal stress comes with its stress concentration."""
         return notch_is_known(
@@ -215,7 +215,7 @@ class StressLife(Template):
         """Shoulder height over fillet is within the chart: 0.25 to 4 in torsion, 0.1 to 20 in bending."""
         return is_charted(self.loading, self.h_r, self.as_given_factor)
 
-    @require("mean_stress", warning="compressive_mean", remedy="morrow lets it lengthen life")
+    @require("mean_stress", warning="compressive_mean", remedy="with `morrow` it lengthens the life")
     def mean_is_tensile(self) -> Truth:
         """The mean stress is tensile; Goodman and Gerber treat a compressive one as zero."""
         return mean_is_used(self.correction, self.sigma_m)

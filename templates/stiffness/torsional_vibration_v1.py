@@ -121,7 +121,7 @@ class TorsionalVibration(Template):
     def n_c(self) -> Array:
         return critical_speeds(self.omega, self.h)
 
-    @text("resonances", absent="give engine_orders and speed_range")
+    @text("resonances", absent="give `engine_orders` and `speed_range`")
     def met(self) -> str:
         return resonances(self.n_c, self.h, self.n)
 

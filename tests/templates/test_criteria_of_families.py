@@ -286,7 +286,7 @@ def test_a_bearing_that_is_stable_at_every_speed_says_so():
     assert (weightless.verdict, weightless.reason) == ("met", NO_THRESHOLD)
     result = evaluate(built_in().get(*FILM), inputs(*FILM, {}), level="fit")
     fit = next(j for j in result.criteria if j.name == "whirl")
-    assert (fit.verdict, "level fit cannot tell" in fit.reason) == ("not_checked", True)
+    assert (fit.verdict, "level `fit` cannot tell" in fit.reason) == ("not_checked", True)
 
 
 def test_a_film_that_is_stable_only_within_its_error_is_undecided():
@@ -350,4 +350,4 @@ def test_the_source_of_a_limit_comes_from_its_row():
 
 
 def test_the_note_on_swapped_bank_signs():
-    assert "Bank angles with their signs" in built_in().get(*ENGINE).documentation()
+    assert "Bank angles with opposite signs" in built_in().get(*ENGINE).documentation()

@@ -78,8 +78,8 @@ UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
 """Verdicts for which no film is reported."""
 REMEDY = {
     Verdict.STARVED: "move the groove or the hole to where the load seldom points, or add one",
-    Verdict.UNSETTLED: "give less load in kN, or more dynamic_viscosity in mPa*s; under a light load give "
-    "less supply_pressure in bar",
+    Verdict.UNSETTLED: "give less load in kN, or more `dynamic_viscosity` in mPa*s; under a light load give "
+    "less `supply_pressure` in bar",
 }
 """Changes of the input that can give a repeating film."""
 

@@ -121,7 +121,7 @@ class TestBankSigns:
         raw = {**sizes(row), "firing_angles": degrees(numbers(row["firing_angles"])), "throws": throws}
         faults = refused(raw)
         assert "throws" in faults
-        assert "turn the sign of bank_angles" in faults["throws"]
+        assert "turn the sign of `bank_angles`" in faults["throws"]
         out = values({**raw, "pins_of_a_throw": "split"}, ["pin_split"])
         assert out["pin_split"] == pytest.approx(180, abs=1e-9)
 

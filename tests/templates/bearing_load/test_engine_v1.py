@@ -388,7 +388,7 @@ class TestRefusals:
              {"support_stiffness"}, "single value"),
             ({"throws": [1, 2, 4, 4]}, {"throws"}, "number the throws"),
             ({"throws": [1, 1, 2, 2]}, {"throws"}, "split"),
-            ({"web_positions": None}, {"web_positions"}, "places"),
+            ({"web_positions": None}, {"web_positions"}, "positions"),
             ({"balancer_unbalance": {"value": [1.0], "unit": "kg*mm"}},
              {"balancer_unbalance"}, "three lists"),
             ({"strokes": 3}, {"strokes"}, "2 or 4"),

@@ -241,12 +241,12 @@ class TestRefusals:
 
     def test_property_level_supplied_needs_a_supply(self):
         detail = refusal(inputs(X, Y), "supplied")["inlets"]
-        assert "give groove_width, sleeve_hole_length or pin_hole_length" in detail
-        assert "supply_pressure in bar" in detail
+        assert "give `groove_width`, `sleeve_hole_length` or `pin_hole_length`" in detail
+        assert "`supply_pressure` in bar" in detail
 
     def test_property_lands_within_the_map(self):
         narrow = inputs(X, Y, 0.05, groove_width="2 mm", supply_pressure="3 bar")
-        assert "narrower groove_width" in refusal(narrow)["land_ratio"]
+        assert "narrower `groove_width`" in refusal(narrow)["land_ratio"]
 
     @pytest.mark.slow
     def test_analytic_level_supplied_marches_each_point_as_it_would_alone(self):

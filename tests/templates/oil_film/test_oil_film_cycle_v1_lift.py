@@ -141,7 +141,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("changes", "name", "words"),
         [
-            ({"sleeve_speed": si(0.3 * OMEGA, "rad/s")}, "sleeve_speed", "groove_extent of 360 deg"),
+            ({"sleeve_speed": si(0.3 * OMEGA, "rad/s")}, "sleeve_speed", "`groove_extent` of 360 deg"),
             ({**PIN, "crank_speed": si(0.7 * OMEGA, "rad/s")}, "crank_speed", "speeds in rpm"),
             ({"bearing_diameter": "0.05 mm"}, "diametral_clearance", "journal diameter, in mm"),
             (

@@ -34,7 +34,7 @@ class TestShapes:
          {"bell_mouth_depth": "5 um", "bell_mouth_length": "5 mm"}],
     )  # fmt: skip
     def test_property_levels_of_a_plain_bore_refuse_others(self, level, shape):
-        with pytest.raises(InvalidInputs, match="need level reynolds or mass_conserving"):
+        with pytest.raises(InvalidInputs, match="need level `reynolds` or `mass_conserving`"):
             values(bearing(1.0, 0.5, **shape), FILM, level=level)
 
     def test_property_a_point_without_shape_is_that_of_the_plain_bore(self):
@@ -113,7 +113,7 @@ class TestShapes:
     def test_property_lobes_without_preload_are_remarked(self, shape, count):
         warnings = evaluate(OilFilm, bearing(1.0, 0.5, **shape)).warnings
         assert [w.detail for w in warnings if w.name == "preload"] == [
-            "preload 0 is not above 0; give preload, such as 0.5, or bore_shape plain"
+            "preload 0 is not above 0; give preload, such as 0.5, or set `bore_shape` to `plain`"
         ] * count
 
     def test_property_the_error_stated_is_that_of_the_mesh(self):

@@ -25,8 +25,8 @@ def refused(change):
 @pytest.mark.parametrize(
     ("change", "name", "words"),
     [
-        ({"shaft_to": [2, 9]}, "shaft_to", "inertias that exist"),
-        ({"shaft_to": [1, 4]}, "shaft_to", "two inertias"),
+        ({"shaft_to": [2, 9]}, "shaft_to", "two existing inertias"),
+        ({"shaft_to": [1, 4]}, "shaft_to", "two existing inertias"),
         ({"shaft_from": [0, 3]}, "shaft_from", "number the inertias from 1"),
         ({"shaft_from": [1.5, 3]}, "shaft_from", "whole number"),
         ({"shaft_to": [2]}, "shaft_to", "give equal lengths"),
@@ -34,15 +34,15 @@ def refused(change):
         ({"shaft_stiffness": [-3e4, 1e4]}, "shaft_stiffness", "≥ 0"),
         ({"inertias": [0.4, 0, 2.0, 0.5]}, "inertias", "> 0"),
         ({"inertias": [0.4, -0.1, 2.0, 0.5]}, "inertias", "> 0"),
-        ({"gear_to": [8]}, "gear_to", "inertias that exist"),
+        ({"gear_to": [8]}, "gear_to", "two existing inertias"),
         ({"gear_to": None}, "gear_to", "three lists"),
         ({"gear_ratios": [0]}, "gear_ratios", "no ratio is 0"),
-        ({"gear_from": [2, 3, 4], "gear_to": [3, 4, 2], "gear_ratios": [1, 1, 1]}, "gear_to", "circle"),
+        ({"gear_from": [2, 3, 4], "gear_to": [3, 4, 2], "gear_ratios": [1, 1, 1]}, "gear_to", "in a loop"),
         ({"gear_from": [2, 1], "gear_to": [3, 3], "gear_ratios": [-0.5, -0.5]}, "gear_to", "twice|once"),
         ({"gear_from": [2, 1], "gear_to": [3, 4], "gear_ratios": [-0.5, 2]}, "gear_ratios", "around a loop"),
-        ({"gear_from": None, "gear_to": None, "gear_ratios": None}, "shaft_from", "hangs loose|one train"),
+        ({"gear_from": None, "gear_to": None, "gear_ratios": None}, "shaft_from", "loose parts|one train"),
         ({"excited_inertias": [7]}, "excited_inertias", "exist"),
-        ({"excited_inertias": [1, 3], "firing_angles": [0, 180]}, "excited_inertias", "one speed"),
+        ({"excited_inertias": [1, 3], "firing_angles": [0, 180]}, "excited_inertias", "same mean speed"),
         ({"firing_angles": [0, 180]}, "firing_angles", ""),
         ({"propeller_inertia": 4}, "propeller_inertia", "all three"),
         ({"observed_inertia": 5}, "observed_inertia", "exists"),
@@ -66,7 +66,7 @@ def test_property_refusals_name_the_input(change, name, words):
 
 def test_property_a_closed_cycle_that_does_not_close_is_refused():
     closed = {"crank_angle": [*TONE["crank_angle"], 360.0], "gas_torque": [*TONE["gas_torque"], 0.3]}
-    assert "leave the last point out" in refused(closed)["gas_torque"]
+    assert "omit the last point" in refused(closed)["gas_torque"]
 
 
 @pytest.mark.parametrize("shift", [0.0, 1e-15])
