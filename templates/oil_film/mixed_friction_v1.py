@@ -74,7 +74,7 @@ class MixedFriction(Oil):
     and 42 % more at gaps of 5, 3, 2 and 0.5 times the roughness; a rough journal in a smooth bearing carries
     2 to 3 % less at gaps of 5 to 2 times the roughness, a smooth journal in a rough bearing 5 to 23 % more.
     Between the eccentricities at which the equation is solved, the load has an error of 0.3 %. The tables end
-    at a gap of half the roughness; below it the two levels keep the difference that they have there.
+    at a gap of half the roughness; below it load and attitude angle keep the ratios that they have there.
     The friction of the oil is the shear over the full circle at the mean gap; shear stress factors are not
     applied.
     The friction of the contact moves the journal against its rotation; the load balance includes this.

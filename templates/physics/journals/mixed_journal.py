@@ -124,7 +124,7 @@ class AveragedFilms:
         film = np.stack([So, attitude], axis=-1)
         for i in np.flatnonzero(roughness > 0):
             film[i] = [rough_journal(e, ratio[i], roughness[i], asymmetry[i]) for e in eps[i]]
-        self.load, self.turn = np.log(film[..., 0] / So), film[..., 1] - attitude
+        self.load, self.turn = np.log(film[..., 0] / So), np.log(film[..., 1] / attitude)
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
         """Return So and attitude [rad] at eccentricities of the bearings with these indices."""
@@ -132,7 +132,7 @@ class AveragedFilms:
         low, high = self.low[point], self.high[point]
         t = np.clip((-np.log1p(-eps) - low) / (high - low), 0, 1)[..., None]
         more, turn = (interpolated(values[point], t)[0][..., 0] for values in (self.load, self.turn))
-        return So * np.exp(more), attitude + turn
+        return So * np.exp(more), attitude * np.exp(turn)
 
 
 @dataclass(frozen=True)
