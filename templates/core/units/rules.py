@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cache, reduce
+from functools import cache
 from itertools import product as pairs_of
 from typing import Any
 
@@ -26,10 +26,14 @@ _MOST_COUNTS = 64  # most possible counts of temperatures that a value may conta
 
 def same(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
     """Return the kind shared by all operands."""
-    return reduce(lambda one, other: shared(operation.sign, one, other, nodes), kinds)
+    kind = kinds[0]
+    for count, other in enumerate(kinds[1:], 1):
+        before = nodes[0] if count == 1 else Apply(operation, tuple(nodes[:count]))
+        kind = shared(operation.sign, kind, other, (before, nodes[count]))
+    return kind
 
 
-def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
+def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, Any]) -> Kind:
     """Return the kind that two values share."""
     counted = _joined(sign, one, other, nodes)
     if one.temperatures is None or other.temperatures is None:
@@ -41,13 +45,12 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     return _kind(counted, both, is_literal=one.literal or other.literal)
 
 
-def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, ...]) -> str:
+def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, Any]) -> str:
     """Return how a temperature and a difference become values of one kind.
 
     A number typed in degC or degF as a summand of either may be meant as a difference.
     """
-    sides = ((one, other), (other, one)) if len(nodes) == 2 else ()
-    for (own, beside), node in zip(sides, nodes, strict=False):
+    for (own, beside), node in zip(((one, other), (other, one)), nodes, strict=True):
         for texts, sign in _summands(node):
             if {count - sign for count in own} & beside:
                 meant = "a difference" if len(texts) == 1 else "differences"
