@@ -45,7 +45,7 @@ class SignedContent(Answer):
     """The signed content; the `digest` of its step is the SHA-256 of this object as canonical JSON.
 
     In canonical JSON the names are sorted, there are no blanks, letters beyond ASCII are not escaped, and the
-    encoding is UTF-8. `reason`, `unconfirmed` and `acknowledged` are left out if they are empty.
+    encoding is UTF-8. `reason`, `unconfirmed` and `acknowledged` are omitted if they are empty.
     """
 
     design: str

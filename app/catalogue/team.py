@@ -20,7 +20,7 @@ Signature = tuple[tuple[int, int, int] | None, ...]
 """Times of change [ns] and size [bytes] of a file and its companion files; None for a missing file."""
 
 _MEANT = re.compile(r".+_[vV][0-9]+")  # a name that looks like that of a version
-NAME = "name it <id>_v<version>.py, in small letters, such as bush_duty_v1.py"
+NAME = "name it `<id>_v<version>.py`, in small letters, such as `bush_duty_v1.py`"
 
 
 @dataclass(frozen=True)

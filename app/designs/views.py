@@ -197,7 +197,7 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
     wanted = name or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
         hint = (
-            f"name one of {', '.join(names)} as in models/{names[0]}/model.step"
+            f"name one of {', '.join(names)} in the path, for example `models/{names[0]}/model.step`"
             if names
             else "it has no model"
         )

@@ -116,7 +116,7 @@ class Impact(Answer):
     )
     unchanged: int
     archived: int = Field(
-        description="number of archived designs that use another version; they are left out"
+        description="number of archived designs that use another version; they are not calculated"
     )
     variants: int = Field(description="number of variants calculated in addition to the designs")
     designs: list[DesignImpact] = Field(

@@ -29,7 +29,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
         why = "has an address of its own" if id in RESERVED else "ends like a version"
-        raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as main_cap")])
+        raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as `main_cap`")])
     snapshot = catalogues.snapshot
     if any(name == id for name, _ in (*snapshot.templates.quarantined, *snapshot.models.quarantined)):
         raise ModelIdTaken(f"{id} is already the id of a file of the team")

@@ -98,7 +98,7 @@ class Settings(BaseSettings):
     )
     wait_seconds: float = Field(2.0, ge=0, description="how long a request waits for its job by default [s]")
     queue_limit: int = Field(
-        1000, gt=0, description="largest number of queued jobs; further ones are refused"
+        1000, gt=0, description="largest number of queued jobs; further jobs are refused"
     )
     client_queue_limit: int = Field(50, gt=0, description="largest number of queued jobs of one client")
     workers: int = Field(1, gt=0, description="jobs that run at the same time, in addition to one analysis")

@@ -168,7 +168,7 @@ class About(Answer):
     criteria: dict[str, Yield] = Field({}, description="the yield of each criterion")
     not_judged: dict[str, UnjudgedCriterion] = {}
     refused: RefusedProducts | None = None
-    warnings: list[Warning] = Field([], description="warnings about tolerances that were left out")
+    warnings: list[Warning] = Field([], description="warnings about tolerances that the analysis omits")
 
 
 class ToleranceAnalysis(Answer):

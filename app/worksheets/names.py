@@ -27,7 +27,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
         why = "is part of an address" if id in RESERVED else "ends like a version"
-        raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as bush_duty")])
+        raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as `bush_duty`")])
     files = catalogues.files
     for catalogue in (files.templates, files.models):
         if id in catalogue.ids or any(id == name for name, _ in catalogue.quarantined):

@@ -44,8 +44,8 @@ class TitleBlock:
         offered = _ON_PARTS if kind in STEP else {*self.texts} if kind in DRAWINGS else set[str]()
         if wrong := typed.keys() - offered:
             drawings = ", ".join(DRAWINGS)
-            detail = f"{drawings} have a title block; a STEP file has drawing_number and drawing_revision"
-            raise InvalidInputs(Fault(n, "not_offered", f"{detail}; leave it out for {kind}") for n in wrong)
+            detail = f"{drawings} have a title block; a STEP file has `drawing_number` and `drawing_revision`"
+            raise InvalidInputs(Fault(n, "not_offered", f"{detail}; omit it for {kind}") for n in wrong)
         if faults := [*_contradictions(typed, stamp)]:
             raise InvalidInputs(faults)
         return replace(

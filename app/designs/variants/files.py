@@ -89,7 +89,11 @@ def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> 
     wanted = model or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
         path = f"variants/{variant}/models/{names[0]}/model.step" if names else ""
-        hint = f"name one of {', '.join(names)} as in {path}" if names else "it has no model"
+        hint = (
+            f"name one of {', '.join(names)} in the path, for example `{path}`"
+            if names
+            else "it has no model"
+        )
         raise NotFound(f"design {id}: {hint}")
     return wanted
 

@@ -72,7 +72,7 @@ def _solving(outcome: Outcome, work: Definitions) -> None:
         equation = next((c for c in work.in_block(region) if c.original.role == "constraint"), None)
         condition = work.equation(equation.original) if equation else "left == right"
         name = look(unknowns[0])
-        remedy = f"give it bounds, as in: solve {name} [1] from 0 to 1 so that {condition}"
+        remedy = f"give it bounds, for example `solve {name} [1] from 0 to 1 so that {condition}`"
         outcome.refuse("solve block, whose unknown has a guess and no bounds", remedy)
     else:
         outcome.refuse(

@@ -148,6 +148,6 @@ def _said(statement: ParsedStatement, clause: lark.Tree[Any]) -> tuple[str, Any]
     if len(said) > 1:
         raise statement.refuse("clause", f"{key} takes only one text", clause, "omit the other texts")
     if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
-        remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
+        remedy = r'write a letter with a subscript, for example `symbol "\eta_{0}"`'
         raise statement.refuse("clause", f"{said[0][:40]!a} is not a symbol", clause, remedy)
     return str(key), said[0]

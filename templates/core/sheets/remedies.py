@@ -33,7 +33,7 @@ _AXES = {
     "call": "give a list, for example `max([a, b])`, or take `max(…)` of each list first",
 }
 _GENERAL = {
-    "no_truth": "test a choice by is, and make a quantity of a condition by if … then … else …",
+    "no_truth": "test a choice by `is`, and make a quantity of a condition by `if … then … else …`",
     "axis_mismatch": "take `max(…)`, `mean(…)` or an item of one of the lists, or declare both over one name",
     "index": "count from 1, with a whole number or a name in [1]",
     "unknown_function": "correct the name, or declare the function above this line",

@@ -215,7 +215,9 @@ def _in_points(match: re.Match[str]) -> str:
 def _toleranced(number: float, written: Written, declared: str) -> TypedQuantity:
     """Return a quantity from a text with a tolerance."""
     if written.unit == "1" != declared:
-        raise FaultyText("missing_unit", f'the unit is missing; write it at the end, as in "… {declared}"')
+        raise FaultyText(
+            "missing_unit", f"the unit is missing; write it at the end, for example `… {declared}`"
+        )
     typed = _quantity(number, written.unit, declared)
     assert isinstance(typed.si, float)
     tolerance, extra = written.of(typed.si, written.unit, declared)

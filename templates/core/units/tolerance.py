@@ -117,7 +117,7 @@ def _signed(sign: str, number: str) -> float:
     """Return a deviation; only zero may be written without a sign."""
     size = float(number)
     if not sign and size:
-        raise FaultyText("not_a_tolerance", f"give {number} a sign, as in {FORMS}")
+        raise FaultyText("not_a_tolerance", f"give {number} a sign, for example {FORMS}")
     return size if sign == "+" or not size else -size
 
 
@@ -203,7 +203,7 @@ def _of_text(name: str, declared: str) -> Unit:
     A tolerance of a temperature is a difference, so its unit is not degC.
     """
     if not name and declared != "1":
-        raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
+        raise FaultyText("missing_unit", f"the tolerance has no unit; add it, for example `5 {declared}`")
     scale = unit(name or "1")
     if scale.absolute and unit(declared).absolute:
         raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or {difference_of(name)}")

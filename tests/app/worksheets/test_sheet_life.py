@@ -174,7 +174,7 @@ def test_an_id_is_a_name_in_snake_case(http, id):
 def test_some_words_are_no_ids(http, id):
     answer = http.post(f"{API}/worksheets", json={"id": id, "text": BUSH})
     assert faults(answer) == {"id": "name"}
-    assert "choose another, such as bush_duty" in answer.json()["errors"][0]["detail"]
+    assert "choose another, such as `bush_duty`" in answer.json()["errors"][0]["detail"]
 
 
 def test_a_draft_can_be_deleted_and_a_release_not(http):
