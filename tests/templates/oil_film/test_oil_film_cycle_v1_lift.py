@@ -4,6 +4,7 @@ Analytic: the pressure integrated by hand, a load that is less by as much. Prope
 for grooves.
 """
 
+from bisect import bisect_left
 from dataclasses import replace
 
 import numpy as np
@@ -187,7 +188,11 @@ def stated(raw, level=None, names=OUTPUTS):
 def law(case, level, output, attributes):
     """The bound of the accuracy file, by hand."""
     content = accuracy(OilFilmCycle).content
-    ((bound,),) = content["cases"][case][level][output]
+    bound = content["cases"][case][level][output]
+    for axis in content["axes"]:
+        bound = bound[bisect_left(axis["values"][1:-1], attributes[axis["attribute"]])]
+    if bound is None:
+        return np.nan
     for name, exponent in content["powers"][case][level][output].items():
         low, high = content["within"][case][name]
         assert low <= attributes[name] <= high, name
@@ -221,7 +226,7 @@ class TestStatedErrors:
         for name in OUTPUTS:
             if name in BOUNDED:
                 expected = law(f"{kind}, fixed", level, name, attributes(times, ratio))
-                assert found[name] == pytest.approx(expected, rel=1e-9), name
+                assert found[name] == pytest.approx(expected, rel=1e-9, nan_ok=True), name
             else:
                 assert np.isnan(found[name]), name
 
@@ -234,8 +239,8 @@ class TestStatedErrors:
 
     def test_example_a_rod_that_swings_is_a_case_of_its_own(self):
         swing, x, y = -0.25 * OMEGA * np.cos(ANGLE), X + 3 * np.cos(ANGLE) - 1, Y + 3 * np.sin(ANGLE)
-        raw = inputs(x, y, **FULL, sleeve_speed=si(swing, "rad/s"))
-        case = "full_groove, swinging", "mobility_grooved", "power_loss"
+        raw = inputs(x, y, **HALF, sleeve_speed=si(swing, "rad/s"))
+        case = "half_groove, swinging", "mobility_grooved", "power_loss"
         bound = law(*case, attributes(1.0, RATIO, x, y))
         assert stated(raw)["power_loss"] == pytest.approx(bound, rel=1e-9)
 
