@@ -115,9 +115,9 @@ def _examined(
 ) -> Description:
     """Return a description with what the examination of its solids found; raises as `examine` does."""
     context.progress(0.85, "the solids are written and read back")
-    found = context.run(examine, described.text, id, drawn, limits=limits)
-    findings = (*described.findings, *found.findings)
-    return replace(described, findings=findings, overlapping=found.overlapping)
+    examined = context.run(examine, described.text, id, drawn, limits=limits)
+    findings = (*described.findings, *examined.findings)
+    return replace(described, findings=findings, overlapping=examined.overlapping)
 
 
 def described_creo(

@@ -20,7 +20,7 @@ import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, Any, TypedDict
+from typing import IO, TypedDict
 
 from app.imported_models.freecad import FreeCad, missing
 from app.workers.base import Limits
@@ -49,7 +49,7 @@ class About(TypedDict, total=False):
     parameters: list[list[str | float]]  # object, kind, key, value, unit, label
     parts: list[tuple[str, float]]  # name, volume [mm³]
     program: str
-    at_import: dict[str, Any]  # the ends, as `cad.imported_models.Ends` reads them
+    at_import: dict[str, object]  # the ends, as `cad.imported_models.Ends` reads them
     left_out: list[str]  # sentences about what becomes no part
     sizes: list[int]
 
