@@ -207,7 +207,7 @@ def test_a_mesh_with_a_hole_is_not_closed(bearing):
 def test_a_gap_that_no_attempt_closes_is_an_error_by_name(bearing, monkeypatch):
     monkeypatch.setattr("cad.mesh.is_closed", lambda one: False)
     ball = read_step(bearing.step)[2]
-    with pytest.raises(GeometryError, match="triangles of ball leave a gap") as refused:
+    with pytest.raises(GeometryError, match="mesh of ball is not closed") as refused:
         closed_mesh(ball, 5.0)
     assert refused.value.code == "open_mesh"
 

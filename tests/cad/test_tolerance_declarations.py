@@ -74,9 +74,9 @@ def test_every_model_carries_its_diameters(model):
     [
         ({"depth": {}}, "only a parameter that is a length"),
         ({"size": {"colour": "red"}}, "valid keys are"),
-        ({"size": {"perpendicularity": 1}}, "`to`, a datum, is required"),
+        ({"size": {"perpendicularity": 1}}, "need a datum in `to`"),
         ({"size": {"perpendicularity": 1, "to": "A"}}, "no dimension declares the datum 'A'"),
-        ({"size": {"cylindricity": 2}}, "share, above 0 and at most 1"),
+        ({"size": {"cylindricity": 2}}, "must be a fraction of the dimension.s tolerance, above 0 and at most 1"),
     ],
 )
 def test_a_declaration_that_makes_no_sense_is_refused_with_its_parameter(said, message):

@@ -140,7 +140,7 @@ class TestCheck:
         )
         result = run("check", "--data", data)
         assert result.exit_code == 1
-        assert "has no revision of the number of its newest one" in result.output
+        assert "lacks the revision that it names as its newest" in result.output
         assert "belongs to a revision that does not exist" in result.output
         assert "table job refers to a row of revision" in result.output
 

@@ -183,4 +183,4 @@ class TestDatabase:
         assert file.read_bytes() == whole, "the damaged log was copied into the file"
         with pytest.raises(DatabaseDamaged, match="found while the service ran"):
             refuse_damage(f"sqlite:///{file}")
-        assert any("damage showed" in text for text in check(file.parent, None, in_use=False).database)
+        assert any("damage occurred" in text for text in check(file.parent, None, in_use=False).database)
