@@ -196,7 +196,7 @@ async def read_file_of_build(
     The file is created at the first request, and stored.
     """
     if kind not in MEDIA_TYPES:
-        raise NotFound(f"there is no model.{kind[:20]}; there are {', '.join(MEDIA_TYPES)}")
+        raise NotFound(f"there is no file model.{kind[:20]}; there are {', '.join(MEDIA_TYPES)}")
     prefer = prefer or PATIENCE
     build = await run_in_threadpool(models.show, key)
     if sha := build.artifacts.get(kind):

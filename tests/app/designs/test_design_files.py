@@ -200,7 +200,7 @@ def test_the_command_line_saves_a_file_under_its_name(served, design, tmp_path):
     assert done.stdout.strip() == str(tmp_path / f"{WIDE}.dxf")
     assert (tmp_path / f"{WIDE}.dxf").read_text().startswith("  0\nSECTION")
     refused = CliRunner().invoke(main, ["download", design["id"], "exe", *place])
-    assert (refused.exit_code, "there is no model.exe" in refused.output) == (1, True)
+    assert (refused.exit_code, "there is no file model.exe" in refused.output) == (1, True)
 
 
 @pytest.mark.parametrize(

@@ -161,8 +161,8 @@ def test_an_explanation_that_takes_long_goes_on_as_a_job(http):
     step = {
         "template": "oil_film",
         "version": 2,
-        "level": "reynolds",
-        "inputs": {**FILM, "speed": "2345 rpm"},
+        "level": "mass_conserving",
+        "inputs": {**FILM, "speed": [f"{2345 + point} rpm" for point in range(5)]},
     }
     own = {"own": {"require": "film.minimum_film_thickness >= 2 um"}}
     later, document = {"Prefer": "respond-async"}, {"name": "long", "steps": {"film": step}, "criteria": own}

@@ -69,4 +69,4 @@ def test_a_file_of_no_build_or_of_no_kind_is_not_found(http):
     assert http.get(f"{API}/builds/{'0' * 64}/model.dxf").status_code == 404
     answer = http.get(f"{API}/builds/{built(http, '76 mm')}/model.dwg")
     assert answer.status_code == 404
-    assert "there is no model.dwg; there are " in answer.json()["detail"]
+    assert "there is no file model.dwg; there are " in answer.json()["detail"]

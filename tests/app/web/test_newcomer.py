@@ -74,7 +74,7 @@ def test_the_paper_in_a_browser(watched, tmp_path, is_drawn):
     load.fill("25 kN")
     expect(message).to_be_hidden()
 
-    page.get_by_placeholder("why, for the history").fill("the size of the paper")
+    page.get_by_placeholder("reason for the change").fill("the size of the paper")
     save(page, 2)
     expect(parameter(page, "model.inner_diameter")).to_have_text("50 → 48 mm")
     expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
