@@ -47,6 +47,8 @@ GROWING = {
     "Lists",
     "CreoSession",
     "EvaluatedValues",
+    "Features",
+    "Definition",
 }
 """Records that one function fills step by step before it returns them."""
 

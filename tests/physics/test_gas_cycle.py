@@ -146,7 +146,7 @@ class TestRefusals:
 
     def test_property_each_fault_names_its_input(self):
         swapped = [0.0, 90, 45, 180, 270, 360, 450, 540, 630]
-        assert "rise strictly" in self.table(swapped)["pressure_angle"]
+        assert "strictly ascending" in self.table(swapped)["pressure_angle"]
         assert "full cycle" in self.table(np.arange(0, 360, 5.0))["pressure"]
         assert "repeats the first" in self.table(np.arange(0, 721, 5.0), np.linspace(1, 2, 145))["pressure"]
         assert "full cycle" in self.table([0.0, 360.0])["pressure"]

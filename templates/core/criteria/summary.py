@@ -12,7 +12,7 @@ from templates.core.criteria.judgement import Judgement
 SHOWN: tuple[Verdict, ...] = ("met", "not_met", "undecided", "not_checked")
 
 
-@dataclass(slots=True)  # frozen, each would cost four times as much
+@dataclass(frozen=True, slots=True)
 class Summary:
     """The verdict over all criteria; green only if all are met and none of them is uncertain.
 

@@ -67,7 +67,7 @@ def test_second_method_formulas_on_paper_give_the_answer():
 
 
 def test_property_viscosity_that_no_shear_leaves_names_input_unit_and_what_is_right():
-    with pytest.raises(InvalidInputs, match=r"give an hths_viscosity in mPa\*s below that at low shear"):
+    with pytest.raises(InvalidInputs, match=r"give an .hths_viscosity. in mPa\*s below that at low shear"):
         answer({"hths_viscosity": "30 mPa*s"})
 
 

@@ -153,7 +153,7 @@ class TestExtremes:
     @pytest.mark.parametrize("width", [-20, 361])
     def test_property_groove_of_impossible_width_is_refused(self, width):
         raw = bearing(1.0, 0.5, grooves={"value": [[90, 20], [270, width]], "unit": "deg"})
-        with pytest.raises(InvalidInputs, match="each groove is 0° to 360° wide") as refusal:
+        with pytest.raises(InvalidInputs, match="Each groove extends over 0° to 360°") as refusal:
             outputs(raw, "minimum_film_thickness")
         assert [fault.name for fault in refusal.value.faults] == ["grooves"]
 
