@@ -224,7 +224,7 @@ class TestRefusals:
             ({**GROOVE, "groove_width": "0 mm"}, "groove_width", "it must be > 0 mm"),
             ({**GROOVE, "groove_extent": "400 deg"}, "groove_extent", "≤ 360 deg"),
             ({**GROOVE, "groove_extent": "0 deg"}, "groove_extent", "> 0 deg"),
-            ({**PIN, "pin_hole_length": "60 mm"}, "pin_hole_length", "at most 95 % of that of the bearing"),
+            ({**PIN, "pin_hole_length": "60 mm"}, "pin_hole_length", "at most 95 % of the bearing's width"),
             ({**PIN, "pin_hole_arc": "400 mm"}, "pin_hole_arc", "extends at most once around"),
             ({**PIN, "pin_hole_angle": "700 deg"}, "pin_hole_angle", "≤ 360 deg"),
             ({"load_sense": "outwards"}, "load_sense", "journal_on_sleeve, sleeve_on_journal"),
