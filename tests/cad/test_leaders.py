@@ -48,7 +48,7 @@ def sides(box):
     return zip(corners, [*corners[1:], corners[0]], strict=True)
 
 
-@pytest.mark.parametrize("share", [0.4, 1.0])
+@pytest.mark.parametrize("share", [0.4, pytest.param(1.0, marks=pytest.mark.slow)])
 @quick_for(*DRAWN)
 def test_leaders_keep_off_dimension_lines_and_foreign_views(model: type[CadModel], share: float) -> None:
     sheet = laid(model, share)
