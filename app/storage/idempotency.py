@@ -75,9 +75,7 @@ class Once:
         """
         if not self.key:
             return None
-        if (
-            DRIVER in session.info
-        ):  # SQLite runs units one after the other, so no other unit carries it out meanwhile
+        if DRIVER in session.info:  # SQLite runs units one by one: no other carries it out meanwhile
             return self.find(session)
         repeatable(session)
         mine = self._new(operated(session), status=0, location={})

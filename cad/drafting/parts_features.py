@@ -116,7 +116,7 @@ class _Reader:
             self._askew(plane, words)
 
     def _askew(self, plane: Surface, words: str) -> None:
-        """A plane along the shaft, at an angle to both centre lines."""
+        """Record a plane along the shaft, at an angle to both centre lines."""
         if self._is_tangent(plane):
             return
         away = plane.point.dot(plane.direction)
@@ -129,7 +129,7 @@ class _Reader:
             self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
 
     def _is_tangent(self, plane: Surface) -> bool:
-        """Whether a plane touches the round ends of a bar: two of them, or one and runs along its radius."""
+        """Return whether a plane touches two round ends of a bar, or touches one and runs along its radius."""
         touched: list[Vector] = []
         for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z)):
             away = (end.point - plane.point).dot(plane.direction)
@@ -143,7 +143,7 @@ class _Reader:
         return False
 
     def _slope(self, plane: Surface) -> None:
-        """A leaning plane: its angle, and how far from the shaft it begins."""
+        """Record the angle of a leaning plane, and how far from the shaft the plane begins."""
         if any(_touch(cone, plane) for cone in self.cones):
             return  # a chamfer that goes straight on
         normal = plane.direction
@@ -181,7 +181,7 @@ class _Reader:
             self._cross_hole(cylinder, name)
 
     def _is_round_end(self, cylinder: Surface) -> bool:
-        """Whether planes along the shaft touch a cylinder on two sides, the largest about its axis."""
+        """Return whether planes touch a cylinder on two sides, the largest one about its axis."""
         if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
             return False
         beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
@@ -199,7 +199,7 @@ class _Reader:
             self.found.up[y] = f"the axis of a hole of {name} at {y:.6g} mm"
 
     def _is_relief(self, cylinder: Surface) -> bool:
-        """A circle that opens a bore beside its joint: its own height and depth locate it."""
+        """Return whether a circle opens a bore beside its joint; record its height and depth."""
         x, y = self.frame.flat(cylinder.point)
         bores = [c for c in self.cylinders if c.about(Z)]
         if not cylinder.along(Z) or not bores:
@@ -238,14 +238,14 @@ class _Reader:
             self.found.round_at[root] = torus.point.z
 
     def _is_below(self, torus: Surface) -> bool:
-        """Whether a round groove opens outwards: the cylinders beside it are within its circle."""
+        """Return whether a round groove opens outwards: the cylinders beside it are within its circle."""
         radii = [c.diameter / 2 for c in self.cylinders if c.about(Z) and c.face[0] == torus.face[0]]
         return (
             min((abs(r - torus.about_radius), r) for r in radii)[1] < torus.about_radius if radii else False
         )
 
     def _drilling(self) -> None:
-        """The ends of the axis of one oblique hole; others are like it."""
+        """Record the ends of the axis of one oblique hole; the other holes are equal."""
         slanted = [c for c in self.cylinders if not c.along(Z) and abs(c.direction.dot(Z)) > _FLAT]
         upright = self.frame.right
         within = [c for c in slanted if abs(c.point.dot(upright)) + abs(c.direction.dot(upright)) < _CLEAR]
@@ -273,7 +273,7 @@ class _Reader:
                         yield (hole.point + way * t).dot(way)
 
     def _centres(self) -> None:
-        """The middle of the part along the shaft has a centre line if pairs of planes lie about it."""
+        """Record a centre line in the middle of the part if pairs of planes lie about it."""
         pairs = [
             z for z in self.levels if z > _CLEAR and any(abs(z + other) < _CLEAR for other in self.levels)
         ]
