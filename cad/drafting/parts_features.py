@@ -129,7 +129,7 @@ class _Reader:
             self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
 
     def _is_tangent(self, plane: Surface) -> bool:
-        """Return whether a plane touches two round ends of a bar, or touches one and runs along its radius."""
+        """Return whether a plane touches two round ends of a bar, or one along whose radius it runs."""
         touched: list[Vector] = []
         for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z)):
             away = (end.point - plane.point).dot(plane.direction)
