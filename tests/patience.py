@@ -6,7 +6,10 @@ passes on a machine five times as busy. A deadline only ends a test that would w
 
 import os
 import time
+from collections.abc import Callable
+from typing import TypeVar
 
+Answer = TypeVar("Answer")
 FACTOR = float(os.environ.get("CRANKWRIGHT_TEST_PATIENCE", "1"))
 TEST = 300.0 * FACTOR  # for one test with its fixtures [s]
 SLOW_TEST = 3600.0 * FACTOR  # for one of the slow lane [s]
@@ -19,7 +22,12 @@ def patient(seconds: float) -> float:
     return seconds * FACTOR
 
 
-def until(ask, wanted=bool, seconds=60.0, glance=GLANCE):
+def until(
+    ask: Callable[[], Answer],
+    wanted: Callable[[Answer], object] = bool,
+    seconds: float = 60.0,
+    glance: float = GLANCE,
+) -> Answer:
     """Ask until the answer is as wanted, and return it; fail with the last answer once the time is over.
 
     Looks become rarer, by a tenth of what was waited for: a look may cost as much as what it waits for.

@@ -5,6 +5,9 @@ import re
 _NUMBER = re.compile(r"(?<![\w.])[-−]?\d[\d.]*(?:e[-+]?\d+)?(?![\w/])")  # not the 1 of the unit 1/mm³
 _RELATION = re.compile(r" is (not below|below|not above|above) ")
 _COUNTED = re.compile(r" \((?:worst|one) of [^)]*\)")
+_PARTS = re.compile(
+    r"; | \(–: |: (?=met|not met|undecided|not checked)"
+)  # reasons follow points without a value
 TRUE_OF = {
     "below": lambda one, other: one < other,
     "not below": lambda one, other: one >= other,
@@ -18,7 +21,7 @@ def comparisons(text):
 
     A side is a value behind its words, `0.98 · pin diameter = 47.04 mm`: its last number counts.
     """
-    for part in re.split(r"; |: (?=met|not met|undecided|not checked)", _COUNTED.sub("", text)):
+    for part in _PARTS.split(_COUNTED.sub("", text)):
         relation = _RELATION.search(part)
         if relation is None or _RELATION.search(part, relation.end()):
             continue
