@@ -16,6 +16,10 @@ FILLED, MORE = 0.35, 0.005
 """Least share of the area's width or height that views without their dimensions take, if a sheet has it; and
 by how much it grows with each dimension."""
 
+_LEAST = 0.4  # of that share: views that take less are tried only if no others have room
+_EMPTY = 4.0
+"""How many sizes larger a sheet may be that its views fill, rather than one that is nearly empty."""
+
 _ROOM = 24.0  # around and between views, beside the dimensions
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 """The scales of ISO 5455, the largest first."""
@@ -49,9 +53,8 @@ class Plan:
 def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
     """Yield the plans in the order of preference.
 
-    Removed sections have `elsewhere` more dimensions. First come sheets and scales whose views fill the
-    sheet, beginning with the smallest sheet and its largest scale; then all others with enough room, the
-    fullest first.
+    Removed sections have `elsewhere` more dimensions. A smaller sheet comes before a larger one, unless its
+    scale leaves it emptier than the larger one.
     """
     lanes = Lanes.sorted(wanted, section, end)
     (left, low), (right, high) = section.box
@@ -70,9 +73,13 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int 
         if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
     ]
     wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.55)
-    full = [one for one in fitting if share(*one) >= wanted_share]
-    others = sorted((one for one in fitting if one not in full), key=lambda one: -share(*one))
-    for format, scale in [*full, *others] or [(FORMATS[-1], SCALES[-1])]:
+
+    def cost(format: Format, scale: float) -> float:
+        return FORMATS.index(format) + _EMPTY * max(wanted_share - share(format, scale), 0.0) / wanted_share
+
+    readable = [one for one in fitting if share(*one) >= _LEAST * wanted_share]
+    ordered = sorted(readable or fitting, key=lambda one: (cost(*one), -one[1]))
+    for format, scale in ordered or [(FORMATS[-1], SCALES[-1])]:
         area, room = format.area, format.room
         gap = (_ROOM + sides[1]) / scale
         spare = (room[0] - scale * across - taken[0]) / 2, (room[1] - scale * (top - bottom) - taken[1]) / 2

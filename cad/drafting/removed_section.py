@@ -19,7 +19,7 @@ from cadquery import Location, Vector
 from cad.drafting.curves import Point
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
-from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
+from cad.drafting.dimension_layout import TEXT, DimensionLayout, PlacedDimension
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
@@ -38,6 +38,10 @@ LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
 _STEP = 4.0  # between places that are tried [mm on paper]
 _LABEL = 14.0  # of a section's label above it [mm on paper]
+
+
+class NoRoom(Exception):
+    """The sheet has no free place for a section at this scale."""
 
 
 @dataclass(frozen=True)
@@ -143,8 +147,10 @@ def mark(page: Page, room: Room, removed: RemovedSection) -> None:
         room.add((min(at, start, stop) - 0.5, y - 9.5, max(at + width, start, stop) + 0.5, y + 1.0))
 
 
-def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
-    """Draw a section at a free place of the sheet; return its dimensions.
+def place(
+    page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout
+) -> tuple[list[PlacedDimension], View]:
+    """Draw a section at a free place of the sheet; return its dimensions, and its view there.
 
     Raises
     ------
@@ -183,7 +189,7 @@ def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLay
     for one in (_moved(one, shift) for one in inner):
         along = (one.measure.points[0][0] + middle[0]) / 2  # beside the centre line
         placed.append(placing.within(one, along, high))
-    return placed
+    return placed, view
 
 
 def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:

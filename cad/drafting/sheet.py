@@ -19,12 +19,12 @@ from cad.drafting.balloons import balloons
 from cad.drafting.content import Content, contents, declared_of
 from cad.drafting.controls import Controls
 from cad.drafting.declaration import DrawingDeclaration
-from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
+from cad.drafting.dimension_layout import DimensionLayout, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.page import Page, document_of
 from cad.drafting.plan import Plan
-from cad.drafting.removed_section import mark, place
+from cad.drafting.removed_section import NoRoom, mark, place
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.sheet_border import General, SheetNumber, frame, notes, parts_list, table, title_block
 from cad.drafting.title import general_profile
@@ -35,6 +35,7 @@ from cad.step import Body
 from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
+_FEW_FAULTS = 2  # of a sheet with removed sections, rather than one without them
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
@@ -69,13 +70,14 @@ def _no_times() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Laid:
-    """A sheet on which everything has a place."""
+    """A sheet on which everything has a place; `faults` counts places that are not free."""
 
     page: Page
     room: Room
     centres: Centres
     placed: Sequence[PlacedDimension]
     datum: str
+    faults: int
 
 
 def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
@@ -104,27 +106,31 @@ def laid_out(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> tuple[Content, Laid]:
-    """Return the first sheet on which everything has room, else a sheet without removed sections."""
+    """Return the first sheet on which everything has a free place, else that with the fewest faults.
+
+    Sheets without removed sections come last, unless those with them have many faults.
+    """
+    every: list[tuple[Content, Laid]] = []
     for content in contents(bodies, seen, header, declared):
-        tried = [*islice(content.plans(), _MOST_PLANS)]
-        for plan in tried:
-            is_last = plan is tried[-1] and not content.removed
+        if any(laid.faults <= _FEW_FAULTS for _, laid in every):
+            break
+        for plan in islice(content.plans(), _MOST_PLANS):
             try:
-                return content, _laid(content, bodies, declared, plan, is_last=is_last)
+                every.append((content, _laid(content, bodies, declared, plan)))
             except NoRoom:
                 continue
-    raise AssertionError("the largest sheet has room for every drawing")
+            if every[-1][1].faults == 0:
+                return every[-1]
+    return min(every, key=lambda one: one[1].faults)
 
 
-def _laid(
-    content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
-) -> Laid:
+def _laid(content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan) -> Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
     Raises
     ------
     NoRoom
-        If something has no place, unless it is the last sheet to be tried.
+        If a removed section has no place.
     """
     page = Page(document_of(plan), plan)
     centres = centre_lines(content.section, content.end, bodies, plan)
@@ -132,15 +138,18 @@ def _laid(
     cutting_line(page, content.section, content.end, room)
     for one in content.removed:
         mark(page, room, one)
-    placing = DimensionLayout(plan, room, is_last=is_last)
+    placing = DimensionLayout(plan, room, declared.datums)
     placed = placing.all()
+    views = [(content.section, 0.0), (content.end, plan.beside)]
     for one in content.removed:
-        placed += place(page, room, one, placing)
-    controls = Controls(page, room, is_last=is_last)
+        dimensions, view = place(page, room, one, placing)
+        placed += dimensions
+        views.append((view, 0.0))
+    controls = Controls(page, room, views)
     datum = controls.draw(declared, placed)
     for number, target in balloons(content.section, bodies):
         controls.balloon(str(number), plan.paper(target))
-    return Laid(page, room, centres, placed, datum)
+    return Laid(page, room, centres, placed, datum, placing.faults + controls.faults)
 
 
 def _fill(
