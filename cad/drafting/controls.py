@@ -15,7 +15,7 @@ import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import Control, DrawingDeclaration
-from cad.drafting.dimension_layout import TEXT, DatumPlace, PlacedDimension
+from cad.drafting.dimension_layout import TEXT, DatumPlace, NoRoom, PlacedDimension
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
 from cad.drafting.letter_width import width_of
@@ -48,12 +48,19 @@ class Controls:
     `views` are the views of the sheet, each with the distance by which it is moved to the right.
     """
 
-    def __init__(self, page: Page, room: Room, views: Sequence[tuple[View, float]]) -> None:
+    def __init__(self, page: Page, room: Room, views: Sequence[tuple[View, float]], most: int) -> None:
+        self.most = most
         self.page, self.plan, self.room, self.views = page, page.plan, room, views
         self.faults = 0
 
     def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
-        """Draw everything that belongs to a dimension that is drawn; return the letter of the first datum."""
+        """Draw everything that belongs to a dimension that is drawn; return the letter of the first datum.
+
+        Raises
+        ------
+        NoRoom
+            If there are as many faults as on another sheet.
+        """
         of: Mapping[str, PlacedDimension] = {one.dimension.name: one for one in placed if one.dimension.name}
         for name, letter in declared.datums.items():
             if name in of:
@@ -65,10 +72,16 @@ class Controls:
         for name, stack in stacks.items():
             if name in of:
                 self._frames(of[name], stack)
+                self._checked()
         for name, height in declared.textures.items():
             if name in of:
                 self._texture(of[name], f"Ra {height:g}")
+                self._checked()
         return drawn[0] if drawn else ""
+
+    def _checked(self) -> None:
+        if self.faults >= self.most:
+            raise NoRoom
 
     def _datum(self, placed: PlacedDimension, letter: str) -> None:
         if (one := placed.datum) is None:
@@ -96,7 +109,7 @@ class Controls:
         frames = [Frame(one.form, one.width, one.to, TEXT) for one in stack]
         width, height = max(frame.width for frame in frames), sum(frame.height for frame in frames)
         boxes_at = _boxes(width, height, height - frames[0].height / 2)
-        target, start, is_left = self._place(self._targets(placed), boxes_at, _across(placed))
+        target, start, is_left = self._beside(placed, boxes_at)
         left = start[0] - width if is_left else start[0]
         top = start[1] + frames[0].height / 2
         for frame in frames:
@@ -111,7 +124,7 @@ class Controls:
         def boxes(starts: np.ndarray, _is_left: np.ndarray) -> np.ndarray:
             return np.concatenate([starts - _ROUND, starts + _ROUND], axis=1)
 
-        _, (x, y), _ = self._place([target], boxes)
+        _, (x, y), _ = self._place([target], boxes, target)
         size = dist((x, y), target)
         foot = x + (target[0] - x) * _ROUND / size, y + (target[1] - y) * _ROUND / size
         turns = [pi * step / 4 for step in range(8)]
@@ -129,7 +142,7 @@ class Controls:
         """Draw the symbol of a texture on the last piece of its leader, which is level."""
         reach = width_of(text, 2.5)
         boxes_at = _boxes(_SHELF + 4.0 + reach, 11.0, 0.5)
-        target, start, is_left = self._place(self._targets(placed), boxes_at, _across(placed))
+        target, start, is_left = self._beside(placed, boxes_at)
         left = start[0] - (_SHELF + 4.0 + reach if is_left else 0.0)
         shelf = (start[0], start[1]), (left if is_left else left + _SHELF, start[1])
         x, y = left + _SHELF / 2, start[1]
@@ -141,22 +154,30 @@ class Controls:
     def _targets(self, placed: PlacedDimension) -> list[Point]:
         return targets(placed, self.views, self.plan)
 
+    def _beside(self, placed: PlacedDimension, boxes_at: BoxesAt) -> tuple[Point, Point, bool]:
+        """Return where a leader to the face of a dimension ends and starts, and whether it leads right."""
+        about = self.plan.paper(placed.dimension.measure.points[0], placed.right)
+        if placed.ends is None:
+            return self._place(self._targets(placed), boxes_at, about)
+        across = int(placed.dimension.measure.form == "up")  # its edges lie across what it measures
+        ways = _WAYS[np.abs(_WAYS[:, across]) > _SLANT]
+        return self._place(self._targets(placed), boxes_at, about, ways)
+
     def _place(
-        self, ends: Sequence[Point], boxes_at: BoxesAt, across: int | None = None
+        self, ends: Sequence[Point], boxes_at: BoxesAt, about: Point, ways: np.ndarray = _WAYS
     ) -> tuple[Point, Point, bool]:
         """Return where a leader ends and starts, and whether it leads to the right; occupy its start.
 
-        Of the free places about an end, the nearest is taken whose leader crosses no outline, or fewest. The
-        edge on which it ends lies `across` a coordinate.
+        Of the free places about an end, the nearest is taken whose leader crosses no outline, or fewest. It
+        crosses no view but that of the point `about`.
         """
-        ways = _WAYS if across is None else _WAYS[np.abs(_WAYS[:, across]) > _SLANT]
         found: list[tuple[int, int, Point, Point, bool]] = []
         farthest = round(150 * self.plan.format.width / FORMATS[0].width)
         for away in range(_FIRST, farthest, _RING):
             if found and (min(found)[0] == 0 or away > found[0][1] + _BEYOND):
                 break
             for end in ends:
-                ring = self._ring(end, away * ways, boxes_at)
+                ring = self._ring(end, away * ways, boxes_at, about)
                 found += ((met, away, end, start, is_left) for met, start, is_left in ring)
         self.faults += not found
         _, _, end, start, is_left = (
@@ -165,18 +186,15 @@ class Controls:
         self.room.add(_box(boxes_at, start, is_left=is_left))
         return end, start, is_left
 
-    def _ring(self, end: Point, away: np.ndarray, boxes_at: BoxesAt) -> Iterator[tuple[int, Point, bool]]:
+    def _ring(
+        self, end: Point, away: np.ndarray, boxes_at: BoxesAt, about: Point
+    ) -> Iterator[tuple[int, Point, bool]]:
         """Yield the free starts of leaders about their end, with the number of outlines that they cross."""
         starts, is_left = end + away, away[:, 0] < -1e-9
         for place in np.flatnonzero(self.room.free(boxes_at(starts, is_left))):
             start = float(starts[place, 0]), float(starts[place, 1])
-            if self.room.passes([end, start]) and self.room.is_apart([end, start]):
+            if self.room.passes([end, start]) and self.room.is_apart([end, start], about):
                 yield self.room.outlines_met(end, start), start, bool(is_left[place])
-
-
-def _across(placed: PlacedDimension) -> int | None:
-    """Return the coordinate that a dimension in a lane measures; its edges lie across it."""
-    return None if placed.ends is None else int(placed.dimension.measure.form == "up")
 
 
 def _boxes(width: float, height: float, foot: float) -> BoxesAt:

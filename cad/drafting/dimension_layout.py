@@ -87,6 +87,10 @@ Try = tuple[Rectangle, PlacedDimension, list[list[Point]]]
 """A place of words, the dimension with it, and the lines that it draws on the paper."""
 
 
+class NoRoom(Exception):
+    """The sheet has no free place at this scale."""
+
+
 class DimensionLayout:
     """Finds a place for each dimension of a plan; `faults` counts those that have no free one.
 

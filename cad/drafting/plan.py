@@ -12,13 +12,15 @@ from cad.drafting.parameter_match import Dimension
 from cad.drafting.views import View
 
 LANE = 9.0  # from one dimension line to the next
-FILLED, MORE = 0.35, 0.005
+FILLED, MORE = 0.4, 0.005
 """Least share of the area's width or height that views without their dimensions take, if a sheet has it; and
 by how much it grows with each dimension."""
 
 _LEAST = 0.4  # of that share: views that take less are tried only if no others have room
-_EMPTY = 4.0
-"""How many sizes larger a sheet may be that its views fill, rather than one that is nearly empty."""
+_COST = {"A3": 0.0, "A2": 1.0, "A1": 2.0, "A0": 4.0}
+"""Of a sheet: the smallest that does is taken, and A0, which no desk holds, only if nothing else does."""
+_EMPTY, _REDUCED = 5.0, 0.5
+"""Cost of a sheet without views, in sheets; smaller views leave it emptier. Cost of a reduced scale."""
 
 _ROOM = 24.0  # around and between views, beside the dimensions
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
@@ -72,10 +74,11 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int 
         for s in SCALES
         if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
     ]
-    wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.55)
+    wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.5)
 
     def cost(format: Format, scale: float) -> float:
-        return FORMATS.index(format) + _EMPTY * max(wanted_share - share(format, scale), 0.0) / wanted_share
+        emptiness = max(wanted_share - share(format, scale), 0.0) / wanted_share
+        return _COST[format.name] + _EMPTY * emptiness + _REDUCED * (scale < 1)
 
     readable = [one for one in fitting if share(*one) >= _LEAST * wanted_share]
     ordered = sorted(readable or fitting, key=lambda one: (cost(*one), -one[1]))

@@ -19,7 +19,7 @@ from cadquery import Location, Vector
 from cad.drafting.curves import Point
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
-from cad.drafting.dimension_layout import TEXT, DimensionLayout, PlacedDimension
+from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
@@ -38,10 +38,6 @@ LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
 _STEP = 4.0  # between places that are tried [mm on paper]
 _LABEL = 14.0  # of a section's label above it [mm on paper]
-
-
-class NoRoom(Exception):
-    """The sheet has no free place for a section at this scale."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from cad.drafting.curves import Point
 Rectangle = tuple[float, float, float, float]
 """Left, low, right, high [mm on paper]."""
 
+_STRIPS = 40  # of a view, in which words keep off its lines
 _APART = 0.8  # between two texts, and between a text and a line [mm on paper]
 
 
@@ -54,6 +55,28 @@ class Room:
         """Occupy a rectangle; lines to a part's faces cross only that of a view."""
         self._boxes.rows.append(box)
         (self.views if is_view else self.words).append(box)
+
+    def add_view(self, box: Rectangle, lines: Iterable[Sequence[Point]]) -> None:
+        """Occupy what a view covers: in strips across it, from its lowest to its highest line."""
+        self.views.append(box)
+        left, step = box[0], max((box[2] - box[0]) / _STRIPS, 1e-9)
+        reach = [[np.inf, -np.inf] for _ in range(_STRIPS)]
+        for line in lines:
+            self.add_outline(line)
+            for one, other in pairwise(line):
+                (x, y), (u, v) = sorted((one, other))
+                first, last = (min(max(int((at - left) / step), 0), _STRIPS - 1) for at in (x, u))
+                for number in range(first, last + 1):
+                    ends = (min(max(left + (number + n) * step, x), u) for n in (0, 1))
+                    at = [y + (v - y) * (end - x) / (u - x) if u > x else y for end in ends]
+                    low, high = reach[number]
+                    reach[number] = [
+                        min(low, *at, *([v] if u == x else [])),
+                        max(high, *at, *([v] if u == x else [])),
+                    ]
+        for number, (low, high) in enumerate(reach):
+            if low <= high:
+                self._boxes.rows.append((left + number * step, low, left + (number + 1) * step, high))
 
     def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
         """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""

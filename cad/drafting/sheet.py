@@ -19,12 +19,12 @@ from cad.drafting.balloons import balloons
 from cad.drafting.content import Content, contents, declared_of
 from cad.drafting.controls import Controls
 from cad.drafting.declaration import DrawingDeclaration
-from cad.drafting.dimension_layout import DimensionLayout, PlacedDimension
+from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.page import Page, document_of
 from cad.drafting.plan import Plan
-from cad.drafting.removed_section import NoRoom, mark, place
+from cad.drafting.removed_section import mark, place
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.sheet_border import General, SheetNumber, frame, notes, parts_list, table, title_block
 from cad.drafting.title import general_profile
@@ -35,6 +35,7 @@ from cad.step import Body
 from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
+_MOST_FAULTS = 1000
 _FEW_FAULTS = 2  # of a sheet with removed sections, rather than one without them
 
 
@@ -115,8 +116,9 @@ def laid_out(
         if any(laid.faults <= _FEW_FAULTS for _, laid in every):
             break
         for plan in islice(content.plans(), _MOST_PLANS):
+            most = min((laid.faults for _, laid in every), default=_MOST_FAULTS)
             try:
-                every.append((content, _laid(content, bodies, declared, plan)))
+                every.append((content, _laid(content, bodies, declared, plan, most)))
             except NoRoom:
                 continue
             if every[-1][1].faults == 0:
@@ -124,13 +126,15 @@ def laid_out(
     return min(every, key=lambda one: one[1].faults)
 
 
-def _laid(content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan) -> Laid:
+def _laid(
+    content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, most: int
+) -> Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
     Raises
     ------
     NoRoom
-        If a removed section has no place.
+        If a removed section has no place, or there are as many faults as `most`.
     """
     page = Page(document_of(plan), plan)
     centres = centre_lines(content.section, content.end, bodies, plan)
@@ -145,7 +149,9 @@ def _laid(content: Content, bodies: Sequence[Body], declared: DrawingDeclaration
         dimensions, view = place(page, room, one, placing)
         placed += dimensions
         views.append((view, 0.0))
-    controls = Controls(page, room, views)
+    if placing.faults >= most:
+        raise NoRoom
+    controls = Controls(page, room, views, most - placing.faults)
     datum = controls.draw(declared, placed)
     for number, target in balloons(content.section, bodies):
         controls.balloon(str(number), plan.paper(target))
@@ -171,9 +177,10 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
-        room.add(_on_paper(view, plan, away), is_view=True)
-        for curve in (*view.visible, *view.hidden, *view.smooth):
-            room.add_outline([plan.paper(point, away) for point in curve.points])
+        lines = (*view.visible, *view.hidden, *view.smooth)
+        room.add_view(
+            _on_paper(view, plan, away), [[plan.paper(p, away) for p in one.points] for one in lines]
+        )
     for line in centres.lines:
         room.add_line([plan.paper(point) for point in line])
     return room

@@ -15,6 +15,7 @@ _OFF = 4.0
 """From a dimension line, and from the end of an edge, to the end of a leader [mm on paper]: a frame with its
 arrow on the dimension line itself would be about an axis (ISO 1101)."""
 
+_MOST_ALIKE = 4  # other places of a size whose edges are tried
 _SHARES = (0.5, 0.25, 0.75)  # of an edge
 _TURNS = range(0, 360, 30)  # [deg] round a circle
 
@@ -25,25 +26,27 @@ def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: 
     if placed.ends is None:
         on = plan.paper(measure.points[1], placed.right)
         if measure.form != "circle" or measure.points[0] == (0.0, 0.0):
-            return [on]
+            return [on, plan.paper(measure.points[0], placed.right)] if measure.form == "aligned" else [on]
         centre = plan.paper(measure.points[0], placed.right)
         radius, turns = dist(centre, on), [pi * turn / 180 for turn in _TURNS]
         return [on, *((centre[0] + radius * cos(t), centre[1] + radius * sin(t)) for t in turns)]
     along = 1 if measure.form == "up" else 0
     found = [p for point in measure.points for p in _on_extension(point, placed, plan, along)]
     edges = [edge for view, right in views if right == placed.right for edge in view.straight]
-    found += [p for point in measure.points for p in _on_edges(point, placed, edges, plan, along)]
+    every = [point for one in (measure, *placed.dimension.alike[:_MOST_ALIKE]) for point in one.points]
+    found += [p for point in every for p in _on_edges(point, placed, edges, plan, along)]
     return found or [plan.paper(point, placed.right) for point in measure.points]
 
 
 def _on_extension(point: Point, placed: PlacedDimension, plan: Plan, along: int) -> Iterator[Point]:
-    """Yield the middle of an extension line between an edge and the dimension line."""
+    """Yield places on an extension line between an edge and the dimension line."""
     assert placed.ends is not None
     start, stop = plan.paper(point, placed.right)[1 - along], placed.ends[0][1 - along]
-    if abs(stop - start) > _OFF + 3.0:
-        way = 1.0 if stop > start else -1.0
-        at, place = plan.paper(point, placed.right)[along], stop - way * max(_OFF, abs(stop - start) / 2)
-        yield (place, at) if along else (at, place)
+    at, size = plan.paper(point, placed.right)[along], abs(stop - start)
+    for share in _SHARES:
+        if size * (1 - share) > _OFF:
+            place = start + share * (stop - start)
+            yield (place, at) if along else (at, place)
 
 
 def _on_edges(
