@@ -6,7 +6,7 @@ angles have their text at the nearest free place outside the views, with a leade
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, product
 from math import atan2, cos, hypot, pi, radians, sin
@@ -105,8 +105,12 @@ class DimensionLayout:
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
             self._take_lines(one)
-        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form == "angle")
-        return placed + [self._local(one) for one in ordered]
+        return placed + self.local(self.plan.lanes.local)
+
+    def local(self, dimensions: Iterable[Dimension]) -> list[PlacedDimension]:
+        """Return dimensions of arcs, oblique holes and angles, which have no lanes; angles last."""
+        ordered = sorted(dimensions, key=lambda one: one.measure.form == "angle")
+        return [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
         """Return the dimensions of one side of a view."""
@@ -226,7 +230,7 @@ class DimensionLayout:
             case _:
                 tries = self._around(one, label, right)
         is_within = one.measure.form == "angle"
-        about = self._on_paper(one, right)[0] if is_within else None
+        about = self._on_paper(one, right)[-1] if is_within else None
         chosen, first, every = None, None, iter(tries)
         while chosen is None and (some := [*islice(every, _AT_ONCE)]):
             first = first or some[0]

@@ -22,6 +22,7 @@ _COST = {"A3": 0.0, "A2": 1.0, "A1": 2.0, "A0": 4.0}
 _EMPTY, _REDUCED = 5.0, 0.5
 """Cost of a sheet without views, in sheets; smaller views leave it emptier. Cost of a reduced scale."""
 
+_BELOW = 1.8  # of the room above views that have others below them, from below to the middle
 _ROOM = 24.0  # around and between views, beside the dimensions
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 """The scales of ISO 5455, the largest first."""
@@ -52,10 +53,13 @@ class Plan:
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
 
-def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
+def plans(
+    section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0, *, below: bool = False
+) -> Iterator[Plan]:
     """Yield the plans in the order of preference.
 
-    Removed sections have `elsewhere` more dimensions. A smaller sheet comes before a larger one, unless its
+    Removed sections have `elsewhere` more dimensions; `below` the views is their place if they need a row of
+    it. A smaller sheet comes before a larger one, unless its
     scale leaves it emptier than the larger one.
     """
     lanes = Lanes.sorted(wanted, section, end)
@@ -87,5 +91,5 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int 
         gap = (_ROOM + sides[1]) / scale
         spare = (room[0] - scale * across - taken[0]) / 2, (room[1] - scale * (top - bottom) - taken[1]) / 2
         x = left - (area[0] + _ROOM + sides[0] + spare[0]) / scale
-        y = bottom - (area[1] + _ROOM + sides[3] + spare[1]) / scale
+        y = bottom - (area[1] + _ROOM + sides[3] + spare[1] * (_BELOW if below else 1.0)) / scale
         yield Plan(scale, right + gap - end_left, (x, y), lanes, format)

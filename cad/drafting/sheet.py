@@ -36,7 +36,7 @@ from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
 _MOST_FAULTS = 1000
-_FEW_FAULTS = 2  # of a sheet with removed sections, rather than one without them
+_FEW_FAULTS = 4  # of a sheet with removed sections, rather than one without them
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
@@ -141,7 +141,7 @@ def _laid(
     room = _room(content.section, content.end, centres, plan)
     cutting_line(page, content.section, content.end, room)
     for one in content.removed:
-        mark(page, room, one)
+        mark(page, room, one, content.section)
     placing = DimensionLayout(plan, room, declared.datums)
     placed = placing.all()
     views = [(content.section, 0.0), (content.end, plan.beside)]
