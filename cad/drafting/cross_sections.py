@@ -86,16 +86,14 @@ def _webs(body: Body, seen: PartSurfaces, frame: Frame) -> Iterator[_Web]:
         own = replace(
             seen,
             planes=tuple(p for p in seen.planes if p.middle is not None and low < p.middle.z < high),
-            cylinders=tuple(
-                c for c in seen.cylinders if c.along(Z) and low < sum(c.turned(Z).reach) / 2 < high
-            ),
+            cylinders=tuple(c for c in _along(seen) if low < sum(c.reach) / 2 < high),
         )
         yield _Web(view, own, (middle,), _pins(seen, (low, high), frame))
 
 
 def _along(seen: PartSurfaces) -> list[Surface]:
     """Return the cylinders beside the shaft, along it."""
-    return [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
+    return [c.turned(Z) for c in seen.cylinders if c.along(Z) and c.point.cross(Z).Length > _NEAR]
 
 
 def _pins(seen: PartSurfaces, span: tuple[float, float], frame: Frame) -> tuple[Point, ...]:

@@ -241,7 +241,7 @@ def _found(
     height = sides[1] + (high - y) * plan.scale + sides[2]
     near = plan.paper((right, removed.height), plan.beside)
     if removed.stations:
-        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.area[1]
+        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.views[0][1]
 
     def away(corner: Point) -> float:
         return abs(corner[0] - near[0]) + abs(corner[1] + height / 2 - near[1])

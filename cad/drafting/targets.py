@@ -34,7 +34,11 @@ def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: 
     found = [p for point in measure.points for p in _on_extension(point, placed, plan, along)]
     edges = [edge for view, right in views if right == placed.right for edge in view.straight]
     every = [point for one in (measure, *placed.dimension.alike[:_MOST_ALIKE]) for point in one.points]
-    found += [p for point in every for p in _on_edges(point, placed, edges, plan, along)]
+    on_edges = [p for point in every for p in _on_edges(point, placed, edges, plan, along)]
+    if not on_edges:
+        unseen = [edge for view, right in views if right == placed.right for edge in view.unseen]
+        on_edges = [p for point in every for p in _on_edges(point, placed, unseen, plan, along)]
+    found += on_edges
     return found or [plan.paper(point, placed.right) for point in measure.points]
 
 
