@@ -31,8 +31,8 @@ MARK = "stamp:"
 LONGEST_LINE = 44  # letters that fit into the title block of an older drawing
 _SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)([^<]*)')
 _DENSITY = re.compile(r"([0-9.e+-]+) kg/m³")
-_VOLUME = re.compile(r"([0-9.e+-]+) mm³")
-_MM3 = 1e-9  # 1 mm³ in m³
+_VOLUME = re.compile(r"([0-9.e+-]+) (mm³|dm³)")
+_METRES = {"mm³": 1e-9, "dm³": 1e-3}
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class Stamp:
         materials = [*self.materials.values()]
         material = self.materials.get(self.part, materials[0] if len(materials) == 1 else "")
         density, amount = _DENSITY.search(material), _VOLUME.search(volume)
-        mass = float(density[1]) * float(amount[1]) * _MM3 if density and amount else None
+        mass = float(density[1]) * float(amount[1]) * _METRES[amount[2]] if density and amount else None
         return {"material": material, "mass": "" if mass is None else f"{mass:.4g} kg"}
 
     @property

@@ -31,6 +31,7 @@ from cad.tolerances import Limits, deviations, limits_of, number_of
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
+_LARGE, _DM3 = 1e5, 1e6  # [mm³]
 _MOST_LINES = 3  # of one value in the table
 
 
@@ -94,6 +95,13 @@ class SheetNumber:
     names: tuple[tuple[str, int], ...] = ()
     volume: float = 0.0
 
+    @property
+    def volume_text(self) -> str:
+        """Return the volume of a part, with a unit that makes it short enough for its field."""
+        if not self.part:
+            return ""
+        return f"{self.volume:.5g} mm³" if self.volume < _LARGE else f"{self.volume / _DM3:.5g} dm³"
+
     @staticmethod
     def of(bodies: Sequence[Body], whole: Sequence[Body]) -> SheetNumber:
         """Return the number of the sheet of some bodies of a whole."""
@@ -115,7 +123,7 @@ def title_block(page: Page, header: Header | None, general: General, sheet: Shee
     texts = {
         "sheet": f"{sheet.number}/{sheet.count}",
         "part": sheet.part.replace("_", " "),
-        "mass": f"V = {sheet.volume:.6g} mm³" if sheet.part else "",
+        "mass": sheet.volume_text,
         "language": "en",
         "format": page.plan.format.name,
         "model": model,
