@@ -151,7 +151,8 @@ class Definition:
     def _ray(self, turn: float) -> Station:
         """Return the station of a direction, or the opposite one on its line if only that is needed."""
         here, opposite = station("turn", turn), station("turn", turn + 180)
-        return opposite if here not in self.needed and opposite in self.needed else here
+        is_known = here in self.needed or here in self.optional
+        return opposite if opposite in self.needed and not is_known else here
 
     def _ends(self, direction: Direction, low: float, high: float) -> tuple[Station, Station] | None:
         one, other = self.known(direction, low), self.known(direction, high)

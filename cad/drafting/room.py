@@ -154,7 +154,7 @@ class Room:
     def _is_crossed(self, boxes: np.ndarray) -> np.ndarray:
         """Return which rectangles a line crosses."""
         lines = self._lines.array[:, np.newaxis, :]
-        result: np.ndarray = crossed(lines, boxes, _APART).any(axis=0)
+        result: np.ndarray = np.asarray(crossed(lines, boxes, _APART).any(axis=0))
         return result
 
 
@@ -189,7 +189,7 @@ def _overlaps(some: np.ndarray, others: np.ndarray, apart: float) -> np.ndarray:
     """Return which rectangles (n, 4) overlap which others (m, 4), or are closer to them than this."""
     one, other = some[:, np.newaxis, :], others[np.newaxis, :, :]
     is_beside = (one[..., :2] >= other[..., 2:] + apart) | (other[..., :2] >= one[..., 2:] + apart)
-    result: np.ndarray = ~is_beside.any(axis=2)
+    result: np.ndarray = np.asarray(~is_beside.any(axis=2))
     return result
 
 
