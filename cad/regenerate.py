@@ -40,11 +40,12 @@ from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.surfaces import look
-from cad.tolerances import Limits, carried, in_unit, limits, limits_of
+from cad.tolerances import Limits, carried, in_unit, limits, limits_of, table_tolerances
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.modules import is_outside
 from templates.core.errors import InvalidInputs
+from templates.core.units.tolerance import STATE_IN_TABLE
 
 __all__ = [
     "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
@@ -54,7 +55,7 @@ __all__ = [
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 4
+RECIPE = 5
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -138,6 +139,9 @@ def _canonical(model: CadModel) -> _Canonical:
         for name, within in limits(model).items():
             texts[name], more = _within(within, texts[name], model.inputs[name].meaning.unit)
             quantities[name] |= more
+        for name, tolerance in table_tolerances(model).items():
+            texts[name] = tolerance.written(texts[name], model.inputs[name].meaning.unit)
+            quantities[name] |= _stated(tolerance.lower, tolerance.upper, tolerance.zone, in_table=True)
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
     return kept
 
@@ -251,9 +255,13 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
     """Return the text of a parameter with its limits, and the additional fields of its quantity."""
-    lower, upper = in_unit(within, unit)
-    zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
-    return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
+    stated = _stated(*in_unit(within, unit), within.zone, in_table=within.state_in_table)
+    return with_limits(text, unit, within), stated
+
+
+def _stated(lower: float, upper: float, zone: str | None, *, in_table: bool) -> dict[str, Value]:
+    more: dict[str, Value] = {} if zone is None else {"zone": zone}
+    return {"upper": upper, "lower": lower, **more, **({STATE_IN_TABLE: True} if in_table else {})}
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
