@@ -100,7 +100,7 @@ class Annotations:
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """Return the parameter and the kind of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
@@ -167,7 +167,7 @@ class _Writer:
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """Return the datum of a letter; write it at the first call."""
+        """Return the datum with a letter; write it at the first call."""
         if letter not in self._letters:
             declared = self._annotations.declared
             name = next(name for name, one in declared.items() if one.datum == letter)
@@ -200,5 +200,5 @@ class _Writer:
 
 
 def _name(text: str) -> TCollection_HAsciiString:
-    """Return the text as the name of its lines, in the letters of a STEP file."""
+    """Return a text as a name for its lines, limited to the characters of a STEP file."""
     return TCollection_HAsciiString(text.translate(_ASCII))

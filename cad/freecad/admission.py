@@ -49,7 +49,7 @@ _DIRECTORY, _LARGE_DIRECTORY = b"PK\x05\x06", b"PK\x06\x07"  # end records of ZI
 
 
 def admitted(content: bytes) -> bytes:
-    """Return the file in the form in which FreeCAD may open it.
+    """Return the file in a form that is safe for FreeCAD to open.
 
     Raises
     ------
@@ -142,9 +142,9 @@ class _Document:
         return self.named
 
     def _check_encoding(self, version: str, encoding: str | None, standalone: int) -> None:
-        """Refuse encodings in which FreeCAD might read other elements than this check.
+        """Refuse encodings in which FreeCAD might read different elements from those that this check sees.
 
-        FreeCAD writes UTF-8.
+        FreeCAD itself writes UTF-8.
         """
         if encoding is not None and encoding.lower() != "utf-8":
             raise self._of_another_encoding()

@@ -224,7 +224,7 @@ class ConnectingRod(CadModel):
     def pockets_have_a_length(self) -> Truth:
         """The pockets are at least a tenth of the shank long.
 
-        They end as far from its ends as from its sides.
+        They are as far from the ends of the shank as from its sides.
         """
         return (self.b_p <= 0) | (self.l_s - (self.b - self.b_p) >= 0.1 * self.l_s)
 
@@ -248,7 +248,7 @@ class ConnectingRod(CadModel):
         )
 
     def drawn(self) -> Rod:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         big_end = Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,

@@ -14,7 +14,7 @@ from templates.core.language.template import Array, Truth, choice, derived, form
 
 @units("m", "m", returns="1")
 def clear_share(width: Array, groove: Array) -> Array:
-    """Return the share of the width [m] for a tang that is clear of the sides of a groove of a width [m]."""
+    """Return the share of the width [m] at which a tang is clear of the sides of a groove."""
     half = groove / 2 / width
     beside = np.minimum(abs(half - 0.19), abs(half - 0.31)) < 0.006  # 1/4 -+ 0.12/2
     return np.where(beside, 0.09, 0.12)
@@ -126,7 +126,7 @@ class ShellParameters(CadModel):
 
     @derived("mm", "crush height", symbol="a", ge=0, le=50)
     def a(self) -> Array:
-        """Return the default: no crush height, as built in."""
+        """Return the default: no crush height, as for an installed shell."""
         return 0 * self.d
 
     @formula("mm", "outer diameter", symbol="D")
