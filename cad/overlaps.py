@@ -65,7 +65,7 @@ def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
 def _shared_volume(one: str, shape: Shape, other: str, beside: Shape) -> float:
     common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
     if not common.IsDone():
-        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
+        raise GeometryError("kernel", f"the kernel cannot determine whether {one} and {other} overlap")
     BRepGProp.VolumeProperties_s(common.Shape(), properties)
     return float(properties.Mass())
 

@@ -95,5 +95,5 @@ def nearest(values: Iterable[float], wanted: float) -> float:
     """
     listed = list(values)
     if not listed:
-        raise LookupError(f"the file has no surface that could measure {wanted:.9g} mm")
+        raise LookupError(f"the file has no surface with a size near {wanted:.9g} mm")
     return min(listed, key=lambda value: abs(value - wanted))

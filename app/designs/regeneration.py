@@ -105,7 +105,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> DocumentCalculation:
-        """Return a revision's document and its calculation, either cached by the save or repeated."""
+        """Return a revision's document and its calculation, either from the cache of the save or repeated."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -119,7 +119,7 @@ class Regeneration:
     def _settled(
         self, prepared: DocumentCalculation, context: JobContext
     ) -> tuple[Calculation, list[JsonObject]]:
-        """Return the calculation with all solids built and all iterations converged, and their rounds."""
+        """Return the calculation with all solids built and iterations converged, and the rounds used."""
         document, calculation = prepared
         rounds = list[JsonObject]()
         while True:
@@ -170,7 +170,7 @@ class Regeneration:
             calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
-        """Analyse every solid that needs it; return whether any did."""
+        """Analyse every solid that needs it; return whether there was any."""
         waiting = calculation.waiting()
         for node in waiting:
             name, kind = node.model.name, node.kind

@@ -150,7 +150,7 @@ def length_of(text: str) -> float:
     """
     size = size_of(text)
     if size is None or size[1]:
-        raise ValueError(f"{text!r} is no length")
+        raise ValueError(f"{text!r} is not a length")
     return size[0]
 
 

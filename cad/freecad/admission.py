@@ -101,7 +101,7 @@ def _check_directory(content: bytes) -> None:
             "package", f"it is not a complete ZIP package (its directory is missing): {AGAIN}"
         )
     if content.startswith(_LARGE_DIRECTORY, max(0, place - 20)):
-        raise UnreadableModel("package", f"it is a ZIP64 package, which states its size twice: {AGAIN}")
+        raise UnreadableModel("package", f"it is a ZIP64 package, which this service does not read: {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS or size > MOST_PARTS * 400:
         raise UnreadableModel("too_large", f"it has {entries} parts; a model may have at most {MOST_PARTS}")

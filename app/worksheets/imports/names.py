@@ -24,7 +24,7 @@ _TEX = frozenset(
 
 
 def key_of(node: Node) -> str:
-    """Return a name as Mathcad distinguishes it: its letters, with its subscript in braces."""
+    """Return a name as Mathcad distinguishes names: its letters, with the subscript in braces."""
     letters = []
     for piece in node.pieces:
         if isinstance(piece, str):
@@ -48,7 +48,7 @@ class Names:
         self._used = set(reserved)
 
     def take(self, key: str) -> str:
-        """Return a unique name for the Mathcad object `key`; a second one with this name becomes `x_2`."""
+        """Return a unique name for the Mathcad object `key`; a second object of that name becomes `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
         while name in self._used:

@@ -69,7 +69,7 @@ class Bearing:
     def start(self) -> Array:
         """Return the journal's position for a film of the supply's viscosity, fed along its widest gap."""
         if not np.isfinite(self.So):
-            raise NoBalance("the oil has no viscosity that supports a load")
+            raise NoBalance("the oil is not viscous enough to support a load")
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
         eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
         attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]
