@@ -1,4 +1,7 @@
-"""Convert Mathcad's names to worksheet names: plain letters, one meaning each; `symbol` keeps their look."""
+"""Convert Mathcad's names to worksheet names of plain letters, each with a single meaning.
+
+The clause `symbol` preserves how a name is printed.
+"""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Supply:
 
     @property
     def grooved(self) -> bool:
-        """Return whether a pocket extends at least half around, and so passes through the loaded zone."""
+        """Return whether a pocket extends at least half around, so that the load passes over it."""
         return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
 
     @property
