@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from cadquery import Shape
+from cadquery import Compound, Location, Shape
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -52,10 +52,16 @@ _ASCII = str.maketrans(
 
 @dataclass(frozen=True)
 class Product:
-    """A part in a document: its label, and the solid that is written."""
+    """A part in a document: its label, the solid that is written, and the first position of the part."""
 
     label: TDF_Label
     solid: Shape
+    place: Location = field(default_factory=Location)
+
+    @property
+    def placed(self) -> Shape:
+        """Return the solid at the first position of the part."""
+        return self.solid.moved(self.place)
 
 
 @dataclass(frozen=True)
@@ -119,7 +125,8 @@ class _Writer:
         self._products, self._annotations = products, annotations
         self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
-        self._sheets: dict[str, Sheet] = {}
+        self._placed = {name: product.placed for name, product in products.items()}
+        self._sheet = Sheet(Compound.makeCompound(self._placed.values()))
 
     def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
@@ -177,12 +184,8 @@ class _Writer:
         return self._letters[letter]
 
     def _drawn(self, text: str, faces: Sequence[Face]) -> TopoDS_Compound:
-        """Return the lines of a text beside its part, and leaders to the middles of faces."""
-        part = faces[0][0]
-        if part not in self._sheets:
-            self._sheets[part] = Sheet(self._products[part].solid)
-        middles = [self._products[name].solid.Faces()[number].Center() for name, number in faces]
-        return self._sheets[part].drawn(text, middles)
+        """Return the lines of a text beside all parts, and leaders to faces of parts at their positions."""
+        return self._sheet.drawn(text, [self._placed[name].Faces()[number] for name, number in faces])
 
     def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
         """Return the labels of faces; create each label once."""

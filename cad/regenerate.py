@@ -54,7 +54,7 @@ __all__ = [
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 4
+RECIPE = 5
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"

@@ -138,7 +138,8 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict
     products: dict[str, Product] = {}
     assembly = _named(shapes.NewShape(), title)
     for part in parts:
-        product = products[part.name] = Product(_named(shapes.NewShape(), part.name), part.solid)
+        label = _named(shapes.NewShape(), part.name)
+        product = products[part.name] = Product(label, part.solid, part.places[0])
         shapes.SetShape(product.label, product.solid.wrapped)
         for name, place in zip(part.names, part.places, strict=True):
             _named(shapes.AddComponent(assembly, product.label, place.wrapped), name)

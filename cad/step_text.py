@@ -29,6 +29,8 @@ _PEN = "DRAUGHTING_PRE_DEFINED_COLOUR('{}')"
 _POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
 _NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
 _NUMBER = re.compile(r"#(\d+) = ")
+_ANNOTATIONS = re.compile(r"^(#\d+ = DRAUGHTING_MODEL\([^;]*,\s*)#\d+\);", re.MULTILINE)
+_ROOT = re.compile(r"= SHAPE_DEFINITION_REPRESENTATION\(#\d+,#(\d+)\);")
 _PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
 _SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
 
@@ -55,6 +57,7 @@ def finished(
         attributes = {"model": header.title, "build": header.build, **header.parameters}
         lines = entities(body, first, header.model, attributes, properties)
         body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
+        body = _in_axes_of_file(body)
     return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{end}{rest}"
 
 
@@ -87,6 +90,21 @@ def _annotated(data: str, names: Sequence[str]) -> str:
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
     named = named.replace(_PEN.format("white"), _PEN.format("magenta"))  # visible on white and on black
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
+
+
+def _in_axes_of_file(data: str) -> str:
+    """Return the data section with its annotations in the axes of the file: in those of its first product.
+
+    The kernel gives them the context of the first annotated part. The context is the whole statement, because
+    Open CASCADE 7.9 crashes on reading a MECHANICAL_DESIGN_AND_DRAUGHTING_RELATIONSHIP to an assembly.
+    """
+    if (model := _ANNOTATIONS.search(data)) is None:
+        return data
+    root = _ROOT.search(data)
+    assert root is not None, "the kernel's file has a product"
+    context = re.search(rf"^#{root[1]} = [A-Z_]*SHAPE_REPRESENTATION\([^;]*,(#\d+)\);", data, re.MULTILINE)
+    assert context is not None, "the first product has a shape"
+    return f"{data[: model.start()]}{model[1]}{context[1]});{data[model.end() :]}"
 
 
 def _styles(data: str, colours: Iterable[Colour]) -> str:
