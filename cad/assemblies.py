@@ -143,6 +143,14 @@ class AssemblyModel(ImportedModel):
         """Return whether the description allows two of its solids to overlap."""
         return self._allows(one, other) or self._allows(other, one)
 
+    def movers(self, part: str) -> tuple[str, ...]:
+        """Return the shifts of the fixed part to which a solid belongs, and its turns that are not 0."""
+        if (component := self.component_of(part)) is None:
+            return ()
+        place = self.place(component)
+        turns = [key for key in TURNS if getattr(place, key)]
+        return tuple(f"{component}_{key}" for key in (*SHIFTS, *turns))
+
     def shaft(self) -> Shaft | None:
         """Return None, because finite-element analyses need a single solid, not an assembly."""
         return None

@@ -99,13 +99,16 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     Raises
     ------
     GeometryError
-        `interference`, naming the parts and their shared volume.
+        `interference`, naming the parts, their shared volume, and the parameters that move them.
     """
     wrong = [one for one in between if _interferes(model, one)]
     if wrong:
         listed = "; ".join(map(str, wrong[:MOST_NAMED]))
         more = "; and at least one more" if len(wrong) > MOST_NAMED else ""
-        raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
+        parts = dict.fromkeys(part for one in wrong for part in (one.one, one.other))
+        movers = dict.fromkeys(name for part in parts for name in model.movers(part))
+        detail = f"parts of {model.id} interfere: {listed}{more}"
+        raise GeometryError("interference", f"{detail}. They are moved by {', '.join(movers)}", movers)
 
 
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:

@@ -182,6 +182,10 @@ class CadModel(TolerancedTemplate):
         """Return whether two solids may overlap; at least one of them belongs to a fixed part."""
         return False
 
+    def movers(self, part: str) -> tuple[str, ...]:
+        """Return the parameters by which a user moves a solid out of the way of another; none by default."""
+        return ()
+
     def shaft(self) -> Shaft | None:
         """Return the positions at which an analysis holds and loads the solid; None if it is not a shaft."""
         return None
