@@ -28,7 +28,7 @@ def rounded(values: Iterable[float]) -> list[float]:
 
 
 def listed(raw: Any) -> Any:
-    """Return a text that contains a list as a quantity; return anything else unchanged."""
+    """Convert a text that contains a list to a quantity; return anything else unchanged."""
     if not isinstance(raw, str) or len(raw) > LONGEST_TEXT or not (match := _LIST.fullmatch(raw)):
         return raw
     try:

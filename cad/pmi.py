@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from cadquery import Shape
+from cadquery import Compound, Location, Shape
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -59,10 +59,16 @@ def on_faces(dimensions: Mapping[str, object]) -> dict[str, Size]:
 
 @dataclass(frozen=True)
 class Product:
-    """A part in a document: its label, and the solid that is written."""
+    """A part in a document: its label, the solid that is written, and the first position of the part."""
 
     label: TDF_Label
     solid: Shape
+    place: Location = field(default_factory=Location)
+
+    @property
+    def placed(self) -> Shape:
+        """Return the solid at the first position of the part."""
+        return self.solid.moved(self.place)
 
 
 @dataclass(frozen=True)
@@ -104,7 +110,7 @@ class Annotations:
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """Return the parameter and the kind of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
@@ -148,7 +154,8 @@ class _Writer:
         self._products, self._annotations = products, annotations
         self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
-        self._sheets: dict[str, Sheet] = {}
+        self._placed = {name: product.placed for name, product in products.items()}
+        self._sheet = Sheet(Compound.makeCompound(self._placed.values()))
 
     def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
@@ -191,7 +198,7 @@ class _Writer:
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """Return the datum of a letter; write it at the first call."""
+        """Return the datum with a letter; write it at the first call."""
         if letter not in self._letters:
             declared = self._annotations.declared
             name = next(name for name, one in declared.items() if one.datum == letter)
@@ -208,12 +215,8 @@ class _Writer:
         return self._letters[letter]
 
     def _drawn(self, text: str, faces: Sequence[Face]) -> TopoDS_Compound:
-        """Return the lines of a text beside its part, and leaders to the middles of faces."""
-        part = faces[0][0]
-        if part not in self._sheets:
-            self._sheets[part] = Sheet(self._products[part].solid)
-        middles = [self._products[name].solid.Faces()[number].Center() for name, number in faces]
-        return self._sheets[part].drawn(text, middles)
+        """Return the lines of a text beside all parts, and leaders to faces of parts at their positions."""
+        return self._sheet.drawn(text, [self._placed[name].Faces()[number] for name, number in faces])
 
     def _edges(self, place: Place) -> TDF_LabelSequence:
         """Return the labels of the edges in which the faces of a place meet."""
@@ -245,5 +248,5 @@ def _edges_of(solid: Shape, part: str, faces: Iterable[Face]) -> list[Shape]:
 
 
 def _name(text: str) -> TCollection_HAsciiString:
-    """Return the text as the name of its lines, in the letters of a STEP file."""
+    """Return a text as a name for its lines, limited to the characters of a STEP file."""
     return TCollection_HAsciiString(text.translate(_ASCII))

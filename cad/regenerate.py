@@ -63,7 +63,7 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 
 
 def made_by(cls: type[CadModel]) -> str:
-    """Return a readable form of the part of a build's key that does not depend on model and parameters.
+    """Return, in readable form, what a build's key covers besides model and parameters.
 
     For a team's model it includes the digest of the code.
     """
@@ -92,8 +92,8 @@ def ignore(done: float, what: str) -> None:
 def as_text(model: CadModel) -> dict[str, str]:
     """Return each parameter, including defaults, as in the STEP file: `{"inner_diameter": "50 mm", …}`.
 
-    Values have twelve digits; parameters that differ less are the same model and give the same bytes. The
-    text includes a tolerance if the model has faces for it: `48 mm H7`.
+    Values have twelve digits; parameters that differ by less describe the same model and give the same bytes.
+    The text includes a tolerance if the model has faces for it: `48 mm H7`.
     """
     return dict(_canonical(model).texts)
 
@@ -185,7 +185,7 @@ def regenerate_from_text(
 
 
 def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: Report = ignore) -> Build:
-    """Build a model of a class from its parameters as `as_text` writes them; raises as `regenerate` does."""
+    """Build a model of a given class from texts that `as_text` wrote; raises as `regenerate` does."""
     return regenerate_shape(cls.from_quantities(texts), texts, report=report)
 
 
@@ -241,7 +241,7 @@ def _plain(model: CadModel) -> dict[str, Value]:
 
 
 def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]]:
-    """Return a parameter as text and as a quantity, rounded to twelve digits."""
+    """Return a parameter both as text and as a quantity, rounded to twelve digits."""
     if isinstance(si, str):
         return si, {"value": si}
     meaning = model.inputs[name].meaning
@@ -254,7 +254,7 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
-    """Return the text of a parameter with its limits, and the additional fields of its quantity."""
+    """Return the text of a parameter with its limits, and the extra fields for its quantity."""
     stated = _stated(*in_unit(within, unit), within.zone, in_table=within.state_in_table)
     return with_limits(text, unit, within), stated
 
@@ -274,7 +274,7 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
     """Return the digest of a team's file, because the file may change while the service runs.
 
-    Built-in models have none.
+    Built-in models have no such digest.
     """
     if cls not in _codes:
         _codes[cls] = (digest(cls),) if is_outside(cls) else ()
@@ -286,7 +286,7 @@ _codes: dict[type[CadModel], tuple[str, ...]] = {}
 
 @contextmanager
 def _kernel(model: CadModel) -> Iterator[None]:
-    """Convert every exception of the kernel into a geometry error of this model."""
+    """Convert every exception of the kernel into a geometry error that names this model."""
     try:
         yield
     except GeometryError as error:

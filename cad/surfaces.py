@@ -99,12 +99,12 @@ class Size(float):
 
     @staticmethod
     def repeated(sizes: Iterable[float], what: str) -> float:
-        """Return the common value of equal sizes, with the places of all of them.
+        """Return the common value of equal sizes, with the faces of all of them.
 
         Raises
         ------
         LookupError
-            If there is none, or they differ.
+            If there are no sizes, or they differ.
         """
         every = list(sizes)
         value = alike(every, what)
@@ -123,7 +123,7 @@ def alike(values: Iterable[float], what: str) -> float:
     Raises
     ------
     LookupError
-        If there is none, or they differ.
+        If there are no features, or their values differ.
     """
     found = [float(value) for value in values]
     if not found or max(found) - min(found) > 2 * _COINCIDENT:
@@ -198,7 +198,7 @@ class Surface:
         return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
 
     def turned(self, axis: Vector) -> Surface:
-        """Return the same surface with its direction along the axis, not against it."""
+        """Return the same surface with its direction reversed if it points against the axis."""
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
@@ -236,7 +236,7 @@ class PartSurfaces:
     def between(self, axis: Vector, first: int, last: int) -> float:
         """Return the distance between two planes perpendicular to the axis, numbered from the lowest.
 
-        -1 is the last.
+        The number -1 stands for the last plane.
         """
         levels = self.levels(axis)
         return self.apart(axis, levels[first], levels[last])
@@ -244,8 +244,8 @@ class PartSurfaces:
     def apart(self, axis: Vector, low: float, high: float, near: Vector | None = None) -> float:
         """Return the distance between the planes perpendicular to the axis at two coordinates [mm].
 
-        The result is a plain number if there is no plane at one of them. With `near`, a point, only the
-        nearest plane at each coordinate is used.
+        The result has no faces if one of the planes is missing. With `near`, a point, only the nearest plane
+        at each coordinate is used.
         """
         first, second = self.planes_at(axis, low), self.planes_at(axis, high)
         if near is not None:
@@ -259,7 +259,7 @@ class PartSurfaces:
     def chamfer(self, value: float, ring: Sequence[Surface]) -> float:
         """Return the size [mm] of a 45° chamfer at the ends of cylinders about z.
 
-        A plain number if there is no cone of that size.
+        The result has no faces if there is no cone of that size.
         """
         low, high = min(one.reach[0] for one in ring), max(one.reach[1] for one in ring)
         cones = [cone.turned(Z) for cone in self.cones if cone.about(Z)]
@@ -290,7 +290,7 @@ class PartSurfaces:
 
 
 def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
-    """Return the surfaces of a solid of which there are `count` copies; `part` is its name."""
+    """Return the surfaces of a solid that is called `part` and occurs `count` times."""
     of = defaultdict[Any, list[Surface]](list)
     for number, face in enumerate(solid.Faces()):
         adaptor = BRepAdaptor_Surface(face.wrapped)
@@ -310,7 +310,7 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
 
 
 def _is_reversed(face: Face3d, adaptor: BRepAdaptor_Surface, kind: Any) -> bool:
-    """Return whether the outward normal of a face is against that of a plane or cylinder, else False."""
+    """Return whether the outward normal of a plane or cylindrical face is reversed; False for other faces."""
     if kind not in (_Kind.GeomAbs_Plane, _Kind.GeomAbs_Cylinder):
         return False
     surface = adaptor.Plane() if kind == _Kind.GeomAbs_Plane else adaptor.Cylinder()

@@ -101,7 +101,7 @@ class Limits:
         return round(self.upper - self.lower, _DIGITS)
 
     def share(self, part: float) -> float:
-        """Return a share of the width [mm], as the declarations of geometric tolerances use it."""
+        """Return a share of the width [mm], as declarations of geometric tolerances specify it."""
         return round(self.width * part, _DIGITS)
 
 
@@ -117,12 +117,12 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, FormTolerances]:
-    """Return the declarations of tolerances of a model, by parameter.
+    """Return the tolerance declarations of a model, by parameter.
 
     Raises
     ------
     TypeError
-        If the declaration is wrong; the message names the parameter and states what would be right.
+        If a declaration is wrong; the message names the parameter and states what would be right.
     """
     read_ = {name: _carried(cls, name, dict(said)) for name, said in cls.toleranced.items()}
     letters = {one.datum for one in read_.values() if one.datum}
@@ -261,7 +261,7 @@ def _single(pairs: Iterator[tuple[str, TypedQuantity]]) -> Iterator[tuple[str, L
 
 
 def written(text: str, name: str, within: Limits) -> str:
-    """Return a quantity's text with its limits: `48 mm H7`, `48 mm +0.05/-0.02 mm`; `name` is its unit."""
+    """Return a quantity with its limits as text, `48 mm H7` or `48 mm +0.05/-0.02 mm`; `name` is its unit."""
     end = IN_TABLE if within.state_in_table else ""
     if within.zone is not None:
         return f"{text} {within.zone}{end}"
@@ -282,7 +282,10 @@ def angle_tolerance(text: str) -> TableTolerance:
 
 
 def deviations(limits: Limits | TableTolerance) -> tuple[str, str]:
-    """Return the upper and lower deviation with equal decimals; `±0.1` and nothing if they are equal."""
+    """Return the upper and lower deviation with equally many decimals.
+
+    If they have the same magnitude, return `±0.1` and an empty text.
+    """
     texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
     digits = max(1, *(len(text.partition(".")[2]) for text in texts))
     if limits.upper == -limits.lower:
@@ -292,5 +295,5 @@ def deviations(limits: Limits | TableTolerance) -> tuple[str, str]:
 
 
 def number_of(value: float, digits: int) -> str:
-    """Return a number with at most this many decimals."""
+    """Return a number as text with at most the given number of decimals."""
     return f"{value:.{digits}f}".rstrip("0").rstrip(".")

@@ -8,7 +8,7 @@
 
 It works on the built-in templates in this process, and needs no service. An input is a text, a Pint quantity
 of any registry, an object `{"value": 25, "unit": "kN"}`, or a bare number or array where the unit is 1.
-Arrays give arrays.
+Array inputs give array results.
 """
 
 from __future__ import annotations

@@ -139,7 +139,7 @@ def _outputs(step: JsonObject) -> dict[str, Json]:
 
 
 def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObject]) -> dict[str, str]:
-    """Return for each step its version, the first digits of its code's digest, and its level."""
+    """Return each step's version, level, and the first digits of its code's digest."""
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})

@@ -151,7 +151,9 @@ class Identity:
             _require_own(principal)
             owner = rows.principal(rows.find(session, principal))
             if len(rows.keys_of(session, principal)) >= MOST_KEYS:
-                raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, the maximum; revoked keys count")
+                raise TooManyKeys(
+                    f"{owner.name} has {MOST_KEYS} keys, which is the maximum; revoked keys count too"
+                )
             maker = _maker(session, owner)
             row = ApiKeyRow(
                 prefix=new.prefix, hash=new.hash, principal_id=principal, name=name,

@@ -219,10 +219,10 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     if has_throws(cls):
         return None
     if kind == CHAIN:
-        detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 1 is; {cls.id} is not one"
+        detail = f"{CHAIN} analyses a crankshaft made of throws, such as crankshaft 1; {cls.id} is not one"
         return Fault("model", "no_throws", detail)
-    detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
-    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses one throw: {detail}")
+    detail = f"{cls.id} is not a single crank throw, from mid-journal to mid-journal, as crank_throw is"
+    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses a single throw: {detail}")
 
 
 def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:

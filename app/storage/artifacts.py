@@ -168,7 +168,7 @@ class ArtifactStore:
             except OSError as error:
                 raise self._unreadable(sha, file, error) from error
             if hashlib.sha256(data).hexdigest() != sha:
-                raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
+                raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes do not match the hash")
         return data
 
     def open(self, sha: str) -> OpenFile:
@@ -262,7 +262,7 @@ class ArtifactStore:
         except OSError as error:
             raise self._unreadable(sha, file, error) from error
         if digest != sha:
-            raise self._set_aside(sha, stamp, f"its {stamp.size} bytes have another hash")
+            raise self._set_aside(sha, stamp, f"its {stamp.size} bytes do not match the hash")
         file.seek(0)
         self._verified.add(sha, stamp)
         return stamp

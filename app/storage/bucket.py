@@ -81,7 +81,7 @@ class BucketStore:
         ArtifactMissing
             If the bucket has no such object, or the name is not a SHA-256.
         ArtifactDamaged
-            If its bytes have another hash; a copy of it is stored under `quarantine/`.
+            If its bytes do not match the hash; a copy of it is stored under `quarantine/`.
         ArtifactsUnreachable
             If there is no copy, and the bucket does not answer.
         """

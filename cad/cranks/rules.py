@@ -17,7 +17,7 @@ from templates.core.language.template import Array, Truth, require, units
 
 @units(None, "m", returns="m")
 def corner(shape: str, width: Array) -> Array:
-    """Return the distance [m] of a web corner from the journal axis, on the side of the counterweight."""
+    """Return the distance [m] from the journal axis to a corner of the web on the counterweight's side."""
     return {"obround": 0.5, "rectangular": 0.5 * 2**0.5}[shape] * width
 
 

@@ -21,7 +21,7 @@ LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 
 @units("m", returns="1")
 def is_a_gap(length: Array) -> Truth:
-    """Return whether a length [m] is a gap that the kernel can distinguish from none: at least 0.1 µm."""
+    """Return whether a length [m] is large enough for the kernel to treat as a gap: at least 0.1 µm."""
     return length >= 1e-7
 
 
@@ -234,7 +234,7 @@ class BearingAssembly(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the box of the housing, or of the journal where it is longer."""
+        """Return the box of the housing, extended to the journal where that is longer."""
         a, b = mm(self.A) / 2, max(mm(self.B), mm(self.L_j)) / 2
         return Box((-a, -mm(self.H_c) - 2 * mm(self.a), -b), (a, mm(self.H_b), b))
 

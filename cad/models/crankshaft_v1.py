@@ -200,11 +200,11 @@ class Crankshaft(SplitParameters, EndParameters):
         return (Part(self.id, shaft.solid(), shaft.volume()),)
 
     def bounding_box(self) -> Box:
-        """Return the webs, counterweights, nose and flange together."""
+        """Return the box of the webs, counterweights, nose and flange together."""
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Return the planes at which it is held and loaded: the end of its nose and its flange."""
+        """Return the planes at which an analysis holds and loads the shaft: the ends of nose and flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 

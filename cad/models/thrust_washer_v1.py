@@ -54,7 +54,7 @@ def is_free_at_crown(washer: str, grooves: Array) -> Truth:
 
 @units(None, "m", returns="1")
 def takes_a_pin(washer: str, hole: Array) -> Truth:
-    """Return whether there is no hole for a pin, or the washer is a full ring."""
+    """Return whether a pin hole is allowed: there is none, or the washer is a full ring."""
     return (hole <= 0) | (washer == "full")
 
 
@@ -243,7 +243,7 @@ class ThrustWasher(CadModel):
     def p_g(self) -> Array:
         """Pitch of the grooves.
 
-        In a half washer also twice the distance from the joint to the first groove.
+        In a half washer it is also twice the distance from the joint to the first groove.
         """
         return self.d * np.sin(half_pitch(self.washer, self.n_g))
 
@@ -317,7 +317,7 @@ class ThrustWasher(CadModel):
         return (Part("washer", washer.solid(), washer.volume(), BRONZE, density=8800, material="CuSn8P"),)
 
     def drawn(self) -> Washer:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         return Washer(
             bore=mm(self.d) / 2,
             outside=mm(self.D) / 2,
@@ -335,7 +335,7 @@ class ThrustWasher(CadModel):
     def bounding_box(self) -> Box:
         """Return a box as wide as the outer diameter and as high as the lug.
 
-        A half washer is on the crown's side.
+        The box of a half washer is on the crown's side.
         """
         R, top = mm(self.D) / 2, mm(self.D) / 2 + (mm(self.h_l) if self.w_l > 0 else 0.0)
         return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))

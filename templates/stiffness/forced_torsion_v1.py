@@ -1,6 +1,7 @@
 """Forced torsional vibration of an engine's train: torque, twist and stress of each shaft over the speeds.
 
-Inertias, shafts, branches, gears, dampers and a propeller, excited by gas and inertia torque of cylinders.
+The train consists of inertias, shafts, branches, gears, dampers and a propeller. The gas and inertia torques
+of the cylinders excite it.
 """
 
 from __future__ import annotations

@@ -158,6 +158,29 @@ class File:
             radius,
         )
 
+    def lines(self):
+        """The lines drawn for every dimension, by its name, as pairs of points in the axes of the file."""
+        names = {}
+        for number in self.of["DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"]:
+            dimension, representation = self.entities[number]["DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"]
+            names[dimension] = self.get(representation, "SHAPE_DIMENSION_REPRESENTATION")[0]
+        first = self.of["SHAPE_DEFINITION_REPRESENTATION"][0]
+        _, root = self.entities[first]["SHAPE_DEFINITION_REPRESENTATION"]
+        for number in self.of["DRAUGHTING_MODEL_ITEM_ASSOCIATION"]:
+            _, _, dimension, model, callout = self.entities[number]["DRAUGHTING_MODEL_ITEM_ASSOCIATION"]
+            ((_, (_, _, axes)),) = self.entities[root.number].items()
+            assert self.get(model, "DRAUGHTING_MODEL")[2] == axes
+            if dimension in names:
+                yield names[dimension], list(self._segments(callout))
+
+    def _segments(self, callout):
+        for occurrence in self.get(callout, "DRAUGHTING_CALLOUT")[1]:
+            drawn = self.get(occurrence, "TESSELLATED_ANNOTATION_OCCURRENCE")[2]
+            for curves in self.get(drawn, "TESSELLATED_GEOMETRIC_SET")[1]:
+                _, points, pairs = self.get(curves, "TESSELLATED_CURVE_SET")
+                at = self.get(points, "COORDINATES_LIST")[2]
+                yield from ([at[int(n) - 1] for n in pair] for pair in pairs)
+
     def tolerances(self):
         """Name, kind, width and datums of every geometric tolerance."""
         for kind in ("CYLINDRICITY", "PERPENDICULARITY", "PARALLELISM"):

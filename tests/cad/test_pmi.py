@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bare_shells import HALF
-from cadquery import Shape
+from cadquery import Shape, Vertex
 from part21_reader import File
 from seeds import seeded
 from sizes_of import sizes_of
@@ -342,6 +342,28 @@ def test_open_cascade_reads_its_limits_datum_material_and_volume(fitted):
         rows.append((min(one.zmin for one in beside), max(one.zmax for one in beside)))
     assert all(below[1] < above[0] for below, above in pairwise(sorted(rows)))
     assert materials.Length() == 1
+
+
+@pytest.mark.parametrize("id", ["ball_bearing", "bearing_assembly"])
+def test_leaders_end_on_the_parts_at_their_places(id):
+    """Balls are made at the origin and stand in their raceways."""
+    cls = models().get(id, 1)
+    texts = as_text(cls.from_quantities(cls.example))
+    sizes, _ = sizes_of(cls.from_quantities(texts))
+    for name in cls.toleranced:
+        texts[name] += " ±0.01 mm"
+    step = regenerate_class(cls, texts).step
+    placed = {body.name: body.shape.moved(body.places[0]) for body in read_step(step)}
+    seen = set()
+    for name, lines in File(step).lines():
+        parts = {part for place in sizes[name].places for part, _ in (*place.first[:1], *place.second[:1])}
+        ends = [Vertex.makeVertex(*point) for pair in lines for point in pair]
+        for part in parts:
+            assert min(end.distance(placed[part]) for end in ends) < 1e-6, (name, part)
+            inside = min(ends, key=lambda end: end.distance(placed[part]))
+            assert min(inside.distance(face) for face in placed[part].Faces()) < 1e-6, (name, part)
+        seen.add(name)
+    assert seen == set(cls.toleranced)
 
 
 def test_every_letter_of_an_annotation_has_strokes():

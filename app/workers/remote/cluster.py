@@ -100,7 +100,7 @@ class Cluster:
         for _ in range(_TURNS):
             with suppress(NeverBegun):
                 return self._run_once(lane, order, preferred, on_progress, cancelled)
-        raise WorkerLost(f"{_TURNS} machines stopped before the work reached them")
+        raise WorkerLost(f"{_TURNS} machines in succession stopped before the work reached them")
 
     def _run_once(
         self,

@@ -29,7 +29,7 @@ class Node:
 
     @property
     def text(self) -> str:
-        """Return the text of this element itself."""
+        """Return the text of this element itself, without that of its children."""
         return "".join(piece for piece in self.pieces if isinstance(piece, str))
 
     @property

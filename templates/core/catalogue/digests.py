@@ -4,7 +4,7 @@ A released version is a file that nobody edits. Its digest is the SHA-256 of the
 module paths of imports; the imported names are included. A module that a released file imports may therefore
 move to another folder, and the import statement may be updated. The digest ignores docstrings, comments,
 layout and the attributes in `MARKS`, because they do not affect results. It includes the files of groups,
-which give a template inputs, formulas or rules.
+which give a template inputs, formulas or rules, and of functions that return a rule for several models.
 
 A worksheet computes its own digest.
 """
@@ -58,12 +58,12 @@ def release_file(cls: type[Template]) -> Path | None:
 
 
 def _sources(cls: type[Template]) -> Iterator[str]:
-    """Yield the source of the template, then the sources of its groups."""
-    for base in cls.__mro__:
-        if base is cls or _declares(base):
-            module = inspect.getmodule(base)
-            assert module is not None
-            yield text_of(module) or inspect.getsource(module)
+    """Yield the source of the template, of its groups, and of the modules that return its shared rules."""
+    groups = [base for base in cls.__mro__ if base is cls or _declares(base)]
+    for owner in (*groups, *(rule.function for rule in cls.requirements)):
+        module = inspect.getmodule(owner)
+        assert module is not None
+        yield text_of(module) or inspect.getsource(module)
 
 
 def _declares(base: type) -> bool:

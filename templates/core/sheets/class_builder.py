@@ -178,7 +178,9 @@ class Builder:
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
             remedy = "write different words, for example `(walther | vogel)`"
-            raise statement.refuse("choice", "each option must be one word that occurs once", options, remedy)
+            raise statement.refuse(
+                "choice", "each option must be a single word and occur only once", options, remedy
+            )
         if default is not None and str(default) not in names:
             message = f"the default {default} is not an option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")

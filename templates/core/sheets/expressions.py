@@ -1,4 +1,4 @@
-"""Read the expressions in statements: their trees, their kinds of quantity, and limits that are a number."""
+"""Read the expressions in statements: their trees, their kinds of quantity, and numeric limits."""
 
 from __future__ import annotations
 

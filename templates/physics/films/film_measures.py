@@ -120,7 +120,10 @@ def _flows(field: Field) -> tuple[float, float, float]:
 
 
 def _streamer_shear(field: Field, end: Array) -> float:
-    """Return the shear of the full film up to rupture and of streamers of width H_rupture/H beyond it [-]."""
+    """Return the shear of the full film up to rupture and of streamers beyond it [-].
+
+    The streamers fill the fraction H_rupture/H of the width.
+    """
     eps, gamma = field.eps, sommerfeld_angle(end, field.eps)
     s = np.sqrt((1 - eps) * (1 + eps))
     H_end = s**2 / (1 + eps * np.cos(gamma))

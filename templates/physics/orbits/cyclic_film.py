@@ -89,7 +89,7 @@ def cycle_of(angle: Array) -> float:
 
 @units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
-    """Return the result of `cycle_of` as a number for a formula."""
+    """Return the result of `cycle_of` as a number for use in a formula."""
     return np.asarray(cycle_of(angle))[()]
 
 
