@@ -11,7 +11,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.surfaces import look
+from cad.tolerance_places import TolerancePlace, tolerance_places
 from cad.tolerances import Limits, carried, in_unit, limits, limits_of, table_tolerances
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
@@ -55,7 +56,7 @@ __all__ = [
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 5
+RECIPE = 6
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -83,6 +84,7 @@ class Build:
     dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
     materials: dict[str, str]  # material of each part
     clearances: tuple[Clearance, ...] = ()  # between the fixed parts of an assembly and the other parts
+    tolerances: Mapping[str, TolerancePlace] = field(default_factory=dict)  # where the files state them
 
 
 def ignore(done: float, what: str) -> None:
@@ -217,19 +219,26 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         between = compared(model, bodies, lambda done, what: report(0.8 + 0.2 * done, what))
     check_clearances(model, between)
-    dimensions = check_dimensions(model, look_at(bodies))
+    seen = look_at(bodies)
+    dimensions = check_dimensions(model, seen)
+    places: dict[str, TolerancePlace] = {}
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
+        places = tolerance_places(model, model.dimensions(seen))
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box) | between_parts(model, between)
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
-    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)
+    plain = _plain(model)
+    return Build(
+        key, cls.id, cls.version, plain, step, measures, dimensions, materials, between, places
+    )  # fmt: skip
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return the annotations of the file; None if no dimension has a tolerance."""
-    if not (within := limits(model)):
+    """Return the annotations of the file; None if no parameter has a tolerance."""
+    within = limits(model)
+    if not (within or table_tolerances(model)):
         return None
     seen = {part.name: look(part.solid, len(part.places), part.name) for part in parts}
     return Annotations.of(carried(type(model)), within, model.dimensions(seen))

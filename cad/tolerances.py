@@ -186,7 +186,7 @@ def not_stated(model: TolerancedTemplate) -> Iterator[Fault]:
             detail = "the items of a list share one tolerance: give `plus` and `minus` beside the list"
             yield Fault(name, "tolerance_not_stated", detail)
         elif not tolerance.state_in_table:
-            detail = f"no file can state its tolerance at a face: {why_no_face(type(model), name, typed.si)}"
+            detail = f"no file can state its tolerance at a face: {why_no_face(type(model), name, typed)}"
             yield Fault(name, "tolerance_not_stated", f"{detail}; {REMEDY}")
 
 
@@ -196,13 +196,13 @@ REMEDY = (
 )
 
 
-def why_no_face(cls: type[TolerancedTemplate], name: str, si: object) -> str:
+def why_no_face(cls: type[TolerancedTemplate], name: str, typed: TypedQuantity | str) -> str:
     """Return why no face can carry the tolerance of a parameter."""
     if unit(cls.inputs[name].meaning.unit).base != unit("m").base:
         return "faces carry tolerances of lengths only"
     if not cls.toleranced:
         return "the model does not tell which faces have its lengths"
-    if np.ndim(si):
+    if isinstance(typed, TypedQuantity) and np.ndim(typed.si):
         return "it is a list, and faces carry tolerances of single lengths"
     return "this length is not the size of a face, nor the distance of two faces"
 
@@ -210,8 +210,9 @@ def why_no_face(cls: type[TolerancedTemplate], name: str, si: object) -> str:
 def _given(model: TolerancedTemplate) -> Iterator[tuple[str, TypedQuantity, Tolerance]]:
     """Yield the parameters that have a tolerance whose limits differ."""
     for name, typed in model.ledger.typed.items():
-        tolerance = typed.tolerance if isinstance(typed, TypedQuantity) else None
-        if tolerance is not None and np.any(np.asarray(tolerance.upper) - tolerance.lower > 0):
+        if not isinstance(typed, TypedQuantity) or (tolerance := typed.tolerance) is None:
+            continue
+        if np.any(np.asarray(tolerance.upper) - tolerance.lower > 0):
             yield name, typed, tolerance
 
 

@@ -24,7 +24,7 @@ from cad.drafting.title import (
 from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
-from cad.tolerances import Limits, angle_tolerance, deviations, limits_of, number_of
+from cad.tolerances import Limits, TableTolerance, angle_tolerance, deviations, limits_of, number_of
 from templates.core.units.tolerance import IN_TABLE, is_toleranced
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
@@ -210,12 +210,15 @@ def _value(text: str, limits: Limits | None) -> str:
         return text.removesuffix(IN_TABLE)
     value, is_angle = size
     if is_angle:
-        ends = deviations(angle_tolerance(text)) if is_toleranced(text) else ("",)
-        return " ".join(filter(None, (f"{number_of(value, 6)}°", "/".join(filter(None, ends)))))
+        within = angle_tolerance(text) if is_toleranced(text) else None
+        return " ".join((f"{number_of(value, 6)}°", *([_ends(within)] if within else [])))
     if limits is None:
         return number_of(value, 6)
-    ends = "/".join(filter(None, deviations(limits)))
-    return " ".join(filter(None, (number_of(value, 6), limits.zone, ends)))
+    return " ".join(filter(None, (number_of(value, 6), limits.zone, _ends(limits))))
+
+
+def _ends(limits: Limits | TableTolerance) -> str:
+    return "/".join(filter(None, deviations(limits)))
 
 
 def _wrapped(text: str, width: float) -> list[str]:

@@ -351,7 +351,7 @@ def test_leaders_end_on_the_parts_at_their_places(id):
     texts = as_text(cls.from_quantities(cls.example))
     sizes, _ = sizes_of(cls.from_quantities(texts))
     for name in cls.toleranced:
-        texts[name] += " ±0.01 mm"
+        texts[name] += " +0.01/0 mm"
     step = regenerate_class(cls, texts).step
     placed = {body.name: body.shape.moved(body.places[0]) for body in read_step(step)}
     seen = set()
