@@ -119,6 +119,30 @@ class WrittenCriterion(Bounded):
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
+MOST_COLUMNS = 40
+COLUMN = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}(\[[1-9][0-9]{0,5}\])?$"
+ColumnName = Annotated[str, StringConstraints(pattern=COLUMN)]
+"""A parameter, `step.output`, an item of a list `step.output[1]`, `model.mass`, `model.analysis.output`."""
+
+
+class TableOfResults(Bounded):
+    """The columns of the table in which variants are compared, in their order."""
+
+    model_config = _STRICT
+
+    columns: Annotated[list[ColumnName], Field(max_length=MOST_COLUMNS)] = Field(
+        [],
+        description="values of the design; if empty, the results that its templates name",
+        examples=[["film.speed", "film.minimum_film_thickness", "shell.mass"]],
+    )
+    changes: bool = Field(False, description="whether each row also shows its change from the first row")
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
+        """Remove members that are empty or false, so that equal documents have one stored form."""
+        return _without_nothing(plain(self), "columns", "changes")
+
+
 def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
     """Return variants in natural order of their names: main_2 before main_10."""
     return {name: variants[name] for name in sorted(variants, key=natural)}
@@ -149,11 +173,12 @@ class Document(Bounded):
         description="named sets of values that override parameters, inputs of steps and parameters of models",
         examples=[{"main_1": {"clearance": "55 um"}, "main_2": {"film.bearing_width": "= width - 2 mm"}}],
     )
+    table: TableOfResults = Field(TableOfResults(), description="the table in which variants are compared")
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty criteria and variants, so that equal documents have one stored form."""
-        return _without_nothing(plain(self), "criteria", "variants")
+        """Remove empty criteria, variants and table, so that equal documents have one stored form."""
+        return _without_nothing(plain(self), "criteria", "variants", "table")
 
     @model_validator(mode="before")
     @classmethod
@@ -235,7 +260,7 @@ def _is_container(path: tuple[str, ...]) -> bool:
     Containers are the document, its groups, its steps and models, and their parts.
     """
     match path:
-        case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):
+        case () | ("parameters" | "steps" | "models" | "criteria" | "variants" | "table",):
             return True
         case ("steps" | "models" | "variants", _):
             return True

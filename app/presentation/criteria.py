@@ -110,6 +110,7 @@ class Line:
     remarks: tuple[str, ...]
     unverified: bool = False
     is_open: bool = False
+    is_error_unknown: bool = False
 
     @property
     def place(self) -> str:
@@ -141,6 +142,7 @@ def line(criterion: JudgedCriterion) -> Line:
         remarks=remarks(criterion),
         unverified=criterion.unverified is not None,
         is_open=is_open(criterion),
+        is_error_unknown=_is_error_unknown(criterion),
     )
 
 

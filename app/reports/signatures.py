@@ -48,9 +48,10 @@ def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
     return clean(signed)
 
 
-def of_variants(signatures: Signatures) -> Signatures:
-    """Return the signatures in the report of all variants."""
-    block = Block.model_validate_json(signatures.block).model_copy(update={"has_variants": True})
+def of_variants(signatures: Signatures, *, has_appendix: bool) -> Signatures:
+    """Return the signatures in the report of all variants, with or without its appendix."""
+    more = {"has_variants": True, **({"has_appendix": True} if has_appendix else {})}
+    block = Block.model_validate_json(signatures.block).model_copy(update=more)
     return replace(signatures, block=block.model_dump_json())
 
 

@@ -72,6 +72,7 @@ class CombustionCycle(Template):
         "ratio_of_specific_heats": 1.32,
         "steps": 72,
     }
+    main_results = ("peak_pressure", "peak_pressure_angle", "burnt_heat", "closed_mean_effective_pressure")
     criteria = {
         "peak_pressure": {
             "require": "peak_pressure <= permissible_peak_pressure",

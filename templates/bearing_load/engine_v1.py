@@ -153,6 +153,9 @@ class Engine(ArticulatedEngine):
         "web_positions": {"value": [22, 72, 132], "unit": "mm"},
         **SHAFT,
     }
+    main_results = (
+        "speed", "indicated_mean_effective_pressure", "mean_torque", "mean_power", "shaking_force_max",
+    )  # fmt: skip
     criteria = {
         "main_load": {
             "require": "main_load_max <= permissible_main_load",

@@ -119,6 +119,10 @@ class CycleHeatBalance(Oil, FedBearing):
         "supply_temperature": "90 degC",
         "hths_viscosity": "3.5 mPa*s",
     }  # fmt: skip
+    main_results = (
+        "largest_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "film_temperature",
+    )  # fmt: skip
     criteria = {
         "film_exists": film_exists(),
         "own_film": {

@@ -128,6 +128,10 @@ class ElasticFilm(Oil, Journal):
         "liner_thickness": "0.3 mm",
         "housing_outer_diameter": "76 mm",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow",
+    )  # fmt: skip
     criteria = {
         "elasticity": {
             "require": "neglected_deformation <= 0.1 * minimum_film_thickness",

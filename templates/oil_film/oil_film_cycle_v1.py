@@ -159,6 +159,10 @@ class OilFilmCycle(FedBearing):
         **EXAMPLE,
         "dynamic_viscosity": "10 mPa*s",
     }  # fmt: skip
+    main_results = (
+        "largest_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow",
+    )  # fmt: skip
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= permissible_film",

@@ -172,6 +172,10 @@ class OilFilm(WarmOil, Journal):
         "journal_roughness": "0.2 um",
         "bearing_roughness": "0.4 um",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "film_temperature",
+    )  # fmt: skip
     criteria = CRITERIA
 
     grooves: tuple[tuple[float, float], ...] = table(

@@ -97,6 +97,10 @@ class ThermalFilm(Oil, Template):
         "heat_transfer_coefficient": "80 W/(m**2*K)",
         "ambient_temperature": "40 degC",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "greatest_film_temperature",
+    )  # fmt: skip
     criteria = {
         "film_exists": film_exists(),
         "own_film": {

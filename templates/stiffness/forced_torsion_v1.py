@@ -136,6 +136,7 @@ class ForcedTorsion(TorsionTrain):
         "speeds": {"value": [800, 1300, 1800, 2300], "unit": "rpm"},
         "observed_inertia": 5,
     }  # fmt: skip
+    main_results = ("natural_frequencies[1]", "largest_torque[1]", "largest_stress[1]", "worst_speed[1]")
     criteria = {
         "stress": {
             "require": "stress_envelope <= permissible_vibratory_stress",

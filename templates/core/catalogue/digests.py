@@ -26,7 +26,7 @@ from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "main_results", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # digests to cache, keyed by the source text; every page shows them

@@ -39,6 +39,7 @@ class Calculation:
     example: ClassVar[Mapping[str, Any]] = {}
     assumptions: ClassVar[tuple[str, ...]] = ()  # of the model, on the unsafe side; one sentence each
     criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
+    main_results: ClassVar[tuple[str, ...]] = ()  # the inputs and outputs that a table of designs shows
     precision: ClassVar[float] = (
         1e-12  # relative precision to which results of a released version must agree; solvers: 1e-8
     )
