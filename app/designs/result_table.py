@@ -19,7 +19,7 @@ from app.schemas.criteria import Criterion
 from templates.core.errors import listed
 
 MOST_DEFAULT = 12
-EQUAL = 1e-9  # relative difference below which two used shares count as equal
+EQUAL = 0.005  # relative difference below which two used shares count as equal
 
 
 def table(
@@ -138,7 +138,7 @@ def _sentence(rows: Sequence[VariantResult], worst: Sequence[str], governing: Go
     row = next(row for row in rows if row.name == governing.variant)
     about = line(next(one for one in row.criteria if one.name == governing.criterion))
     names = ["the design itself" if name == BASE else name for name in worst]
-    verb = "governs" if len(names) == 1 else f"govern ({len(names)} equal)"
+    verb = "governs" if len(names) == 1 else f"govern ({len(names)} equal within {100 * EQUAL:g} %)"
     place = f"{about.place}: " if about.place else ""
     used = f", {about.used} of the limit used" if about.used else ""
     return f"{listed(names)} {verb}; {place}{about.sentence}{used}"

@@ -141,8 +141,9 @@ class Reports:
         table = variants_of(out, plots, pending=pending, has_appendix=has_appendix)
         verdict = replace(report.verdict, criteria=[], governing=table.governing)
         signatures = of_variants(report.signatures, has_appendix=has_appendix)
-        kept = {} if has_appendix else {"steps": [], "models": [], "rounds": []}
-        return replace(report, verdict=verdict, variants=table, signatures=signatures, **kept)
+        if not has_appendix:
+            report = replace(report, steps=[], models=[], rounds=[])
+        return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """Return the content of the report; `pending` states that a job still draws its pictures."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 from app.designs.schemas.designs import RevisionStep
 from app.designs.schemas.variants import VariantDetail, VariantResult, VariantsOut
 from app.designs.variants.names import BASE
 from app.presentation import numbers
 from app.presentation.criteria import Line, line, tone
+from app.presentation.input_text import text_of
 from app.presentation.result_lines import result_lines
 from app.reports.cells import clean
 from app.reports.content import Columns, File, Plot, ReportVerdict, Solid, Variants
@@ -40,7 +42,10 @@ def variants_of(
     )
 
 
-def of_variant(detail: VariantDetail, step: str, result: RevisionStep) -> RevisionStep:
+CalculatedStep = TypeVar("CalculatedStep", bound=RevisionStep)
+
+
+def of_variant(detail: VariantDetail, step: str, result: CalculatedStep) -> CalculatedStep:
     """Return the results of a step with the inputs and outputs of a variant."""
     inputs = {name: detail.inputs.get(f"{step}.{name}", one) for name, one in result.inputs.items()}
     outputs = {name: detail.outputs.get(f"{step}.{name}", one) for name, one in result.outputs.items()}
@@ -73,11 +78,17 @@ def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
     columns = []
     for about in out.columns:
         own = f"({numbers.in_line(about.nominal)})" if about.nominal else ""
-        texts = [
-            numbers.in_line(row.values[about.place]) if about.place in row.values else own for row in rows
-        ]
+        texts = [_input(out, row, about.place) or own for row in rows]
         columns.append((clean(about.words), [clean(text) for text in texts]))
     return columns
+
+
+def _input(out: VariantsOut, row: VariantResult, place: str) -> str:
+    """Return the value that a variant overrides; for a list or a curve, as typed."""
+    value = row.values.get(place)
+    if value is None:
+        return ""
+    return text_of(out.variants[row.name][place]) if isinstance(value.value, list) else numbers.in_line(value)
 
 
 def _used(rows: Sequence[VariantResult]) -> list[Column]:

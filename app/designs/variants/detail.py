@@ -23,7 +23,6 @@ from app.designs.results import Outcome
 from app.designs.schemas.variants import VariantDetail
 from app.designs.variants.names import BASE
 from app.designs.variants.together import Available, together
-from app.plain import JsonObject
 from app.pool.questions import VARIANT, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.solids.analysis_rows import analysed
@@ -104,7 +103,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
     ).in_units(wanted.system)
 
 
-def _inputs(calculation: Calculation) -> Iterator[tuple[str, JsonObject]]:
+def _inputs(calculation: Calculation) -> Iterator[tuple[str, object]]:
     """Yield name and value of every input of the calculated steps."""
     for step, evaluation in calculation.evaluations.items():
         yield from ((f"{step}.{name}", one) for name, one in json_values.inputs(evaluation.inputs).items())

@@ -74,7 +74,7 @@ function sort(table, head) {
   table.querySelectorAll("[aria-sort]").forEach((other) => other.removeAttribute("aria-sort"));
   head.setAttribute("aria-sort", ascending ? "ascending" : "descending");
   const at = [...head.parentNode.children].indexOf(head), sign = ascending ? 1 : -1;
-  const key = (row) => row.children[at].dataset.value ?? row.children[at].textContent.trim();
+  const key = (row) => row.children[at].dataset.number ?? row.children[at].textContent.trim();
   const lines = [...table.tBodies[0].rows].sort((one, other) => {
     const [a, b] = [key(one), key(other)], [x, y] = [Number(a), Number(b)];
     if (Number.isFinite(x) && Number.isFinite(y) && a !== "" && b !== "") return sign * (x - y);
@@ -85,7 +85,7 @@ function sort(table, head) {
 
 // Return a table as a spreadsheet takes it from the clipboard: tabs between cells, numbers with all digits.
 function copied(table) {
-  const text = (cell) => cell.dataset.value ?? cell.textContent.trim().replace(/\s+/g, " ");
+  const text = (cell) => cell.dataset.number ?? cell.textContent.trim().replace(/\s+/g, " ");
   return [...table.rows].map((row) => [...row.cells].map(text).join("\t")).join("\n");
 }
 
