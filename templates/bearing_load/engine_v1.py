@@ -253,7 +253,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Return the loads of mains with clearance; None without clearance or without crank sections."""
+        """Return the loads of mains with clearance; None without a clearance or without crank sections."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,

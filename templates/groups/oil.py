@@ -155,7 +155,7 @@ class Oil(Template):
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:
-        """Dynamic viscosity over density."""
+        """Kinematic viscosity: dynamic viscosity over density."""
         return self.eta / self.rho
 
 

@@ -48,7 +48,8 @@ def meanings_of(
 ) -> dict[str, NameDescription]:
     """Return unit and label of each name that a criterion may use, without texts, choices and tables.
 
-    The author of a template knows that a speed is in rad/s, so no second reading of a criterion is reported.
+    A second reading of a speed is not reported here, because the author of a template knows that it is in
+    rad/s.
     """
     declared = {**inputs, **formulas}
     return {
