@@ -124,7 +124,7 @@ class _Marks:
 
     @property
     def assumed(self) -> list[str]:
-        """Return a sentence on each assumed decimal and thousands mark."""
+        """Return one sentence for each assumption about a decimal or thousands mark."""
         taken = [
             f"decimal {name}" for name, is_met in (("comma", self.comma), ("point", self.point)) if is_met
         ]

@@ -55,7 +55,7 @@ class _PlaceRemoval:
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """Return a parameter of the design; for a single quantity, a placeholder of the same kind."""
+        """Return a parameter of the design; a single quantity becomes a placeholder of the same kind."""
         if _is_written_out(raw):
             return raw
         try:

@@ -131,7 +131,7 @@ class ArtifactStore:
                         stale.unlink()
 
     def put(self, *parts: bytes | memoryview) -> str:
-        """Store bytes, whole or in parts, durably and return their SHA-256; equal bytes are stored once.
+        """Store bytes durably, whole or in parts, and return their SHA-256; equal bytes are stored once.
 
         An existing file is kept if its bytes are good, and its age is renewed.
         """
