@@ -186,7 +186,7 @@ def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """Return the number of values that steps and models set; it also counts a malformed document."""
+    """Return the number of values that steps and models set; it accepts a malformed document too."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -195,7 +195,7 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """Return the number of values that variants override; it also counts a malformed document."""
+    """Return the number of values that variants override; it accepts a malformed document too."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))

@@ -198,7 +198,7 @@ def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lan
 
 
 def call_as(caller: Caller) -> None:
-    """From now on, evaluate expensive steps of this context, such as a request, on behalf of a caller."""
+    """Set the caller for whom the rest of this context, such as a request, evaluates expensive steps."""
     _caller.set(caller)
 
 

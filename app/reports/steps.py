@@ -47,7 +47,7 @@ class StepDocument(TypedDict):
 
 
 def step_of(name: str, step: PreviewedStep, document: StepDocument, catalogues: Catalogues) -> Step:
-    """Return one step, given by the worksheet of a revision and by the step in its document, as typed there."""
+    """Return one step, built from the worksheet of a revision and from the step as typed (`document`)."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)

@@ -201,7 +201,7 @@ def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Progr
 
 
 def rehearse(called: Callable[[], bool]) -> None:
-    """Build a small solid in an idle worker process, because the first build takes twice as long as later ones.
+    """Build a small solid in an idle worker process, because a process's first build takes twice as long.
 
     Raises
     ------

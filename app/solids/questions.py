@@ -93,7 +93,7 @@ class Question:
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """Return the request as stored with its answers, without the load."""
+        """Return the request in the form that is stored with its answers; it omits the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:

@@ -44,7 +44,7 @@ def file(name: str) -> str | bool:
 
 
 def from_folder(name: str, make: Callable[[Path | None], T]) -> T:
-    """Create an object from a folder of prepared files; if the folder cannot be written, without one.
+    """Create an object from a folder of prepared files, or without a folder if none can be written.
 
     A folder is filled under a temporary name and then renamed, so that it is always complete.
 

@@ -35,7 +35,7 @@ def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
 
 
 def _compared(result: Outcome) -> Iterator[Operand]:
-    """Yield the operands of the false parts of a rule; all operands if the causes of a part are unknown."""
+    """Yield the operands of the false parts of a rule."""
     if result.comparison is not None:
         yield from (result.comparison.left, result.comparison.right)
     elif result.parts:

@@ -177,7 +177,7 @@ class Template(Calculation):
         return True
 
     def own_error(self, output: str) -> Array:
-        """Return the relative error of an output by the level's own estimate [-]; NaN without one."""
+        """Return the level's own estimate of the relative error of an output [-]; NaN if it makes none."""
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:
