@@ -261,7 +261,7 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[MissingValue, Subject], ...]:
-        """Return the comparisons to judge if a value is missing."""
+        """Return the comparisons that are judged instead of this one if a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 

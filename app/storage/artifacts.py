@@ -95,7 +95,7 @@ class Artifacts(Protocol):
         ...
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name that is not a hash; None if there is none."""
+        """Return the note with this name, which is not a hash; None if there is none."""
         ...
 
     def write_note(self, name: str, text: str) -> None:
@@ -234,7 +234,7 @@ class ArtifactStore:
         return (self.read_note(OWNER) or "").strip()
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name; None if there is none."""
+        """Return the note with this name; None if there is none."""
         try:
             return (self.folder / name).read_text(errors="replace")
         except FileNotFoundError:

@@ -39,7 +39,7 @@ class Table:
     rows: tuple[Row, ...]
 
     def row(self, id: str) -> Row | None:
-        """Return the row with a name; None if there is none."""
+        """Return the row with this id; None if there is none."""
         return next((row for row in self.rows if row.id == id), None)
 
 

@@ -103,7 +103,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
 
 
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Yield name and value of every step output.
+    """Yield the name and value of every step output.
 
     The value is null with its reason while the step is pending.
     """

@@ -95,7 +95,7 @@ class Judgement:
 
     @property
     def sides(self) -> tuple[str, str]:
-        """Return value and limit as text."""
+        """Return the value and the limit as text."""
         return _parts_of(self.require).sides
 
     @property

@@ -46,7 +46,7 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 def meanings_of(
     inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> dict[str, NameDescription]:
-    """Return unit and label of each name that a criterion may use, without texts, choices and tables.
+    """Return the unit and label of each name that a criterion may use; texts, choices and tables are omitted.
 
     A second reading of a speed is not reported here, because the author of a template knows that it is in
     rad/s.

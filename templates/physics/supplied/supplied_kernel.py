@@ -13,9 +13,9 @@ Circumferential conductances are the inverse of the mean of H^-3 between two nod
 cell the complementarity condition (active set: the smaller of pressure and void is 0; or the function of
 Fischer and Burmeister) has two slopes, with respect to pressure and to void; the unknown with the
 larger slope is eliminated. The remaining matrix is diagonally dominant by columns for every film. Let
-r <= 1 be the ratio of the smaller slope to the larger. The diagonal of every column is 1 + r. The other entries of the
-column of a full cell are conductances divided by their sum; those of any other column are r times these. So
-the banded factorisation needs no pivoting.
+r <= 1 be the ratio of the smaller slope to the larger. The diagonal of every column is 1 + r. The other
+entries of the column of a full cell are conductances divided by their sum; those of any other column are r
+times these. So the banded factorisation needs no pivoting.
 """
 
 import numpy as np
