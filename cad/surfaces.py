@@ -58,7 +58,7 @@ class Size(float):
     places: tuple[Place, ...]
 
     def __new__(cls, value: float, kind: Kind, *places: Place) -> Self:
-        """Return a number with references to its faces."""
+        """Return a number that refers to the faces from which it was read."""
         size = super().__new__(cls, value)
         size.kind, size.places = kind, places
         return size

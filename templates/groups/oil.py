@@ -138,7 +138,7 @@ class Oil(Template):
         remedy="the linear law ends 1428 K above its reference",
     )  # fmt: skip
     def rho(self) -> Array:
-        """Density at the film temperature, or at the reference temperature if there is none."""
+        """Density at the film temperature, or at the reference temperature if that is unknown."""
         return density(self.rho_ref, or_reference(self.T_film, self.T_ref), self.T_ref)
 
     @derived(

@@ -277,7 +277,7 @@ class CycleHeatBalance(Oil, FedBearing):
              latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
              r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle; v is the velocity of the centre in axes that rotate at the mean speed."""
+        """Mean power loss; v is the velocity of the centre in axes that rotate at the mean speed."""
         return loss_of(self.heat, self.eta_e)
 
     @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")

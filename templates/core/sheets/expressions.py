@@ -190,7 +190,7 @@ class Reader:
 
 
 def is_literal(axis: str) -> bool:
-    """Return whether an axis belongs to a literal list, such as `3 items`."""
+    """Return whether an axis, such as `3 items`, belongs to a list that is written out."""
     return " " in axis
 
 

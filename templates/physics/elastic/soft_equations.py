@@ -191,7 +191,7 @@ class SoftFilm:
 
     @cached_property
     def force(self) -> Array:
-        """Return the (2,) force of the present pressure."""
+        """Return the force of the present pressure, (2,)."""
         return np.asarray(self.force_of @ self.P.ravel())
 
 
