@@ -225,7 +225,7 @@ class PartSurfaces:
         return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
 
     def levels(self, axis: Vector) -> list[float]:
-        """Return the coordinates [mm] at which planes are perpendicular to the axis, ascending."""
+        """Return the coordinates along an axis of the planes perpendicular to it [mm], ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def planes_at(self, axis: Vector, level: float) -> list[Surface]:

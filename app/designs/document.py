@@ -158,7 +158,7 @@ class Document(Bounded):
     @model_validator(mode="before")
     @classmethod
     def one_model(cls, raw: Raw) -> Raw:
-        """Replace `model` by `models` with one entry, named `model`."""
+        """Replace `model` with `models`, which has one entry, named `model`."""
         if not isinstance(raw, Mapping):
             return raw
         if "model" in raw and "models" in raw:

@@ -50,7 +50,7 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
 
 @dataclass(frozen=True)
 class _PlaceRemoval:
-    """Replaces single quantities in a document by placeholders, and records their values."""
+    """Replaces single quantities in a document with placeholders, and records their values."""
 
     values: dict[Reference, float]
 
