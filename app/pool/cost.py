@@ -1,6 +1,6 @@
 """Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate is an order of magnitude and rather too high. An expensive calculation runs outside the server's
+The estimate gives only the order of magnitude, and is more often too high than too low. An expensive calculation runs outside the server's
 process (see `app.pool.pool`).
 """
 
