@@ -1,7 +1,7 @@
 """Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate gives only the order of magnitude, and is more often too high than too low. An expensive calculation runs outside the server's
-process (see `app.pool.pool`).
+The estimate gives only the order of magnitude, and is more often too high than too low. An expensive
+calculation runs outside the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
