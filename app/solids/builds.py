@@ -1,4 +1,4 @@
-"""Create builds in a worker process, and store them with their STEP files; other files only on request.
+"""Create builds in a worker process, and store them with their STEP files; create other files on request.
 
 If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
 the row verifies the result.

@@ -217,12 +217,12 @@ class ForcedTorsion(TorsionTrain):
 
     @require("gas_torque", "crank_angle", missing=True, remedy="omit the last point")
     def gas_closes(self) -> Truth:
-        """If the last crank angle closes the cycle, the gas torque there equals the first gas torque."""
+        """If the last crank angle closes the cycle, the gas torque there equals the first one."""
         return closes(self.theta, self.T_g)
 
     @require("inertia_torque", "crank_angle", missing=True, remedy="omit the last point")
     def inertia_closes(self) -> Truth:
-        """If the last crank angle closes the cycle, the inertia torque there equals the first inertia torque."""
+        """If the last crank angle closes the cycle, the inertia torque there equals the first one."""
         return closes(self.theta, self.T_m)
 
     @require("highest_order", "crank_angle", remedy="take a lower order, or smaller steps of the crank angle")
