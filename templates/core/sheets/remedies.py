@@ -79,7 +79,7 @@ def common_unit(kind: Kind) -> str:
 
 
 def names_in_units(at: Any, names: Names) -> str:
-    """Return the advice to put blanks before a name that was read as a unit, such as t (tonne) in `1 turn/t`."""
+    """Return the advice to put blanks before a name that was read as a unit, such as t in `1 turn/t`."""
     tokens = (
         at.scan_values(lambda token: getattr(token, "type", "") == "QUANTITY") if hasattr(at, "data") else ()
     )
