@@ -11,7 +11,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +40,13 @@ from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.surfaces import look
-from cad.tolerances import Limits, carried, in_unit, limits, limits_of
+from cad.tolerance_places import TolerancePlace, tolerance_places
+from cad.tolerances import Limits, carried, in_unit, limits, limits_of, table_tolerances
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.modules import is_outside
 from templates.core.errors import InvalidInputs
+from templates.core.units.tolerance import STATE_IN_TABLE
 
 __all__ = [
     "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
@@ -54,7 +56,7 @@ __all__ = [
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 5
+RECIPE = 6
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -82,6 +84,7 @@ class Build:
     dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
     materials: dict[str, str]  # material of each part
     clearances: tuple[Clearance, ...] = ()  # between the fixed parts of an assembly and the other parts
+    tolerances: Mapping[str, TolerancePlace] = field(default_factory=dict)  # where the files state them
 
 
 def ignore(done: float, what: str) -> None:
@@ -138,6 +141,9 @@ def _canonical(model: CadModel) -> _Canonical:
         for name, within in limits(model).items():
             texts[name], more = _within(within, texts[name], model.inputs[name].meaning.unit)
             quantities[name] |= more
+        for name, tolerance in table_tolerances(model).items():
+            texts[name] = tolerance.written(texts[name], model.inputs[name].meaning.unit)
+            quantities[name] |= _stated(tolerance.lower, tolerance.upper, tolerance.zone, in_table=True)
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
     return kept
 
@@ -213,19 +219,26 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         between = compared(model, bodies, lambda done, what: report(0.8 + 0.2 * done, what))
     check_clearances(model, between)
-    dimensions = check_dimensions(model, look_at(bodies))
+    seen = look_at(bodies)
+    dimensions = check_dimensions(model, seen)
+    places: dict[str, TolerancePlace] = {}
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
+        places = tolerance_places(model, model.dimensions(seen))
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box) | between_parts(model, between)
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
-    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)
+    plain = _plain(model)
+    return Build(
+        key, cls.id, cls.version, plain, step, measures, dimensions, materials, between, places
+    )  # fmt: skip
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return the annotations of the file; None if no dimension has a tolerance."""
-    if not (within := limits(model)):
+    """Return the annotations of the file; None if no parameter has a tolerance."""
+    within = limits(model)
+    if not (within or table_tolerances(model)):
         return None
     seen = {part.name: look(part.solid, len(part.places), part.name) for part in parts}
     return Annotations.of(carried(type(model)), within, model.dimensions(seen))
@@ -251,9 +264,13 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
     """Return the text of a parameter with its limits, and the extra fields for its quantity."""
-    lower, upper = in_unit(within, unit)
-    zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
-    return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
+    stated = _stated(*in_unit(within, unit), within.zone, in_table=within.state_in_table)
+    return with_limits(text, unit, within), stated
+
+
+def _stated(lower: float, upper: float, zone: str | None, *, in_table: bool) -> dict[str, Value]:
+    more: dict[str, Value] = {} if zone is None else {"zone": zone}
+    return {"upper": upper, "lower": lower, **more, **({STATE_IN_TABLE: True} if in_table else {})}
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:

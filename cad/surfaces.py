@@ -36,8 +36,8 @@ Face = tuple[str, int]
 Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
 Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
 """Kind of a size. The faces of a `distance` from an axis lie around that axis; a `circle` is the pitch
-circle through the axes of its faces, which are holes; a `chamfer` has 45°; an `edge` is where its faces
-meet, dimensioned from the axis."""
+circle through the axes of its first faces, which are holes, about the axis of its second ones; a `chamfer`
+has 45°; an `edge` is where its faces meet, dimensioned from the axis of the first ones."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,10 @@ class Size(float):
         return Size.distance((outer[0].diameter - inner[0].diameter) / 2, inner, outer)
 
     @staticmethod
-    def circle(holes: Sequence[Surface]) -> Size:
-        """Return the diameter of the pitch circle about z on which holes along z lie."""
+    def circle(holes: Sequence[Surface], about: Sequence[Surface]) -> Size:
+        """Return the diameter of the pitch circle of holes along z, about z, the axis of other surfaces."""
         value = alike((2 * one.point.cross(Z).Length for one in holes), "distances of holes from the axis")
-        return Size(value, "circle", Place(faces_of(holes)))
+        return Size(value, "circle", Place(faces_of(holes), faces_of(about)))
 
     @staticmethod
     def repeated(sizes: Iterable[float], what: str) -> float:

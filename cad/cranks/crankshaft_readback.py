@@ -275,9 +275,26 @@ class ShaftReadback:
 
     def counterweights(self) -> list[float]:
         """Return the radius of each web's counterweight [mm]; 0 for none."""
-        width = self.web_width
-        rims = ([c.diameter for c in self._about(*web)] for throw in self.throws for web in throw.webs)
-        return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]
+        return [max((c.diameter for c in rim), default=0.0) / 2 for rim in self._rims]
+
+    def counterweight(self) -> float:
+        """Return the radius that the counterweights of all webs share [mm]; 0 if there are none.
+
+        Raises
+        ------
+        LookupError
+            If they differ.
+        """
+        alike(self.counterweights(), "counterweights")
+        rims = [cylinder for rim in self._rims for cylinder in rim]
+        return Size.radius(rims) if rims else 0.0
+
+    @cached_property
+    def _rims(self) -> list[list[Surface]]:
+        """Return the cylinders about the shaft that are wider than the web, for each web."""
+        least = 1.01 * self.web_width
+        webs = (web for throw in self.throws for web in throw.webs)
+        return [[c for c in self._about(*web) if c.diameter > least] for web in webs]
 
     def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
         """Return the common angle of the counterweights [deg].
@@ -326,7 +343,7 @@ class ShaftReadback:
         return {
             "bolt_holes": float(len(holes)),
             "bolt_hole_diameter": Size.diameter(holes),
-            "bolt_circle_diameter": Size.circle(holes),
+            "bolt_circle_diameter": Size.circle(holes, self._journal_surfaces()),
             "bolt_hole_depth": self.seen.apart(Z, bottom, end),
         }
 

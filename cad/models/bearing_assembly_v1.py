@@ -71,6 +71,7 @@ class BearingAssembly(CadModel):
         "journal_length": {"perpendicularity": 1, "to": "A"},
         "width": {},
         "lining_thickness": {},
+        "crush_height": {},
         "housing_bore": {"cylindricity": 0.5},
         "housing_breadth": {},
         "block_height": {},
@@ -240,18 +241,18 @@ class BearingAssembly(CadModel):
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter.
 
-        The clearance is read between bore and journal, the crush height at the joint.
+        The clearance is read between bore and journal, the crush height at a joint.
         """
         journal, lining, back = seen["journal"], seen["upper_lining"], seen["upper_back"]
         block, cap = seen["block"], seen["cap"]
-        bore, outside = lining.rings(Z), back.rings(Z)[-1]
+        bore, outside, joint = lining.rings(Z), back.rings(Z)[-1], back.levels(Y)[0]
         return {
             "journal_diameter": journal.diameters(Z)[0],
             "diametral_clearance": bore[0][0].diameter - journal.diameters(Z)[0],
             "wall": Size.wall(bore[0], outside),
             "width": back.length(Z),
             "lining_thickness": Size.wall(bore[0], bore[-1]),
-            "crush_height": (block.levels(Y)[0] - cap.levels(Y)[-1]) / 2,
+            "crush_height": Size.distance(-joint + 0.0, bore[0], back.planes_at(Y, joint)),
             "housing_bore": block.diameters(Z)[0],
             "housing_breadth": block.length(X),
             "block_height": block.length(Y),

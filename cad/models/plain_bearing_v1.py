@@ -134,6 +134,7 @@ class PlainBearing(ShellRules):
         "crush_height": {},
         "inner_chamfer": {},
         "outer_chamfer": {},
+        "relief_height": {},
         "relief_depth": {},
         "tang_width": {},
         "tang_length": {},

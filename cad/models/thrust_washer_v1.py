@@ -5,7 +5,8 @@ The docstring of the class below explains the parameters to users.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, degrees, pi, radians, sin, sqrt
@@ -16,7 +17,7 @@ from cadquery.func import cut, extrude, face, segment, wire
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import nearest, sheet_under_arc
-from cad.surfaces import PartSurfaces, Size, X, Y, Z
+from cad.surfaces import PartSurfaces, Size, Surface, X, Y, Z
 from templates.core.language.template import (
     Array,
     Truth,
@@ -191,6 +192,7 @@ class ThrustWasher(CadModel):
         "outer_diameter": {},
         "thickness": {"perpendicularity": 1, "to": "A"},
         "pin_hole_diameter": {},
+        "pin_circle_diameter": {},
         "oil_groove_width": {},
         "oil_groove_depth": {},
         "lug_width": {},
@@ -359,12 +361,23 @@ class ThrustWasher(CadModel):
             width = nearest((2 * abs(p.point.dot(p.direction)) for p in sides), 2 * wanted.half_groove)
             faces = [p for p in sides if abs(2 * abs(p.point.dot(p.direction)) - width) < 1e-6]
             sizes["oil_grooves"] = float(len(floors))
-            sizes["oil_groove_width"] = Size.distance(width, faces, faces)
+            sizes["oil_groove_width"] = Size.repeated(_across(width, faces), "oil grooves")
             sizes["oil_groove_depth"] = washer.between(Z, 1, 2)
         if pins:
-            sizes["pin_circle_diameter"] = Size.circle(pins)
+            sizes["pin_circle_diameter"] = Size.circle(pins, washer.rings(Z)[0])
         if wanted.half_lug > 0:
             half, top = nearest((abs(x) for x in washer.levels(X)), wanted.half_lug), washer.levels(Y)[-1]
             sizes["lug_width"] = washer.apart(X, -half, half, Vector(0, top, 0))
             sizes["lug_height"] = Size.distance(top - about[-1] / 2, outside, washer.planes_at(Y, top))
         return sizes
+
+
+def _across(width: float, sides: Sequence[Surface]) -> Iterator[Size]:
+    """Yield the width of each groove, between its two sides."""
+    grooves = defaultdict[tuple[float, float], list[Surface]](list)
+    for side in sides:
+        along = side.direction.cross(Z)
+        outwards = along if side.middle is not None and along.dot(side.middle) > 0 else -along
+        grooves[round(outwards.x, 6) + 0.0, round(outwards.y, 6) + 0.0].append(side)
+    for one, other in grooves.values():
+        yield Size.distance(width, [one], [other])

@@ -27,7 +27,7 @@ from templates.core.language.template import Template
 from templates.core.paper.demands import described_criteria, described_limit
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
 from templates.core.paper.methods import right_side
-from templates.core.units.tolerance import DISTRIBUTIONS
+from templates.core.units.tolerance import DISTRIBUTIONS, STATE_IN_TABLE
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -149,6 +149,7 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
             **{key: {"type": ["string", "number"]} for key in ("plus", "minus", "upper", "lower")},
             "zone": {"type": "string"},
             "distribution": {"enum": list(DISTRIBUTIONS)},
+            STATE_IN_TABLE: {"type": "boolean"},
         },
     }
     bare = [{"type": "number"}] if declared.meaning.unit == "1" and not listed else []
