@@ -183,7 +183,7 @@ class Document(Bounded):
     @model_validator(mode="before")
     @classmethod
     def one_model(cls, raw: Raw) -> Raw:
-        """Replace `model` by `models` with one entry, named `model`."""
+        """Replace `model` with `models`, which has one entry, named `model`."""
         if not isinstance(raw, Mapping):
             return raw
         if "model" in raw and "models" in raw:
@@ -211,7 +211,7 @@ def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that steps and models set, even in a malformed document."""
+    """Return the number of values that steps and models set; it accepts a malformed document too."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -220,7 +220,7 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that variants override, even in a malformed document."""
+    """Return the number of values that variants override; it accepts a malformed document too."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
@@ -257,7 +257,7 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 def _is_container(path: tuple[str, ...]) -> bool:
     """Return whether a patch is merged into a value instead of replacing it.
 
-    Containers are the document, its groups, its steps and models, and their parts.
+    The document, its groups, its steps and models, and their parts are containers.
     """
     match path:
         case () | ("parameters" | "steps" | "models" | "criteria" | "variants" | "table",):

@@ -48,7 +48,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return what a revision stores of a calculation and its variants, apart from the models."""
+    """Return the data that a revision stores of a calculation and its variants, apart from the models."""
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
@@ -100,9 +100,10 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
-    """Return every step: its evaluation, or that it waits for a solid or a job.
+    """Return the evaluation of every step, or a note that it waits for a solid or a job.
 
-    The criteria of steps are listed with those of the design; a step stores only the warnings of unmet ones.
+    The criteria of steps are listed with those of the design; a step stores only the warnings of criteria not
+    met.
     """
     return {
         name: _step(calculation, block, criteria)
@@ -127,7 +128,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
 
 
 def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
-    """Return the judgements of a step's own criteria, under their names in the template."""
+    """Return the judgements of a step's own criteria under their names in the template."""
     prefix = f"{block.name}."
     return [
         replace(judgement, name=judgement.name.removeprefix(prefix))

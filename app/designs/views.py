@@ -68,7 +68,7 @@ def _design(
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """Return the member `variants` of a design, in natural order of the names; empty if there are none."""
+    """Return the member `variants` of a design in natural order of the names; empty if there are none."""
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -140,18 +140,18 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """Return the released revision that this one replaces, and the state of its approval, if any."""
+    """Return the released revision that this one replaces, and the state of its approval, if there is one."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Return the author of an action with their present name; None if no author is recorded."""
+    """Return the author of an action under their present name; None if no author is recorded."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """Return a step as typed while it waits for a solid or a job."""
+    """Return a step as its user typed it, while it waits for a solid or a job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
@@ -195,7 +195,7 @@ def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, 
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """Return the model to serve: from one revision, or from the newest valid one.
+    """Return the model to serve, from the given revision or from the newest valid one.
 
     Raises
     ------

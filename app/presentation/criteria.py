@@ -167,7 +167,7 @@ def step_of(criterion: JudgedCriterion) -> str:
 
 
 def title(criterion: JudgedCriterion) -> str:
-    """Return in words what the criterion judges; for a value calculated within the criterion, its own name.
+    """Return the judged value in words; for a value calculated within the criterion, the criterion's name.
 
     If the words do not contain the criterion's own name, that name follows, because another criterion may
     judge the same value.
@@ -289,5 +289,5 @@ _WHY = {
 
 
 def headline_of(state: str, *, is_judged: bool) -> str:
-    """Return the headline shown instead of a verdict: there are no criteria, or why they were not judged."""
+    """Return the headline shown instead of a verdict, which says why there is none."""
     return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

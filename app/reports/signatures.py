@@ -38,9 +38,9 @@ def signatures_of(design: str, revision: int, units: System, steps: Sequence[App
 
 
 def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
-    """Return the name of a revision's author; empty for `local`, and for revisions from before 0.2.
+    """Return the name of a revision's author; empty for `local`, and for revisions made before version 0.2.
 
-    After the hand-over it is the name at that time, so that renaming a principal changes no signed report.
+    After the hand-over the name at that time is used, so that renaming a principal changes no signed report.
     """
     if author is None or author.id == LOCAL.id:
         return ""

@@ -208,13 +208,13 @@ class ConnectingRod(CadModel):
     def pockets_have_a_length(self) -> Truth:
         """The pockets are at least a tenth of the shank long.
 
-        They end as far from its ends as from its sides.
+        They are as far from the ends of the shank as from its sides.
         """
         return (self.b_p <= 0) | (self.l_s - (self.b - self.b_p) >= 0.1 * self.l_s)
 
     @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
     def web_is_thin(self) -> Truth:
-        """Between pockets the web is at most 95 % as thick as the shank."""
+        """The web between the pockets is at most 95 % as thick as the shank."""
         return (self.b_p <= 0) | (self.h_w <= 0.95 * self.h)
 
     @require("bolt_hole_diameter", "pocket_width", "big_end_bore", remedy="use 0 for none")
@@ -232,7 +232,7 @@ class ConnectingRod(CadModel):
         )
 
     def drawn(self) -> Rod:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         big_end = Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,

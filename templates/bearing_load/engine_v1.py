@@ -1,7 +1,7 @@
 """A whole engine of any layout: crankpin and firing angles, balance by orders, torque, all bearing loads.
 
-In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
-that may differ; mains with clearance.
+The engine may be an in-line, V, boxer or radial engine with two or four strokes. It may have shared or split
+pins, articulated rods, odd firing, cylinders that differ, and mains with clearance.
 """
 
 from __future__ import annotations
@@ -256,7 +256,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Return the loads of mains with clearance; None without clearance or without crank sections."""
+        """Return the loads of mains with clearance; None without a clearance or without crank sections."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,

@@ -232,7 +232,7 @@ class ElasticFilm(Oil, Journal):
         per_level={"elastic": limits(38)},
     )  # fmt: skip
     def n_m(self) -> Array:
-        """Rows of the bore's compliance matrix; 0 without one."""
+        """Number of rows of the bore's compliance matrix; 0 without a matrix."""
         return count_modes(self.C_b)
 
     @formula("um/GPa", "liner compliance", symbol="C_{l}", source="Johnson 1985")

@@ -271,7 +271,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def shape(self) -> Shape:
-        """Return the bore and tilt over the radial clearance."""
+        """Return the bore and the tilt, relative to the radial clearance."""
         return Shape(
             bore=self.bore, lobes=int(self.lobes), preload=self.preload, angle=self.phi_l, offset=self.alpha,
             mouth=np.where(self.l_m > 0, 2 * self.s_m / self.c, 0.0), mouth_length=2 * self.l_m / self.W,

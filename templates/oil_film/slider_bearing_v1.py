@@ -1,7 +1,8 @@
 """Plane slider bearing: a pad with a fixed incline, without side leakage or of finite width (MEC 315).
 
 The pad is stationary; the runner beneath it slides from inlet to outlet and drags the oil into the converging
-film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
+film. The flow is isothermal, incompressible and laminar, the faces are rigid, and the oil around the pad is
+at ambient pressure.
 """
 
 from __future__ import annotations

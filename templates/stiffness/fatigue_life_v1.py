@@ -1,7 +1,7 @@
 """Life under the engine cycle: superposed tensors of unit loads, counted cycles, accumulated damage.
 
-For the fillets of a crank, and for any part whose stresses under unit loads are known from finite elements or
-measurements. All stresses are elastic.
+Use it for the fillets of a crank, and for any part whose stresses under unit loads are known from finite
+elements or measurements. All stresses are elastic.
 """
 
 from __future__ import annotations

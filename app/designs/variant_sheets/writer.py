@@ -43,7 +43,7 @@ def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
 
 
 def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
-    """Yield a column for the values of a place, and another one if it has relations."""
+    """Yield a column for the values of a place, and a second column if it has relations."""
     raws = [overrides.get(about.place) for overrides in out.variants.values()]
     shapes = [None if raw is None else shape(raw) for raw in raws]
     if any(one and not one.is_relation for one in shapes):

@@ -50,7 +50,7 @@ def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -
 
 
 def _nominal(cell: Cell | None) -> Shown | None:
-    """Return the design's own value as typed; None if a relation sets it, or nothing does."""
+    """Return the design's own value as the user typed it; None if a relation or nothing sets it."""
     if cell is None or cell.relations:
         return None
     if isinstance(cell.declared, Choice):

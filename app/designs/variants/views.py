@@ -169,7 +169,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; the first of equally bad ones."""
+    """Return the worst variant of each criterion; of several equally bad ones the first."""
     worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
@@ -184,5 +184,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant
 
 
 def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return a sort key that puts the worst first."""
+    """Return a sort key that places the worst first."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

@@ -44,7 +44,7 @@ ChosenVariant.NONE = ChosenVariant("")
 async def chosen_variant(
     request: Request, services: PageServices, design: Design, steps: list[StepBlock]
 ) -> ChosenVariant:
-    """Return the variant in the address, if any."""
+    """Return the variant that the address names, if any."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE
@@ -64,7 +64,7 @@ async def chosen_variant(
 async def _calculated(
     request: Request, services: PageServices, design: Design, name: str
 ) -> AnswerOrJob[VariantDetail]:
-    """Return the variant, or the job that calculates it if the page does not wait so long."""
+    """Return the variant, or the job that calculates it if it takes longer than the page waits."""
     wanted = WantedVariant(design.id, name, system=units_of(request))
     answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
     return AnswerOrJob(answer, job or "")

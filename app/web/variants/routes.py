@@ -97,7 +97,7 @@ async def _saved(
     grid: Grid | None = None,
     file: CsvFile | None = None,
 ) -> Response:
-    """Return the design's page after a save, or with the refused table."""
+    """Return the page of the design after a save, or with the refused table."""
     try:
         await services.save(
             save_sheet, services.designs, id, upload.content, upload.kind, upload.tag, services.once

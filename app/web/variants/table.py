@@ -212,7 +212,7 @@ def _cell(grid: Grid, row: int, at: int, title: str, hint: str, faults: Mapping[
 
 
 def _own(design: Design, place: str) -> str:
-    """Return the design's own value as typed; empty if the design does not set it."""
+    """Return the design's own value as the user typed it; empty if the design does not set it."""
     reference = Reference.parse(place)
     block, member = reference.block, reference.member
     if not member:
@@ -223,9 +223,9 @@ def _own(design: Design, place: str) -> str:
 
 
 def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
-    """Return the criteria that were checked in at least one variant, worst first.
+    """Return the criteria that were checked in at least one variant, worst first, then the others.
 
-    The second list has the criteria that were checked in none.
+    The others are in a second list.
     """
     worst = sorted(
         out.by_criterion.values(), key=lambda one: (WORST_FIRST.index(one.verdict), -(one.utilisation or 0))
