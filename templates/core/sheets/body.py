@@ -1,4 +1,4 @@
-"""Checked expression trees that replace a formula's function; calling one with a template returns the value."""
+"""Checked expression trees that replace a formula's function; a call with a template returns its value."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ class Ring:
 
 
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
-    """Return the orbit of every case, by the mobility of a law; NaN where none was found.
+    """Return the orbit of every case, by the mobility of a law; NaN for a case without a periodic orbit.
 
     Parameters
     ----------
