@@ -265,7 +265,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """Return d(eps)/d(theta), (2, C, K), and its derivatives by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its derivatives with respect to eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])
