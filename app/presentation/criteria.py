@@ -1,6 +1,6 @@
 """Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
-The sentence on a criterion comes from the REST interface; this module writes the texts around it.
+The sentence about a criterion comes from the REST interface; this module writes the texts around it.
 """
 
 from __future__ import annotations

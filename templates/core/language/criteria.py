@@ -249,7 +249,7 @@ def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Abs
 
 
 def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
-    """Return the error, NaN at points without a reference value, and the reference value."""
+    """Return the error and its reference value; the error is NaN at points without a reference value."""
     if not np.ndim(scale):
         return float("nan"), None
     return np.where(np.isnan(scale), np.nan, error), scale

@@ -184,7 +184,7 @@ class Accuracy:
         )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
-        """Return row and column of the cell of each point, and whether the point lies within the grid."""
+        """Return the row and column of the cell of each point, and whether the point lies within the grid."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
             row, in_rows = _place(self._edges[0], first)

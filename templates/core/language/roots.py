@@ -180,7 +180,7 @@ def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Sa
 
 
 def _beside(even: Array, places: Array) -> NDArray[np.intp]:
-    """Return the samples that are a number of steps to either side of the given places."""
+    """Return the samples that lie a given number of steps on either side of the given places."""
     nearest = np.searchsorted(even, places)
     return np.unique(np.clip(np.concatenate([nearest - BESIDE, nearest + BESIDE]), 0, even.size - 1))
 

@@ -188,5 +188,5 @@ def _roman(name: str) -> str:
 
 
 def _words(text: str) -> str:
-    """Return a text in upright letters, with percent signs outside it so that they begin no comment."""
+    """Return the LaTeX of a text in upright letters, with its percent signs escaped."""
     return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

@@ -1,4 +1,4 @@
-"""Checked expression trees in place of a formula's function; a call with a template returns the value."""
+"""Checked expression trees that replace a formula's function; a call with a template returns its value."""
 
 from __future__ import annotations
 

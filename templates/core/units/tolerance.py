@@ -1,8 +1,8 @@
 """Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
 
 A tolerance gives the limits of a value and its distribution between them. Ordinary calculations ignore it.
-`55 ± 5 um, in table` (in an object `state_in_table`) is stated in the table of a drawing if no face can carry
-it.
+With `55 ± 5 um, in table` (in an object: `state_in_table`), the table of a drawing states the tolerance if no
+face can carry it.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ class SoftFilm:
         return _gathered(onward * width, outward)
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivatives of the loss inside the film by P, by the ring's amplitudes, and by eps.
+        """Return the derivatives of the loss in the film with respect to P, the ring's amplitudes and eps.
 
         Parameters
         ----------

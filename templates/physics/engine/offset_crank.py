@@ -66,7 +66,7 @@ class OffsetCrank:
 
 @dataclass(frozen=True)
 class RodMotion:
-    """Positions of rod and piston, and their derivatives by the crank angle `alpha` [rad], (…, N, K)."""
+    """Positions of rod and piston, and derivatives with respect to crank angle `alpha` [rad], (…, N, K)."""
 
     crank: OffsetCrank
     alpha: Array

@@ -169,8 +169,8 @@ def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple
     """Return the linearised complementarity condition of every cell.
 
     The changes are dP = alpha k + P0 and dvoid = beta k + v0, with one unknown k for each cell. A and T
-    convert pressure and void to flow. In a full cell the derivative by the void is larger, elsewhere the
-    derivative by the pressure.
+    convert pressure and void to flow. In a full cell the derivative with respect to the void is larger,
+    elsewhere that with respect to the pressure.
     """
     alpha, beta, P0, v0 = np.empty(P.shape), np.empty(P.shape), np.zeros(P.shape), np.zeros(P.shape)
     for i in range(P.shape[0]):
