@@ -198,7 +198,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
     if one.solids != 1:
         raise refuse("not_one_solid", f"must be one solid, not {one.solids}")
     if not one.valid:
-        raise refuse("invalid_solid", "is not a valid solid: its faces do not close or cross each other")
+        raise refuse("invalid_solid", "is not a valid solid: its faces leave gaps or cross each other")
     if not (isfinite(one.volume) and isfinite(part.volume)):
         raise refuse(
             "not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)"

@@ -58,7 +58,7 @@ class Size(float):
     places: tuple[Place, ...]
 
     def __new__(cls, value: float, kind: Kind, *places: Place) -> Self:
-        """Return a number with references to its faces."""
+        """Return a number that refers to the faces from which it was read."""
         size = super().__new__(cls, value)
         size.kind, size.places = kind, places
         return size
@@ -225,7 +225,7 @@ class PartSurfaces:
         return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
 
     def levels(self, axis: Vector) -> list[float]:
-        """Return the coordinates [mm] at which planes are perpendicular to the axis, ascending."""
+        """Return the coordinates along an axis of the planes perpendicular to it [mm], ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def planes_at(self, axis: Vector, level: float) -> list[Surface]:

@@ -80,7 +80,7 @@ def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Refer
 
 
 def _of_models(graph: Graph, model: Block, called: str) -> Iterator[Reference]:
-    """Yield values with a name that other models provide: outputs, and parameters that are set.
+    """Yield the values with this name that other models provide: outputs, and parameters that are set.
 
     Only models whose names come earlier in the alphabet count.
     """

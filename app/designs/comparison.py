@@ -156,7 +156,7 @@ def _model_versions(row: RevisionRow) -> dict[str, str]:
 
 
 def _criteria(results: JsonObject) -> Iterator[tuple[str, VerdictOf]]:
-    """Yield name and verdict of each stored criterion; step results may store names without the step."""
+    """Yield the name and verdict of each stored criterion; step results may store names without the step."""
     for item in results.get("criteria", ()):
         yield item["name"], _verdict(item)
     for name, step in results.get("steps", {}).items():

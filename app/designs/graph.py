@@ -32,7 +32,7 @@ from app.designs.network import (
 )
 from app.designs.sizes import in_declared_sizes
 from app.plain import Json, Raw
-from app.reference import Reference
+from app.reference import ItemReference, Reference
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
@@ -66,7 +66,12 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
         *document.models,
     } - network.blocks.keys()  # relations that use them are not reported
     links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
-    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network, unread)]:
+    unknown = [
+        *_unknown(network, links),
+        *unknown_names_in(network, unread),
+        *_unknown_columns(network, unread),
+    ]
+    if faults := [*faults, *unknown]:
         return _graph(network), faults
     sources = _sources(network, links)
     order, faults = ordered(network, sources)
@@ -88,6 +93,7 @@ def _graph(
         network.blocks,
         network.assumed,
         network.demands,
+        network.columns,
         sources or {},
         order,
         kinds or {},
@@ -108,7 +114,8 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
         faults += wrong
     assumed = frozenset(Reference.parse(iteration.through) for iteration in document.iterations)
     demands, wrong = read_demands(document, blocks)
-    return Network(parameters, blocks, assumed, demands), [*faults, *wrong]
+    columns = tuple(map(ItemReference.parse, document.table.columns))
+    return Network(parameters, blocks, assumed, demands, columns), [*faults, *wrong]
 
 
 def _cell(
@@ -257,6 +264,16 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         ):
             detail = f"an iteration needs a measurement of a model, such as `model.mass`, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
+
+
+def _unknown_columns(network: Network, unread: Set[str]) -> Iterator[Fault]:
+    """Yield a fault for each column of the table of results that names no value of the design."""
+    models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
+    columns = dict.fromkeys(column.reference for column in network.columns)
+    unknown = [one for one in columns if one.block not in unread and not network.has(one)]
+    faults = unknown_names(map(str, unknown), network.names(), "value")
+    for reference, fault in zip(unknown, faults, strict=True):
+        yield Fault("table.columns", fault.code, remedy(reference, models) or fault.detail)
 
 
 def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:

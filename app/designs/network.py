@@ -18,7 +18,7 @@ from functools import cached_property
 from app.designs.analyses import is_measured, is_table, measured_names, measured_unit, used
 from app.designs.document import Document, WrittenCriterion
 from app.plain import Raw
-from app.reference import Reference
+from app.reference import ItemReference, Reference
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.criteria.criterion import (
@@ -139,6 +139,7 @@ class Network:
     blocks: dict[str, Block]
     assumed: frozenset[Reference]  # the measurements that declared iterations assume
     demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria written in the design
+    columns: tuple[ItemReference, ...] = ()  # of the table of results, if the design chooses them
 
     def cells(self) -> Iterator[Cell]:
         """Yield every cell of the design."""
@@ -171,6 +172,12 @@ class Network:
             return None
         return block.analysed[reference.analysis] if reference.analysis else block.solid
 
+    def has(self, reference: Reference) -> bool:
+        """Return whether a name refers to a value of the design: a number, an array or a choice."""
+        block = self.blocks.get(reference.block)
+        is_declared = block is not None and _declared(block, reference) is not None
+        return is_declared or self.node(reference) is not None
+
     def names(self) -> list[str]:
         """Return every name that a relation may use, for error messages."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
@@ -182,8 +189,13 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """Return the references to each block in relations, iterations and criteria, ordered by name."""
-        names = {str(reference): reference for reference in self.assumed}
+        """Return the references to each block in relations, iterations, criteria and the table of results.
+
+        They are ordered by name. A measure of a solid in the table is read from its build, if there is one.
+        """
+        shown = (column.reference for column in self.columns)
+        columns = (one for one in shown if one.analysis or not self._is_model(one.block))
+        names = {str(reference): reference for reference in (*self.assumed, *columns)}
         for cell in self.cells():
             names.update(cell.uses)
         for demand in self.demands.values():
@@ -192,6 +204,10 @@ class Network:
         for name in sorted(names):
             blocks.setdefault(names[name].block, []).append(names[name])
         return {block: tuple(references) for block, references in blocks.items()}
+
+    def _is_model(self, name: str) -> bool:
+        block = self.blocks.get(name)
+        return block is not None and block.is_model
 
     def computed(self, step: Block) -> tuple[str, ...] | None:
         """Return the outputs that a step computes: all (None), or those that are requested or used."""
@@ -261,7 +277,7 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[MissingValue, Subject], ...]:
-        """Return the comparisons to judge if a value is missing."""
+        """Return the comparisons that are judged instead of this one if a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 

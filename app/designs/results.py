@@ -14,8 +14,9 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
+from app.designs.result_cells import cells
 from app.designs.variants.names import BASE
-from app.designs.variants.verdict import merged
+from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
 from app.plain import Json, JsonObject, Raw
 from app.pool.cost import EXPENSIVE
@@ -28,7 +29,7 @@ from templates.core.errors import Fault
 from templates.core.language.criteria import warned
 from templates.core.language.record import record
 
-VARIANTS = "variants"
+VARIANTS, TABLE, GOVERNING = "variants", "table", "governing"
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,30 @@ def stored(
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
+    results[TABLE] = {BASE: cells(calculation)} | {
+        outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
+    }
     if outcomes:
         base = _variant({}, own, single_outputs(calculation), {}, None)
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
+        results |= _governing(criteria, outcomes, results["steps"])
     return results
+
+
+def _governing(
+    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, JsonObject]
+) -> JsonObject:
+    """Return the steps of the governing variant that differ from the design's own, for its report.
+
+    Return an empty object if the design itself governs.
+    """
+    first = next((one for one in criteria if one.verdict != "not_checked"), None)
+    name = next((place.value for place in first.where if place.name == VARIANT), BASE) if first else BASE
+    outcome = next((one for one in outcomes if one.name == name and one.calculation), None)
+    if outcome is None or outcome.calculation is None:
+        return {}
+    each = steps(outcome.calculation, worst_first(outcome.judgements))
+    return {GOVERNING: {"variant": name, "steps": {n: one for n, one in each.items() if one != own.get(n)}}}
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:

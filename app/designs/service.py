@@ -375,7 +375,7 @@ class Designs:
         return checked(document, base, Available(self.catalogues, *self._solids), saved)
 
     def faulty_variants(self, raw: Mapping[str, Raw], saved: JsonObject) -> list[Fault]:
-        """Return all faults in a document's variants for which a save would refuse it.
+        """Return all faults of a document's variants that would prevent a save.
 
         Raises
         ------
@@ -442,7 +442,7 @@ class _UsualWay(Exception):
 
 
 def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> StoredRevision:
-    """Return the content of a revision under a new name."""
+    """Return the content of the new revision that a renaming creates."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)

@@ -58,7 +58,7 @@ def _design(
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
-            **{name: document[name] for name in ("criteria",) if name in document},
+            **{name: document[name] for name in ("criteria", "table") if name in document},
             **_variants(document),
             "problem": problem,
             "created": created,
@@ -110,6 +110,16 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             **results.judged,
         }
     )
+
+
+def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
+    """Return the variant that governs, and the revision with the steps of this variant.
+
+    The name is empty if the design itself governs.
+    """
+    results, own = results_of(session, row), revision(session, row)
+    steps = {**own.steps, **results.governing_steps}
+    return results.governing, own.model_copy(update={"steps": steps})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:

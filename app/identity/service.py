@@ -195,7 +195,7 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """Revoke a key, optionally only of one principal; an already revoked key stays unchanged.
+        """Revoke a key, optionally only if it belongs to one principal; a key revoked before stays unchanged.
 
         Keys that were created with this key are revoked too, except the key of this request, so that a user
         can change to a successor. The result lists the key first, then the others.

@@ -99,7 +99,7 @@ class FreeCadProcess:
     ) -> FreeCadAnswer:
         """Let FreeCAD open the file again, set some parameters and draw, within this number of seconds.
 
-        A drawing must have these ends; without them, those of the file at its own values.
+        A drawing must have the given ends, or else those of the file at its own values.
 
         Raises
         ------

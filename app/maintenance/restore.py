@@ -190,7 +190,7 @@ def _verify(folder: Path, restored: RestoreResult) -> None:
     except sqlite3.DatabaseError as error:
         raise CannotRun(f"The database in the archive cannot be read: {error}.") from error
     if wrong:
-        raise CannotRun(f"The database in the archive contradicts itself: {'; '.join(wrong[:5])}.")
+        raise CannotRun(f"The database in the archive is inconsistent: {'; '.join(wrong[:5])}.")
     assert restored.end is not None
     if lacking := named - restored.artifacts - set(restored.end["missing"]):
         raise CannotRun(f"The archive lacks {len(lacking)} artifacts, such as {min(lacking)}.")

@@ -93,7 +93,7 @@ class Question:
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """Return the request as stored with its answers, without the load."""
+        """Return the request in the form that is stored with its answers; it omits the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:
@@ -193,7 +193,7 @@ def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
-    """Return why solids of a model cannot be analysed as shafts; None if they can."""
+    """Return the reason why solids of a model cannot be analysed as shafts; None if they can."""
     if issubclass(cls, AssemblyModel):
         return f"{cls.id} is an assembly: finite elements take one solid"
     if cls.shaft is not CadModel.shaft:
@@ -202,7 +202,7 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 
 
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
-    """Return why solids of a model do not allow this kind of analysis; None if they do."""
+    """Return the reason why solids of a model do not allow this kind of analysis; None if they allow it."""
     if kind == BORE_COMPLIANCE:
         from cad.shells.bore_place import has_split_bore  # this module also draws
 

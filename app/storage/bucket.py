@@ -157,7 +157,7 @@ class BucketStore:
         return owner
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name; None if there is none."""
+        """Return the note with this name; None if there is none."""
         answer = self._bucket.get(name)
         return None if answer is None else answer[0].decode(errors="replace")
 

@@ -103,7 +103,7 @@ def _remedy(state: repository.State) -> str:
 def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, ReleasedSheet | str]]:
     """Return the releases that were read, each with its edit.
 
-    They are as many as the time [s] allows, but at least one.
+    It reads as many releases as the time [s] allows, but at least one.
     """
     read: dict[Key, tuple[str, ReleasedSheet | str]] = {}
     begun = time.monotonic()

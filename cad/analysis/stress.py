@@ -1,8 +1,8 @@
 """The greatest stress of a loaded shaft and its convergence; without convergence there is no result.
 
 The mesh is refined where the stress is high until three successive meshes agree: a small change and then a
-smaller one, since a single small change may be chance. The compared stress is recovered: polynomials of
-neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
+smaller one, since a single small change may be a coincidence. The compared stress is recovered: polynomials
+of neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
 stress is unbounded and each refinement raises it by a quarter, so the analysis gives no value, and names the
 corner as the reason. The search omits the regions near the ends, where the idealised clamp or load disturbs
 the field (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins

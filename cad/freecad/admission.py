@@ -175,7 +175,7 @@ def _check_element(tag: str, attributes: dict[str, str]) -> None:
     name = (attributes.get("name") or attributes.get("Name") or tag)[:60]
     if tag == "Python" or "Python" in kind:
         what = f"{name!r} ({kind or tag}) is a Python feature or a macro, which is never run here"
-        raise UnreadableModel("python_feature", f"{what}: replace it by features of Part or PartDesign")
+        raise UnreadableModel("python_feature", f"{what}: replace it with features of Part or PartDesign")
     if _REFUSED_PROPERTIES.fullmatch(kind) or kind in _READING_FILES:
         raise UnreadableModel("reads_files", f"{name!r} ({kind}) reads another file: embed its shape")
     if tag in _LINKS and attributes.get("file"):

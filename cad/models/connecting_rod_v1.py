@@ -214,7 +214,7 @@ class ConnectingRod(CadModel):
 
     @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
     def web_is_thin(self) -> Truth:
-        """Between pockets the web is at most 95 % as thick as the shank."""
+        """The web between the pockets is at most 95 % as thick as the shank."""
         return (self.b_p <= 0) | (self.h_w <= 0.95 * self.h)
 
     @require("bolt_hole_diameter", "pocket_width", "big_end_bore", remedy="use 0 for none")

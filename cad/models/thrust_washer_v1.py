@@ -308,7 +308,7 @@ class ThrustWasher(CadModel):
 
     @require("pin_hole_diameter", "lug_width", remedy="use 0 for none")
     def features_are_drawable(self) -> Truth:
-        """The sizes of pin hole and lug are 0, or at least the 10 µm that the kernel can build reliably."""
+        """The sizes of the pin hole and the lug are 0, or at least 10 µm so that the kernel is reliable."""
         return drawable(self.d_p) & drawable(self.w_l)
 
     def build(self) -> tuple[Part, ...]:

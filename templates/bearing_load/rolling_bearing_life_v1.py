@@ -69,6 +69,7 @@ class RollingBearingLife(Template):
         "calculation_factor": 13,
         "reliability": 0.95,
     }
+    main_results = ("equivalent_load", "speed", "life_in_hours", "static_safety")
     criteria = {
         "life": {
             "require": "life_in_hours >= required_life",

@@ -74,6 +74,7 @@ class HydrostaticPad(Template):
         "density": "875 kg/m**3",
         "speed": "1000 rpm",
     }
+    main_results = ("load", "recess_pressure", "film_thickness", "total_power", "flow", "temperature_rise")
     criteria = {
         "film": {
             "require": "film_thickness >= smallest_permissible_film",

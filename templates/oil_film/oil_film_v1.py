@@ -58,6 +58,7 @@ class OilFilm(Template):
         "oil_inlet_temperature": "80 degC",
         "oil_outlet_temperature": "87.762 degC",
     }
+    main_results = ("radial_load", "speed", "relative_eccentricity", "minimum_film_thickness")
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= smallest_permissible_film",

@@ -94,6 +94,7 @@ class SliderBearing(Template):
         "density": "860 kg/m**3",
         "place": "40 mm",
     }
+    main_results = ("load", "sliding_speed", "maximum_pressure", "outlet_film", "power_loss", "inlet_flow")
     criteria = {
         "film": {
             "require": "min(inlet_film, outlet_film) >= smallest_permissible_film",

@@ -141,6 +141,7 @@ class FatigueLife(SteelEndurance):
         "notch_radius": "3 mm",
         "cycle_time": "0.04 s",
     }
+    main_results = ("greatest_von_mises", "life_in_hours", "safety_factor")
     criteria = {
         "strength": {
             "require": "greatest_von_mises <= yield_strength",

@@ -105,6 +105,7 @@ class StressLife(Template):
         "endurance_limit": "130 MPa",
         "design_life": 1e7,
     }
+    main_results = ("stress_amplitude", "cycles", "safety_factor")
     criteria = {
         "strength": {
             "require": "abs(mean_stress) + stress_amplitude <= ultimate_strength",

@@ -91,7 +91,7 @@ def _followed(cell: Cell) -> str:
     """Return a message that a relation sets a value, and the values that can vary instead."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
     instead = (
-        f"; vary {', '.join(sorted(cell.uses))} instead, or replace the relation by a value"
+        f"; vary {', '.join(sorted(cell.uses))} instead, or replace the relation with a value"
         if cell.uses
         else ""
     )

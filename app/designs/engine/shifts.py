@@ -93,7 +93,7 @@ class Shifts:
     _seconds: float = 0.0  # estimated total time for one row of the recalculations so far
 
     def upstream(self, references: Iterable[Reference]) -> Upstream:
-        """Return the outputs on which some values depend, without errors of the values' own steps."""
+        """Return the outputs on which some values depend, grouped as `by_error` does."""
         return self.by_error(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:

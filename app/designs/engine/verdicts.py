@@ -217,7 +217,7 @@ class Verdicts:
         return self._judged(subject, rows, along, more, instead)
 
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
-        """Return the limits whose relations have no value yet, with that reason.
+        """Return the limits whose relations have no value yet; each is absent for that reason.
 
         A library row does not replace such a limit.
         """

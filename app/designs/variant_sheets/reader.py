@@ -196,7 +196,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
 def _values(
     grid: Grid, row: int, columns: list[Column], units: Units, wrong: Collection[str], faults: list[Fault]
 ) -> dict[str, tuple[int, Raw]]:
-    """Return column and value of every parameter that a row sets; unreadable cells add faults."""
+    """Return the column and value of every parameter that a row sets; unreadable cells add faults."""
     values: dict[str, tuple[int, Raw]] = {}
     for column in columns:
         text, where = grid.cell(row, column.number), address(row, column.number)

@@ -43,7 +43,7 @@ def shape(raw: Raw) -> Shape:
 
 
 def _number(raw: Raw) -> tuple[float, str] | None:
-    """Return number and unit of a plain quantity; None for any other value, such as one with a tolerance."""
+    """Return the number and unit of a plain quantity; None for other values, such as one with a tolerance."""
     if isinstance(raw, Mapping) and raw.keys() == {"value", "unit"} and isinstance(raw["unit"], str):
         bare = _number(raw["value"]) if not isinstance(raw["value"], str) else None
         return (bare[0], raw["unit"]) if bare else None

@@ -96,14 +96,21 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
             "revision": number,
             "name": wanted.variant,
             "values": outcome.values,
+            "inputs": dict(_inputs(outcome.calculation)),
             "outputs": {name: outputs[name] for name in wanted.outputs or outputs},
             **rendered(worst_first(outcome.judgements)),
         }
     ).in_units(wanted.system)
 
 
+def _inputs(calculation: Calculation) -> Iterator[tuple[str, object]]:
+    """Yield name and value of every input of the calculated steps."""
+    for step, evaluation in calculation.evaluations.items():
+        yield from ((f"{step}.{name}", one) for name, one in json_values.inputs(evaluation.inputs).items())
+
+
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Yield name and value of every step output.
+    """Yield the name and value of every step output.
 
     The value is null with its reason while the step is pending.
     """

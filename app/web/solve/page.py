@@ -76,7 +76,7 @@ class SolveForm:
         return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
-        """Return the design's field for the other replaced value, with that value; None without one."""
+        """Return the design's field for the second replaced value, with that value; None if there is none."""
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 

@@ -14,6 +14,7 @@ from app.designs.variants.detail import WantedVariant
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
+from app.reports.variants import of_variant
 from app.web.shared.answers import AnswerOrJob, stored
 from app.web.shared.blocks import StepBlock
 from app.web.shared.responses import units_of
@@ -76,9 +77,5 @@ def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:
 
 
 def _plots(detail: VariantDetail, step: StepBlock) -> list[Plot]:
-    """Return the pictures of a step, with the outputs of the variant instead of the design's own."""
-    outputs = {
-        name: detail.outputs.get(f"{step.name}.{name}", output)
-        for name, output in step.result.outputs.items()
-    }
-    return drawn(step.template, step.result.model_copy(update={"outputs": outputs}))
+    """Return the pictures of a step, with the inputs and outputs of the variant."""
+    return drawn(step.template, of_variant(detail, step.name, step.result))

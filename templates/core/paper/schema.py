@@ -58,7 +58,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
 
 
 def inputs_schema(cls: type[Template]) -> dict[str, Any]:
-    """Return the JSON Schema of the object `inputs`; bounds are in the unit named beside them."""
+    """Return the JSON Schema of the object `inputs`; bounds are in the unit that stands beside them."""
     return {
         "type": "object",
         "additionalProperties": False,
@@ -70,7 +70,7 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 def limits_schema(cls: type[Template]) -> dict[str, Any]:
     """Return the JSON Schema of the object `limits`, which the criteria use and the calculation does not.
 
-    A choice from the library comes first, before all limits; a limit filled from its rows names it in `from`.
+    A choice from the library comes before all limits; a limit that its rows can fill names it in `from`.
     """
     limits = {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
     rows = dict.fromkeys(limit.library for limit in limits.values() if limit.library)

@@ -1,8 +1,8 @@
 """Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
 
 A tolerance gives the limits of a value and its distribution between them. Ordinary calculations ignore it.
-`55 ± 5 um, in table` (in an object `state_in_table`) is stated in the table of a drawing if no face can carry
-it.
+With `55 ± 5 um, in table` (in an object: `state_in_table`), the table of a drawing states the tolerance if no
+face can carry it.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class Written:
 
 
 def split(text: str) -> Written | None:
-    """Return the text after the number of a quantity if it contains a tolerance, else None.
+    """Return the text after the number of a quantity if it contains a tolerance, otherwise None.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def split(text: str) -> Written | None:
 
 
 def _written(first: str, lower: float, upper: float, last: str) -> Written:
-    """Return the value and its limits in the last unit of the text, or else in the unit of the value."""
+    """Return the value and its limits in the last unit of the text, or otherwise in the unit of the value."""
     last = last.strip()
     return Written(first or last or "1", lower, upper, last or first or "1")
 
@@ -142,7 +142,7 @@ def _signed(sign: str, number: str) -> float:
 
 
 def is_toleranced(raw: Any) -> bool:
-    """Return whether a quantity as written by the user, or any item of a list, has a tolerance."""
+    """Return whether a quantity as the user wrote it has a tolerance; for a list, whether any item has."""
     match raw:
         case str():
             return _has_tolerance(raw)
@@ -172,7 +172,7 @@ def is_zone(text: str) -> bool:
 def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> Tolerance | None:
     """Return the tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
 
-    `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are signed
+    `plus` and `minus` are the largest deviations above and below the value; `upper` and `lower` are signed
     deviations, for limits that may both be on one side. Each is a number in the value's unit, or a text.
 
     Raises
@@ -317,7 +317,7 @@ def _short(number: float) -> float:
 
 
 def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
-    """Return the tolerances of the items of a list as one tolerance; None if no item has any.
+    """Return the tolerances of the items of a list as one tolerance; None if no item has one.
 
     Raises
     ------

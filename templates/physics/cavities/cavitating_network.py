@@ -1,4 +1,4 @@
-"""Flow balances of a journal's cavitating film on a ring of nodes, and their derivatives by the gap.
+"""Flow balances of a journal's cavitating film on a ring of nodes, and derivatives with respect to the gap.
 
 Every coefficient is the product of a circumferential and an axial factor, as in `film_equations`; a change of
 the gap changes only the circumferential factors.

@@ -252,7 +252,7 @@ def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -
 def stable_film(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> MeshEquilibrium:
-    """Return the equilibrium on one mesh; only one that resists slow displacement is accepted."""
+    """Return the equilibrium on one mesh; one that does not resist slow displacement is refused."""
     film, lie = _agreed(loaded, e, mesh, near)
     if np.linalg.det(film.linear[0]) <= 0:
         raise NoBalance("the equilibrium position found is not stable")

@@ -1,4 +1,4 @@
-"""Flow balances of a film with a given gap on a ring of nodes, and their derivatives by the gap.
+"""Flow balances of a film with a given gap on a ring of nodes, and derivatives with respect to the gap.
 
 This is like `cavitating_network`, but the gap may also vary axially. A tilted journal needs the whole width,
 a bore with lobes or a bell mouth only half of it. Angles are measured from the load.
@@ -135,7 +135,7 @@ def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
 
 
 def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
-    """Return the derivative of the gap by the journal's displacement along and ahead of the load."""
+    """Return how the gap changes with the journal's displacement along and ahead of the load."""
     n, m = nodes.shape
     at_nodes, between = directions(nodes.phi[:-1]), directions(midpoints(nodes.phi))
 

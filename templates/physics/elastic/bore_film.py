@@ -119,7 +119,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """Return the derivatives of circumferential (n, m + 1) and axial (n + 1, m) flows by the gap."""
+        """Return how circumferential (n, m + 1) and axial (n + 1, m) flows change with the gap."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2

@@ -174,9 +174,9 @@ def neglected_in_bore(
     radius, width
         Radius and width of the bearing [m].
     liner
-        Deformation of the liner per pressure; 0 without one [m/Pa].
+        Deformation of the liner per unit of pressure; 0 without a liner [m/Pa].
     inner, outer
-        Radii of the housing; NaN without one [m].
+        Radii of the housing; NaN without a housing [m].
     modulus, poisson
         Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     rows

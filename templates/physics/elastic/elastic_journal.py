@@ -44,10 +44,10 @@ class Elasticity:
     """The elastic data of liner, housing and oil, in SI; arrays that broadcast together."""
 
     liner: Array
-    """Deformation of the liner per pressure; 0 without one [m/Pa]."""
+    """Deformation of the liner per unit of pressure; 0 without a liner [m/Pa]."""
     inner: Array
     outer: Array
-    """Radii of the housing; NaN without one [m]."""
+    """Radii of the housing; NaN without a housing [m]."""
     modulus: Array
     """Young's modulus of the housing [Pa]."""
     poisson: Array
@@ -290,9 +290,9 @@ def neglected_deformation(
     radius, width
         Radius and width of the bearing [m].
     liner
-        Deformation of the liner per pressure; 0 without one [m/Pa].
+        Deformation of the liner per unit of pressure; 0 without a liner [m/Pa].
     inner, outer
-        Radii of the housing; NaN without one [m].
+        Radii of the housing; NaN without a housing [m].
     modulus, poisson
         Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     """

@@ -138,7 +138,7 @@ class SoftFilm:
         return _gathered(onward * width, outward)
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivatives of the loss inside the film by P, by the ring's amplitudes, and by eps.
+        """Return the derivatives of the loss in the film with respect to P, the ring's amplitudes and eps.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class SoftFilm:
 
     @cached_property
     def force(self) -> Array:
-        """Return the (2,) force of the present pressure."""
+        """Return the force of the present pressure, (2,)."""
         return np.asarray(self.force_of @ self.P.ravel())
 
 

@@ -92,7 +92,7 @@ class ArticulatedCrank(OffsetCrank):
 
 @dataclass(frozen=True)
 class ArticulatedMotion(RodMotion):
-    """Positions of rods and pistons, and their derivatives by the crank angle, (…, N, K)."""
+    """Positions of rods and pistons, and their derivatives with respect to the crank angle, (…, N, K)."""
 
     crank: ArticulatedCrank
     alpha: Array

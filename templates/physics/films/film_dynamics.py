@@ -38,7 +38,7 @@ class Coefficients:
 
 
 def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int = 16) -> Coefficients:
-    """Return stiffness and damping of the film of `reynolds.static_film`; its supply line is fixed in space.
+    """Return the stiffness and damping of the film of `reynolds.static_film`; its supply line stays in place.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def rupture_angle(field: Field) -> Array:
 
 
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
-    """Return position and value of the largest pressure, from a parabola through three nodes."""
+    """Return the position and value of the largest pressure, computed by a parabola through three nodes."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
     before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
     slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after

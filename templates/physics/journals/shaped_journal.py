@@ -56,7 +56,7 @@ class Shape:
     """The same displacement, ahead of the load [-]."""
 
     def numbers(self) -> list[Array]:
-        """Return all values except the first two."""
+        """Return all fields as arrays, except the first two."""
         return [np.asarray(getattr(self, field.name), float) for field in fields(self)[2:]]
 
     def at(self, preload: float, angle: float, offset: float, mouth: float, mouth_length: float) -> Bore:

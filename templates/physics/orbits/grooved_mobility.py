@@ -200,7 +200,7 @@ def lifting(lift: Array, sleeve: PartRotation, groove: Groove, angle: Array) -> 
 
 
 def grooved_orbit(passing: GroovePassage, ratio: Array) -> Orbit:
-    """Return the periodic orbit of each case by the mobility with its groove; NaN where none was found.
+    """Return the periodic orbit of each case by the mobility with its groove; NaN if it has none.
 
     Parameters
     ----------

@@ -118,7 +118,7 @@ class Ring:
 
 
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
-    """Return the orbit of every case, by the mobility of a law; NaN where none was found.
+    """Return the orbit of every case, by the mobility of a law; NaN for a case without a periodic orbit.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """Return d(eps)/d(theta), (2, C, K), and its derivatives by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its derivatives with respect to eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])

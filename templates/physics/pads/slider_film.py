@@ -219,7 +219,7 @@ class FinitePad(PadFilm):
 
 
 def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
-    """Return values and derivatives d/dt at t by the cubic through four of n + 1 equally spaced nodes.
+    """Return the values and derivatives d/dt at t of the cubic through four of n + 1 equally spaced nodes.
 
     Parameters
     ----------

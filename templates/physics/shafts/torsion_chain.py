@@ -102,10 +102,10 @@ def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
 
 
 def _turned(first: Array, second: Array) -> _Bidiagonal:
-    """Return the square bidiagonal matrix of a chain with free ends.
+    """Return the matrix of a chain with free ends; rotations of its rows make it square.
 
-    Column i contains first[i] and, below it, -second[i]. Each rotation is a product of positive numbers, so
-    no digit is lost.
+    Column i of the original matrix contains first[i] and, below it, -second[i]. Each rotation multiplies only
+    positive numbers, so that no digit is lost.
     """
     diagonal, above, cosines, sines = (np.zeros_like(first) for _ in range(4))
     rest = first[..., :1]

@@ -178,7 +178,7 @@ class FedOrbit:
         return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else m.mean_feed)
 
     def of_marches(self, value: Callable[[SuppliedOrbit], float]) -> Array:
-        """Return a value of each point's march; NaN for points without one, (...)."""
+        """Return a value of each point's march; NaN for points without a march, (...)."""
         if not self.marches:
             return self._everywhere(np.nan)
         values = [value(marched) if marched else np.nan for marched in self.marches]

@@ -1,6 +1,6 @@
 r"""One step of a supplied film by Newton's method: the compiled kernel of level `supplied`.
 
-In the frame of the mesh the shear flow vanishes. The balance of a cell is, times 12,
+In the frame of the mesh the shear flow vanishes. Multiplied by 12, the balance of a cell is
 
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
@@ -11,10 +11,11 @@ nodes, and its position is accurate to second order.
 
 Circumferential conductances are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. In each
 cell the complementarity condition (active set: the smaller of pressure and void is 0; or the function of
-Fischer and Burmeister) has two slopes, by pressure and by void; the unknown with the larger slope is
-eliminated. The remaining matrix is dominant by columns for every film: with r <= 1 the ratio of the smaller
-slope to the larger, the column of a full cell has 1 + r on its diagonal and conductances divided by their sum
-beside it; any other column has 1 + r, and r times these. So its banded factorisation needs no pivoting.
+Fischer and Burmeister) has two slopes, with respect to pressure and to void; the unknown with the
+larger slope is eliminated. The remaining matrix is diagonally dominant by columns for every film. Let
+r <= 1 be the ratio of the smaller slope to the larger. The diagonal of every column is 1 + r. The other
+entries of the column of a full cell are conductances divided by their sum; those of any other column are r
+times these. So the banded factorisation needs no pivoting.
 """
 
 import numpy as np
@@ -168,8 +169,8 @@ def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple
     """Return the linearised complementarity condition of every cell.
 
     The changes are dP = alpha k + P0 and dvoid = beta k + v0, with one unknown k for each cell. A and T
-    convert pressure and void to flow. In a full cell the derivative by the void is larger, elsewhere the
-    derivative by the pressure.
+    convert pressure and void to flow. In a full cell the derivative with respect to the void is larger,
+    elsewhere that with respect to the pressure.
     """
     alpha, beta, P0, v0 = np.empty(P.shape), np.empty(P.shape), np.zeros(P.shape), np.zeros(P.shape)
     for i in range(P.shape[0]):

@@ -273,7 +273,7 @@ def test_a_component_that_makes_no_sense_is_refused_by_name(http, bolt, componen
         (manifest(*[below(name=f"b{n}") for n in range(31)]), "at most 30"),
         (manifest(), "at least 1"),
         (manifest(below(), base="no_such"), "no_such"),
-        (manifest(below(), base="m8_bolt"), "is no model of this program"),
+        (manifest(below(), base="m8_bolt"), "is not a model of this program"),
         ({**manifest(below()), "more": 1}, "more"),
         (manifest(below(name="origin")), "`origin` is the name of a datum"),
     ],
