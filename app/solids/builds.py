@@ -1,4 +1,4 @@
-"""Create builds in a worker process, and store them with their STEP files; other files only on request.
+"""Create builds in a worker process, and store them with their STEP files; create other files on request.
 
 If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
 the row verifies the result.
@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.imported_models.programs import Programs
 from app.pool.sources import FileSource, Source, loaded, source_of
-from app.solids import measures, rows
+from app.solids import measures, rows, stated_tolerances
 from app.solids.rows import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
@@ -149,6 +149,7 @@ class Builds:
             "measures": build.measures,
             "dimensions": dimensions,
             "materials": build.materials,
+            stated_tolerances.MEMBER: stated_tolerances.recorded(build.tolerances),
         }
         if described := imported_description(type(shape)):
             measured["trust"] = described.trust
@@ -201,7 +202,7 @@ def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Progr
 
 
 def rehearse(called: Callable[[], bool]) -> None:
-    """Build a small solid in an idle worker process, because a first build takes twice as long as a second.
+    """Build a small solid in an idle worker process, because a process's first build takes twice as long.
 
     Raises
     ------

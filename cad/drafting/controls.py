@@ -1,7 +1,8 @@
-"""Geometric tolerances in frames, datums and surface textures, at free places with leaders to their faces.
+"""Draw geometric tolerances, datums and surface textures at free places, with leaders to their faces.
 
-Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; a datum axis stands on the
-dimension line of its feature. A leader ends on an edge of its face, or on an extension line of that edge.
+Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; the symbol of a datum axis is
+in line with the dimension line of its feature. A leader ends on an edge of its face, or on an extension line
+of that edge.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ BoxesAt = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 class Controls:
-    """Draws what a model declares of the faces of its dimensions; `faults` counts what has no free place.
+    """Draws the tolerances, datums and surface textures that a model declares for dimensioned faces.
+
+    `faults` counts symbols without a free place.
 
     `views` are the views of the sheet, each with the distance by which it is moved to the right.
     """
@@ -54,12 +57,12 @@ class Controls:
         self.faults = 0
 
     def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
-        """Draw everything that belongs to a dimension that is drawn; return the letter of the first datum.
+        """Draw all symbols that belong to drawn dimensions; return the letter of the first datum.
 
         Raises
         ------
         NoRoom
-            If there are as many faults as on another sheet.
+            If as many symbols as on another sheet have no free place.
         """
         of: Mapping[str, PlacedDimension] = {one.dimension.name: one for one in placed if one.dimension.name}
         for name, letter in declared.datums.items():

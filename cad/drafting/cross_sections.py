@@ -92,13 +92,17 @@ def _webs(body: Body, seen: PartSurfaces, frame: Frame) -> Iterator[_Web]:
 
 
 def _along(seen: PartSurfaces) -> list[Surface]:
-    """Return the cylinders beside the shaft, along it."""
-    return [c.turned(Z) for c in seen.cylinders if c.along(Z) and c.point.cross(Z).Length > _NEAR]
+    """Return the cylinders along the shaft."""
+    return [c.turned(Z) for c in seen.cylinders if c.along(Z)]
+
+
+def _is_beside(cylinder: Surface) -> bool:
+    return bool(cylinder.point.cross(Z).Length > _NEAR)
 
 
 def _pins(seen: PartSurfaces, span: tuple[float, float], frame: Frame) -> tuple[Point, ...]:
     """Return the axes beside the shaft of a web's round ends and bores, else that of the nearest pin."""
-    beside = _along(seen)
+    beside = [c for c in _along(seen) if _is_beside(c)]
     within = [c for c in beside if span[0] < sum(c.reach) / 2 < span[1]]
     middle = sum(span) / 2
     nearest = sorted(beside, key=lambda c: (abs(sum(c.reach) / 2 - middle), -c.diameter))[:1]
@@ -120,10 +124,12 @@ def _dimensioned(
     left = dict(parameters)
     for letter, web in zip(_LETTERS, webs, strict=False):
         shown = [*flank_angles(web.seen, web.view), *of_slots(web.seen, web.view)]
-        shown += [*plane_widths(web.seen, web.view), *_round_ends(web)]
+        radii = [*_counterweight(web)]
+        shown += [*plane_widths(web.seen, web.view), *_round_ends(web), *radii]
         own, _ = matched(left, declared.sizes, shown, declared.limits)
         left = {name: text for name, text in left.items() if name not in {one.name for one in own}}
-        own += [Dimension(measure, None) for measure in _counterweight(web)]
+        if not any(one.measure in radii for one in own):
+            own += [Dimension(measure, None) for measure in radii]
         for measure in _directions(web):
             turn = round(degrees(atan2(*measure.points[-1])), 3)
             own.append(Dimension(measure, None, is_reference=turn in given))
@@ -134,7 +140,7 @@ def _dimensioned(
 
 def _round_ends(web: _Web) -> Iterator[Measure]:
     """Yield the diameters of bores and round ends beside the shaft."""
-    for cylinder in web.seen.cylinders:
+    for cylinder in filter(_is_beside, web.seen.cylinders):
         (x, y), radius = web.view.frame.flat(cylinder.point), cylinder.diameter / 2
         tip = x + radius * x / hypot(x, y), y + radius * y / hypot(x, y)
         yield Measure("diameter", cylinder.diameter, "end", "circle", ((x, y), tip), 1, on(cylinder))
@@ -160,7 +166,9 @@ def _counterweight(web: _Web) -> Iterator[Measure]:
         assert longest.arc
         at = radians(longest.arc.start + longest.arc.turn / 4)
         tip = longest.arc.radius * cos(at), longest.arc.radius * sin(at)
-        yield Measure("radius", longest.arc.radius, "end", "arc", ((0.0, 0.0), tip))
+        rims = (c for c in web.seen.cylinders if abs(c.diameter / 2 - longest.arc.radius) < _NEAR)
+        faces = on(*(c for c in rims if c.about(Z)))
+        yield Measure("radius", longest.arc.radius, "end", "arc", ((0.0, 0.0), tip), 1, faces)
 
 
 def _radius(curve: Curve) -> float:

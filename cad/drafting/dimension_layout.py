@@ -1,7 +1,7 @@
 """The layout of dimensions and their texts: no texts overlap, and none lies across a view.
 
-Dimensions beside a view run in lanes, each in the first lane with room. Dimensions of arcs, oblique holes and
-angles have their text at the nearest free place outside the views, with a leader.
+Dimensions beside a view are arranged in lanes; each takes the first lane with room. The texts of arcs,
+oblique holes and angles stand at the nearest free place outside the views, with a leader.
 """
 
 from __future__ import annotations
@@ -60,17 +60,17 @@ class PlacedDimension:
     Attributes
     ----------
     base
-        A point of its dimension line; of an arc or circle the end of its leader.
+        A point on its dimension line; for an arc or circle, the end of its leader.
     words
-        The middle of its words, if they do not stand on the dimension line.
+        The centre of its text, if the text does not stand on the dimension line.
     right
-        By how much its view is moved to the right.
+        The distance by which its view is moved to the right.
     ends
-        Of a dimension in a lane: the ends of its dimension line on the paper [mm].
+        The ends of its dimension line on the paper [mm], if it stands in a lane.
     datum
-        The place of its datum, if it is one.
+        The place of its datum symbol, if its feature is a datum and it stands in a lane.
     leader
-        Of an arc or circle: its tip, its bend and its end under the words, on the paper [mm].
+        The tip, the bend and the end of the leader of an arc or circle, on the paper [mm].
     """
 
     dimension: Dimension
@@ -101,7 +101,7 @@ class DimensionLayout:
         self.plan, self.room, self.datums, self.faults = plan, room, datums, 0
 
     def all(self) -> list[PlacedDimension]:
-        """Return every dimension; those in lanes first."""
+        """Return every dimension with its place, those in lanes first."""
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
             self._take_lines(one)
@@ -113,7 +113,7 @@ class DimensionLayout:
         return [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
-        """Return the dimensions of one side of a view."""
+        """Return the dimensions on one side of a view with their places."""
         placed = list(self._in_lanes(lane))
         for one in placed:
             self._take_lines(one)
@@ -127,9 +127,9 @@ class DimensionLayout:
         one
             The dimension.
         along
-            The position of its line [mm].
+            The horizontal position of its line [mm].
         high
-            The upper side of the view [mm].
+            The height of the upper side of the view [mm].
         """
         label = label_of(one)
         points = tuple((along, y) for _, y in one.measure.points)
@@ -188,7 +188,7 @@ class DimensionLayout:
         middle: float,
         right: float,
     ) -> PlacedDimension:
-        """Return a dimension whose line runs at a place across its lane."""
+        """Return a dimension with its line at a given position in its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
         if label.upper or not ends[0] <= middle <= ends[1]:
@@ -199,7 +199,7 @@ class DimensionLayout:
     def _box_in_lane(
         self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
     ) -> Rectangle:
-        """Return the area of a dimension line and its text on the paper."""
+        """Return the area that a dimension line and its text occupy on the paper."""
         half = label.width(TEXT) / 2 + 0.5
         is_narrow = ends[1] - ends[0] < _ARROWS
         tail = _TAIL if is_narrow else 0.0
@@ -210,7 +210,7 @@ class DimensionLayout:
         return begin, place - 1.0, stop, place + height
 
     def _take_lines(self, placed: PlacedDimension) -> None:
-        """Dimension line and extension lines, which no later words cross."""
+        """Occupy the dimension line and extension lines, so that no later text crosses them."""
         assert placed.ends is not None
         self.room.add_line(placed.ends, is_drawn=True)
         points = sorted(self._on_paper(placed.dimension, placed.right))
@@ -291,7 +291,7 @@ class DimensionLayout:
                     yield box, placed, [[tip, (x, y)], [(x, y), end]]
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words beyond an arc between two legs, or their prolongations."""
+        """Yield places for the text outside a dimension arc between two legs or their extensions."""
         corner, *legs = self._on_paper(one, right)
         turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
         opening = (turns[1] - turns[0]) % (2 * pi)
@@ -315,14 +315,14 @@ class DimensionLayout:
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
     def _distances(self) -> Iterator[float]:
-        """Return the distances from features to texts [mm on paper]: on a large sheet views are large too."""
+        """Yield distances from a feature to its text [mm on paper], more of them on a larger sheet."""
         away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
         while away < farthest:
             yield away
             away += _STEP
 
     def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words at any place around an oblique dimension."""
+        """Yield places for the text all around an oblique dimension."""
         points = self._on_paper(one, right)
         middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
         width, height = label.width(TEXT), label.height(TEXT)
@@ -335,7 +335,7 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
+    """Return the centre of a text along its dimension line: between the ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
         middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
@@ -347,5 +347,5 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
 
 
 def _nearest(lines: list[list[Point]]) -> list[list[Point]]:
-    """Return the shorter half of lines: extension lines from each leg to its own end of the arc."""
+    """Return the two shortest of four lines: an extension line from each leg to the nearer end of the arc."""
     return sorted(lines, key=lambda line: hypot(line[0][0] - line[1][0], line[0][1] - line[1][1]))[:2]

@@ -1,6 +1,6 @@
-"""Removed sections (ISO 128-3): across a bar, beside the views, with their own dimensions.
+"""Removed sections (ISO 128-3): cross-sections of a bar beside the views, with their own dimensions.
 
-A model declares in `sections` where its drawing has one, by letter:
+A model declares its removed sections in `sections`, by letter:
 
     sections = {"B": {"of": "rod", "at": {"centre_distance": 0.5}, "shows": ["shank_width"]}}
 
@@ -57,11 +57,11 @@ class RemovedSection:
 
     @property
     def names(self) -> set[str | None]:
-        """Return the parameters that it shows."""
+        """Return the names of the parameters that the section shows."""
         return {one.name for one in self.dimensions}
 
     def define(self, definition: Definition) -> None:
-        """Add its dimensions: level ones are across the shaft, upright ones along it."""
+        """Add the dimensions of the section: horizontal ones are across the shaft, vertical ones along it."""
         sign = self.view.frame.up.dot(Z)
         for measure in (one.measure for one in self.dimensions if not one.is_reference):
             points = measure.points
@@ -79,7 +79,7 @@ def removed_sections(
     seen: Mapping[str, PartSurfaces],
     end: View,
 ) -> list[RemovedSection]:
-    """Return the removed sections of a drawing; one that shows nothing is left out."""
+    """Return the removed sections of a drawing that show at least one dimension."""
     if (end.frame.up - Y).Length > CLEAR:
         return []  # y is not upright in the view in which the section would be marked
     return [
@@ -118,7 +118,7 @@ def _removed(
 
 
 def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
-    """Yield the distances between straight edges, level and upright, from the lowest or leftmost ends."""
+    """Yield the distances between parallel straight edges, measured at their lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
         feet: dict[float, float] = {}
@@ -178,7 +178,7 @@ def place(
     Raises
     ------
     NoRoom
-        If there is no such place.
+        If the sheet has no free place for it.
     """
     plan = page.plan
     lanes = {form: [d for d in removed.dimensions if d.measure.form == form] for form in ("across", "up")}
@@ -265,7 +265,7 @@ def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
 
 
 def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
-    """Draw the label B–B over the section, above other texts."""
+    """Draw the label B–B above the section and the texts of its dimensions."""
     (x, _), (right, high) = view.box
     text = f"{letter}–{letter}"
     middle, top = page.plan.paper(((x + right) / 2, high))
@@ -280,7 +280,7 @@ def _moved(one: Dimension, shift: Point) -> Dimension:
 
 
 def _shifted(view: View, shift: Point) -> View:
-    """Return a view at another position."""
+    """Return a view moved by a vector."""
     curves = [curve.moved(shift) for curve in view.visible]
     cut = [
         Cut(

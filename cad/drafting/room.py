@@ -36,7 +36,7 @@ class _Rows:
 
 
 class Room:
-    """What a sheet holds so far, in millimetres on paper."""
+    """The areas and lines that a sheet holds so far, in millimetres on paper."""
 
     def __init__(self, area: Rectangle) -> None:
         self.area = area
@@ -85,7 +85,7 @@ class Room:
             self._drawn.add_line(points)
 
     def add_leader(self, points: Sequence[Point]) -> None:
-        """Occupy a leader, from what it is about to its words or frame."""
+        """Occupy a leader, from its target to its text or frame."""
         self.leaders.append([*points])
         self.add_line(points, is_drawn=True)
 
@@ -101,7 +101,7 @@ class Room:
         return not (crossed(self._outlines.array, box, _APART).any() or self._is_crossed(one).any())
 
     def holds(self, box: Rectangle) -> bool:
-        """Return whether a rectangle is on the sheet's area."""
+        """Return whether a rectangle is within the area of the sheet."""
         left, low, right, high = self.area
         return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
 
@@ -144,7 +144,7 @@ class Room:
         return int(_meet(np.array([*one, *other]), self._outlines.array).sum())
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
-        """Return the point of the first free rectangle, and occupy it."""
+        """Occupy the first free rectangle, and return its point."""
         for box, point in boxes:
             if self.is_free(box):
                 self.add(box)
@@ -164,12 +164,12 @@ def _pieces(line: Sequence[Point]) -> np.ndarray:
 
 
 def _is_in(point: Point, box: Rectangle) -> bool:
-    """Return whether a point is in a rectangle or on its border."""
+    """Return whether a point is in a rectangle or at its border."""
     return box[0] - _APART <= point[0] <= box[2] + _APART and box[1] - _APART <= point[1] <= box[3] + _APART
 
 
 def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    """Return which straight pieces (n, 4) a straight piece crosses, not at its own ends."""
+    """Return which segments (n, 4) a segment crosses, apart from crossings at its own ends."""
     (x, y), away = piece[:2], piece[2:] - piece[:2]
     starts, ways = lines[:, :2] - (x, y), lines[:, 2:] - lines[:, :2]
     across = away[0] * ways[:, 1] - away[1] * ways[:, 0]
@@ -205,6 +205,6 @@ def crossed(lines: np.ndarray, boxes: Rectangle | np.ndarray, apart: float = 0.0
 
 
 def around(centre: Point, width: float, height: float) -> Rectangle:
-    """Return a rectangle by its middle."""
+    """Return the rectangle with a given centre, width and height."""
     x, y = centre
     return x - width / 2, y - height / 2, x + width / 2, y + height / 2

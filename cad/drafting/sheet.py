@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section keeps its true coordinates and is drawn 1:1; the sheet around it is enlarged by the scale. So a
-DIMENSION measures the true size of the part. Each DIMENSION carries the name of its parameter.
+The section keeps its true coordinates and is drawn 1:1; the sheet around it is scaled instead. So a DIMENSION
+measures the true size of the part. Each DIMENSION carries the name of its parameter.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _FEW_FAULTS = 4  # of a sheet with removed sections, rather than one without the
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
-    """Return a dimensioned drawing; equal bodies and headers give equal bytes."""
+    """Return a dimensioned drawing as DXF; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
         document, _ = draw(bodies, header, whole)
@@ -50,9 +50,9 @@ def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Bod
 
 
 def _register_classes(document: Drawing) -> None:
-    """List the classes in one order.
+    """Register the DXF classes in a fixed order.
 
-    Ezdxf itself would iterate over a set, whose order differs by process.
+    Ezdxf itself would iterate over a set, whose order differs between processes.
     """
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
@@ -60,7 +60,7 @@ def _register_classes(document: Drawing) -> None:
 
 @contextmanager
 def _no_times() -> Iterator[None]:
-    """Let ezdxf write neither times nor random ids."""
+    """Make ezdxf write neither timestamps nor random ids."""
     kept = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
     try:
@@ -82,7 +82,10 @@ class Laid:
 
 
 def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
-    """Return the drawing as a document of ezdxf, and its sheet; `whole` are the parts of a part's model."""
+    """Return the drawing as an ezdxf document, and its sheet.
+
+    On the sheet of a part, `whole` holds all parts of its model.
+    """
     seen, declared = declared_of(bodies, header, whole)
     sheet = SheetNumber.of(bodies, whole)
     content, laid = laid_out(bodies, seen, header, declared)
@@ -173,7 +176,7 @@ def _fill(
 
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
-    """Return the sheet with its views, which texts must avoid, and its centre lines."""
+    """Return the room of a sheet, occupied by its views and its centre lines."""
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):

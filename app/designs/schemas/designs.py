@@ -23,7 +23,7 @@ from app.schemas.criteria import Criterion, Verdict
 from app.schemas.problems import Problem
 from app.schemas.values import Given
 from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
-from app.solids.schemas.models import Measurements
+from app.solids.schemas.models import Measurements, StatedTolerance
 from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]
@@ -79,6 +79,13 @@ class DesignCriterion(Answer):
     waived: str | None = Field(None, description="why the criterion is waived")
 
 
+class DesignTable(Answer):
+    """The columns of the table of results that a design chooses."""
+
+    columns: list[str] = Field([], description="values of the design, in order")
+    changes: bool = Field(False, description="whether each row also shows its change from the first row")
+
+
 class DesignSummary(Answer):
     """A design in a list."""
 
@@ -111,6 +118,9 @@ class Design(Answer):
     criteria: dict[str, DesignCriterion] = Field({}, description="absent if there are none")
     variants: dict[str, dict[str, Given]] = Field(
         {}, description="values that each variant overrides, by name; absent if there are none"
+    )
+    table: DesignTable | None = Field(
+        None, description="the table of results; absent if its columns are the main results of the templates"
     )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
@@ -170,6 +180,11 @@ class RevisionModel(Answer):
     build: str | None = Field(description="key of its build; null while parameters are missing")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
     analyses: dict[str, ModelAnalysis]
+    tolerances: dict[str, StatedTolerance] = Field(
+        {},
+        description="where its files state tolerances, by parameter; absent before it is built, or if there "
+        "are none",
+    )
 
 
 class Round(Answer):
