@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.designs.schemas.designs import RevisionStep, Round
+from app.designs.schemas.designs import RevisionStep, Round, RoundedValue
 from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.tables import JsonText, RevisionRow, canonical_json
@@ -28,6 +28,7 @@ _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
 )
 _JSON = JsonText()
 _ROUNDS = TypeAdapter(list[Round])
+_ROUNDED = TypeAdapter(dict[str | None, list[RoundedValue]])
 _ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
 _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
     "criteria": TypeAdapter(list[Criterion] | None),
@@ -43,6 +44,7 @@ class Results:
     steps: Mapping[str, RevisionStep]  # the calculated steps
     judged: Mapping[str, list[Criterion] | Verdict | None]  # the stored members `criteria` and `verdict`
     iterations: list[Round]
+    rounded: Mapping[str | None, list[RoundedValue]]  # by variant; None is the design itself
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
 
     @cached_property
@@ -59,7 +61,7 @@ def results_of(session: Session, row: RevisionRow) -> Results:
     """Return the results of a revision; empty if there are none yet."""
     text: str | None = session.scalar(_TEXT, {"of": row.design_id, "at": row.number})
     if text is None:
-        return Results(None, {}, {}, [], {})
+        return Results(None, {}, {}, [], {}, {})
     with _keeping:
         results = _kept.get(text)
     if results is None:
@@ -73,7 +75,7 @@ def results_of(session: Session, row: RevisionRow) -> Results:
 def _read(text: str) -> Results:
     plain = _JSON.process_result_value(text)
     if not plain:
-        return Results(text, {}, {}, [], {})
+        return Results(text, {}, {}, [], {}, {})
     return Results(
         text=text,
         steps={
@@ -83,5 +85,12 @@ def _read(text: str) -> Results:
         },
         judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
         iterations=_ROUNDS.validate_python(plain["iterations"]),
+        rounded=_ROUNDED.validate_python(
+            {
+                variant: one["rounded"]
+                for variant, one in {**plain.get("variants", {}), None: plain}.items()
+                if "rounded" in one
+            }
+        ),
         analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
     )

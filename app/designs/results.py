@@ -14,6 +14,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
+from app.designs.roundings import ROUNDED, as_member, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import remember
@@ -51,13 +52,14 @@ def stored(
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
+        **as_member(calculation),
         "steps": steps(calculation, criteria),
         "iterations": rounds,
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
     if outcomes:
-        base = _variant({}, own, single_outputs(calculation), {}, None)
+        base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
     return results
 
@@ -136,7 +138,14 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
 
 
 def _outcome(outcome: Outcome) -> JsonObject:
-    return _variant(outcome.values, outcome.judgements, outcome.outputs, outcome.failures, outcome.problem)
+    return _variant(
+        outcome.values,
+        outcome.judgements,
+        outcome.outputs,
+        outcome.failures,
+        outcome.problem,
+        rounded(outcome.calculation) if outcome.calculation else [],
+    )
 
 
 def _variant(
@@ -145,6 +154,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
+    chosen: Sequence[JsonObject],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {
@@ -152,6 +162,7 @@ def _variant(
         "outputs": dict(outputs),
         "failures": dict(failures),
         "problem": problem,
+        ROUNDED: list(chosen),
     }
     return {**{name: part for name, part in parts.items() if part}, **rendered(worst_first(judgements))}
 

@@ -103,6 +103,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
                 for model in models
             },
             "iterations": results.iterations,
+            **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
         }

@@ -21,6 +21,7 @@ from app.designs.schemas import designs as schemas
 from app.designs.solid_fields import fields_of
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
+from app.presentation.numbers import rounded
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step
@@ -168,6 +169,7 @@ class Reports:
             steps=steps,
             models=models,
             rounds=[_round(one) for one in worked.iterations],
+            rounded=[Line(one.name, "", Cell(text=rounded(one)), origin=one.rule) for one in worked.rounded],
             author=author_of(view.author, signed),
         )
 

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
+from app.designs.roundings import ROUNDED
 from app.designs.schemas.variants import (
     GoverningVariant,
     ModelState,
@@ -101,7 +102,7 @@ class _Table:
             for model in self.models.get(name, ())
         }
         parts: JsonObject = {
-            **{part: result[part] for part in ("criteria", "verdict", "problem") if part in result},
+            **{part: result[part] for part in ("criteria", "verdict", "problem", ROUNDED) if part in result},
             **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
         }
         return VariantResult.model_validate(
