@@ -76,7 +76,7 @@ from app.web.tolerances.routes import toleranced
 from app.web.variants.detail import chosen_variant
 from app.web.variants.table import RefusedTable, places_of, variants_table
 from app.web.verdict.banner import Banner, banner, opened, with_keys
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import BY_PART, MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
 QUICK = 1  # longest wait for steps; the page's script requests slower ones and shows their progress [s]
@@ -129,6 +129,7 @@ async def design_page(
         job=await _job(services, design),
         studies=await studies_of(services, id),
         kinds=list(MEDIA_TYPES),
+        by_part=list(BY_PART),
         loose=_loose([*parameters, *_fields(steps, parts)], faults, wrong),
         refused=bool(faults) or table is not None,
         notice=notice,
