@@ -41,8 +41,8 @@ def proposals(graph: Graph) -> list[Proposal]:
     loops = _Loops(graph)
     for model in (block for block in graph.blocks.values() if block.is_model):
         for name in model.cls.inputs:
-            if found := _proposal(graph, loops, model, name):
-                source, proposal = found
+            if best := _proposal(graph, loops, model, name):
+                source, proposal = best
                 loops.link(model.name, source.block)
                 proposed.append(proposal)
     return proposed

@@ -73,8 +73,8 @@ def of_block(
         name = f"{block}.{tail}" if block else tail
         text = typed.get(name, text_of(cells.get(tail)))
         shown = None if text and not is_relation(text) else values.get(tail)
-        made = _field(name, declared, text, shown, faults.get(name), tail in needed)
-        fields.append(replace(made, rounded=rounded.get(name) if shown else None))
+        one = _field(name, declared, text, shown, faults.get(name), tail in needed)
+        fields.append(replace(one, rounded=rounded.get(name) if shown else None))
     return fields
 
 
