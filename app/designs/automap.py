@@ -143,7 +143,7 @@ def _share_a_role(step: Block, model: Block) -> bool:
 
 
 def _is_namesake(source: Reference, model: Block) -> bool:
-    """Return whether the names of a step and a model share a word, as `front_shell` and `front_film` do."""
+    """Return whether the names of a step and a model share a word, as do `front_film` and `front_shell`."""
     block = source.block if source.output is not None else ""
     return not set(block.split("_")).isdisjoint(model.name.split("_"))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from threading import Lock
 
@@ -18,6 +18,7 @@ from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
 from app.designs.schemas.designs import RevisionStep, Round, RoundedValue
+from app.plain import JsonObject
 from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.tables import JsonText, RevisionRow, canonical_json
@@ -44,8 +45,12 @@ class Results:
     steps: Mapping[str, RevisionStep]  # the calculated steps
     judged: Mapping[str, list[Criterion] | Verdict | None]  # the stored members `criteria` and `verdict`
     iterations: list[Round]
-    rounded: Mapping[str | None, list[RoundedValue]]  # by variant; None is the design itself
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
+    governing: str = ""  # the variant that governs; empty if the design itself does
+    governing_steps: Mapping[str, RevisionStep] = field(default_factory=dict)  # where they differ
+    rounded: Mapping[str | None, list[RoundedValue]] = field(
+        default_factory=dict
+    )  # by variant; None is the design itself
 
     @cached_property
     def digest(self) -> str:
@@ -61,7 +66,7 @@ def results_of(session: Session, row: RevisionRow) -> Results:
     """Return the results of a revision; empty if there are none yet."""
     text: str | None = session.scalar(_TEXT, {"of": row.design_id, "at": row.number})
     if text is None:
-        return Results(None, {}, {}, [], {}, {})
+        return Results(None, {}, {}, [], {})
     with _keeping:
         results = _kept.get(text)
     if results is None:
@@ -75,14 +80,11 @@ def results_of(session: Session, row: RevisionRow) -> Results:
 def _read(text: str) -> Results:
     plain = _JSON.process_result_value(text)
     if not plain:
-        return Results(text, {}, {}, [], {}, {})
+        return Results(text, {}, {}, [], {})
+    governing = plain.get("governing", {"variant": "", "steps": {}})
     return Results(
         text=text,
-        steps={
-            name: RevisionStep.model_validate(step)
-            for name, step in plain["steps"].items()
-            if "outputs" in step
-        },
+        steps=_steps(plain["steps"]),
         judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
         iterations=_ROUNDS.validate_python(plain["iterations"]),
         rounded=_ROUNDED.validate_python(
@@ -93,4 +95,10 @@ def _read(text: str) -> Results:
             }
         ),
         analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
+        governing=governing["variant"],
+        governing_steps=_steps(governing["steps"]),
     )
+
+
+def _steps(plain: JsonObject) -> dict[str, RevisionStep]:
+    return {name: RevisionStep.model_validate(step) for name, step in plain.items() if "outputs" in step}

@@ -1,4 +1,4 @@
-"""What a drawing shows: views, removed sections and the dimensions that define its parts."""
+"""The content of a drawing: views, removed sections and the dimensions that define its parts."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from cad.header import Header
 from cad.inspect import look_at
 from cad.step import Body
 from cad.surfaces import PartSurfaces, Surface
+from cad.tolerances import toleranced_in
 
 
 @dataclass(frozen=True)
 class Content:
-    """What a drawing shows.
+    """The content of a drawing.
 
     Attributes
     ----------
     unseen
-        Parameters that no dimension shows.
+        Parameters that no dimension shows, or whose tolerances none shows.
     undefined
-        What its dimensions have to define, before any of them is taken; None of an assembly, whose parts
-        have sheets of their own.
+        Features that the dimensions must define; None for an assembly, whose parts have their own sheets.
     repeated
         Start and end of lengths along the shaft that repeat, by parameter.
     """
@@ -50,7 +50,13 @@ class Content:
         return plans(self.section, self.end, self.dimensions, elsewhere)
 
     def missing(self, without: Dimension | None = None) -> list[str]:
-        """Return in words what no dimension defines, perhaps if one of them were left out."""
+        """Return descriptions of everything that the dimensions leave undefined.
+
+        Parameters
+        ----------
+        without
+            A dimension to ignore, as if the drawing did not show it.
+        """
         if self.undefined is None:
             return []
         definition = Definition.of(self.undefined)
@@ -67,7 +73,10 @@ class Content:
 def declared_of(
     bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()
 ) -> tuple[dict[str, PartSurfaces], DrawingDeclaration]:
-    """Return the surfaces of bodies, and what their model declares; `whole` are all its parts."""
+    """Return the surfaces of the bodies and the declaration of their model.
+
+    On the sheet of a part, `whole` holds all parts of the model.
+    """
     seen = look_at(bodies)
     every = look_at(whole) if len(whole) > len(bodies) else seen
     declared = DrawingDeclaration.of(header, every, is_assembly=is_assembly(bodies))
@@ -75,7 +84,7 @@ def declared_of(
 
 
 def content_of(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> Content:
-    """Return what the drawing of a STEP file, or of one of its parts, shows if there is room."""
+    """Return the preferred content for the drawing of a STEP file, or of one of its parts."""
     seen, declared = declared_of(bodies, header, whole)
     return next(contents(bodies, seen, header, declared))
 
@@ -86,7 +95,7 @@ def contents(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> Iterator[Content]:
-    """Yield what a drawing shows: with removed sections, and without them where they have no room."""
+    """Yield the content with removed sections, then without them for sheets that lack the room."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = declared.own(header.parameters if header else {})
     repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
@@ -101,6 +110,7 @@ def contents(
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
         dimensions, unseen = matched(rest, declared.sizes, shown, declared.limits)
+        unseen += _in_table_alone(parameters, dimensions, some, unseen)
         if features is not None:
             definition = Definition.of(features)
             for one in some:
@@ -109,8 +119,20 @@ def contents(
         yield Content(section, end, some, dimensions, unseen, features, repeated)
 
 
+def _in_table_alone(
+    parameters: Mapping[str, str],
+    dimensions: Sequence[Dimension],
+    removed: Sequence[RemovedSection],
+    unseen: Sequence[str],
+) -> list[str]:
+    """Return further parameters whose tolerances no dimension shows."""
+    drawn = [*dimensions, *(one for section in removed for one in section.dimensions)]
+    stated = {one.name for one in drawn if one.limits} | {*unseen}
+    return [name for name in toleranced_in(parameters) if name not in stated]
+
+
 def _defined(declared: DrawingDeclaration, seen: Mapping[str, PartSurfaces]) -> list[Surface]:
-    """Return the surfaces of the parts that carry parameters; others are like them, or mirrored."""
+    """Return the surfaces of the parts that carry parameters; the other parts equal or mirror these."""
     carriers = {
         part
         for size in declared.sizes.values()

@@ -1,7 +1,7 @@
-"""Geometric tolerances in frames, datums and surface textures, at free places with leaders to their faces.
+"""Draw geometric tolerances, datums and surface textures at free places, with leaders to their faces.
 
-Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; a datum axis stands on the
-dimension line of its feature.
+Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; the symbol of a datum axis is
+in line with the dimension line of its feature.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ BoxAt = Callable[[float, float], Rectangle]
 
 
 class Controls:
-    """Draws what a model declares of the faces of its dimensions."""
+    """Draws the tolerances, datums and surface textures that a model declares for dimensioned faces."""
 
     def __init__(self, page: Page, room: Room, *, is_last: bool) -> None:
         self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
 
     def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
-        """Return everything that belongs to a dimension that is drawn; returns the letter of the first datum.
+        """Draw all symbols that belong to drawn dimensions; return the letter of the first datum.
 
         Raises
         ------
         NoRoom
-            If something has no place, unless it is the last scale to be tried.
+            If a symbol has no free place and this is not the last scale to be tried.
         """
         of: Mapping[str, PlacedDimension] = {one.dimension.name: one for one in placed if one.dimension.name}
         for name, letter in declared.datums.items():
@@ -68,7 +68,7 @@ class Controls:
         self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
     def _stems(self, placed: PlacedDimension) -> Iterator[tuple[Rectangle, Symbol]]:
-        """Yield possible positions of a datum's letter: in line with a dimension line, or nearby."""
+        """Yield possible positions of a datum symbol, in line with a dimension line if there is one."""
         if placed.ends is None:
             tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
             starts = [(tip, turn) for turn in turns]
@@ -83,7 +83,7 @@ class Controls:
                 yield around(middle, _HIGH, _HIGH), symbol
 
     def _frame(self, placed: PlacedDimension, control: Control) -> None:
-        """Draw a frame: sign, width, datum."""
+        """Draw a tolerance frame with its symbol, width and datum, and a leader to the face."""
         frame = Frame(control.form, control.width, control.to, TEXT)
         width, height = frame.width, frame.height
         target = self._target(placed)
@@ -114,13 +114,13 @@ class Controls:
         self.room.add_leader([target, (x, y)])
 
     def _target(self, placed: PlacedDimension) -> Point:
-        """Return a point of a face that carries a dimension, on the paper; within an edge, off its corner."""
+        """Return the point on the paper to which a leader points; for a length, one away from the corner."""
         measure = placed.dimension.measure
         x, y = self.plan.paper(measure.points[1], placed.right)
         return (x, y + _INTO) if measure.sort == "length" else (x, y)
 
     def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
-        """Return the nearest free place about a target, and occupy it."""
+        """Occupy the nearest free place near a target, and return it."""
         tries = (
             _beside(target, away, radians(turn), width)
             for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)

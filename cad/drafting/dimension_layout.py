@@ -1,7 +1,7 @@
 """The layout of dimensions and their texts: no texts overlap, and none lies across a view.
 
-Dimensions beside a view run in lanes, each in the first lane with room. Dimensions of arcs, oblique holes and
-angles have their text at the nearest free place outside the views, with a leader.
+Dimensions beside a view are arranged in lanes; each takes the first lane with room. The texts of arcs,
+oblique holes and angles stand at the nearest free place outside the views, with a leader.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ class PlacedDimension:
     Attributes
     ----------
     base
-        A point of its dimension line; of an arc or circle the end of its leader.
+        A point on its dimension line; for an arc or circle, the end of its leader.
     words
-        The middle of its words, if they do not stand on the dimension line.
+        The centre of its text, if the text does not stand on the dimension line.
     right
-        By how much its view is moved to the right.
+        The distance by which its view is moved to the right.
     ends
-        Of a dimension in a lane: the ends of its dimension line on the paper [mm].
+        The ends of its dimension line on the paper [mm], if it stands in a lane.
     """
 
     dimension: Dimension
@@ -70,12 +70,12 @@ class DimensionLayout:
         self.plan, self.room, self.is_last = plan, room, is_last
 
     def all(self) -> list[PlacedDimension]:
-        """Return every dimension; those in lanes first.
+        """Return every dimension with its place, those in lanes first.
 
         Raises
         ------
         NoRoom
-            If one has none, unless it is the last scale to be tried.
+            If a dimension has no free place and this is not the last scale to be tried.
         """
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
@@ -84,7 +84,7 @@ class DimensionLayout:
         return placed + [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
-        """Return the dimensions of one side of a view."""
+        """Return the dimensions on one side of a view with their places."""
         placed = list(self._in_lanes(lane))
         for one in placed:
             self._take_lines(one)
@@ -98,9 +98,9 @@ class DimensionLayout:
         one
             The dimension.
         along
-            The position of its line [mm].
+            The horizontal position of its line [mm].
         high
-            The upper side of the view [mm].
+            The height of the upper side of the view [mm].
         """
         label = label_of(one)
         points = tuple((along, y) for _, y in one.measure.points)
@@ -143,7 +143,7 @@ class DimensionLayout:
         middle: float,
         right: float,
     ) -> PlacedDimension:
-        """Return a dimension whose line runs at a place across its lane."""
+        """Return a dimension with its line at a given position in its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
         if label.upper or not ends[0] <= middle <= ends[1]:
@@ -154,7 +154,7 @@ class DimensionLayout:
     def _box_in_lane(
         self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
     ) -> Rectangle:
-        """Return the area of a dimension line and its text on the paper."""
+        """Return the area that a dimension line and its text occupy on the paper."""
         half = label.width(TEXT) / 2 + 0.5
         is_narrow = ends[1] - ends[0] < _ARROWS
         tail = _TAIL if is_narrow else 0.0
@@ -165,7 +165,7 @@ class DimensionLayout:
         return begin, place - 1.0, stop, place + height
 
     def _take_lines(self, placed: PlacedDimension) -> None:
-        """Dimension line and extension lines, which no later words cross."""
+        """Occupy the dimension line and extension lines, so that no later text crosses them."""
         assert placed.ends is not None
         self.room.add_line(placed.ends, is_drawn=True)
         points = sorted(self._on_paper(placed.dimension, placed.right))
@@ -202,13 +202,16 @@ class DimensionLayout:
         return placed
 
     def _is_clear(self, each: Try, *, is_arc: bool) -> bool:
-        """Return whether the words have room, for an angle also within its view; no line crosses others."""
+        """Return whether the text has room and no line crosses another text.
+
+        The text of an angle may stand within its view.
+        """
         box, _, lines = each
         has_room = self.room.is_free(box) or (is_arc and self.room.is_free_within(box))
         return has_room and all(self.room.passes(piece) for piece in pairwise(lines[0]))
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words at the end of a leader along a radius, of any arc that shows the parameter."""
+        """Yield places for the text at the end of a radial leader, for every arc that shows the parameter."""
         whole = one.measure.form == "circle"
         turns = sorted(range(-180, 180, 15), key=abs) if whole else (0, 10, -10, 20, -20)
         width, height = label.width(TEXT), label.height(TEXT)
@@ -228,7 +231,7 @@ class DimensionLayout:
                     yield box, PlacedDimension(arc, label, self.plan.at(x, y), None, right), lines
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words beyond an arc between two legs, or their prolongations."""
+        """Yield places for the text outside a dimension arc between two legs or their extensions."""
         corner, *legs = self._on_paper(one, right)
         turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
         opening = (turns[1] - turns[0]) % (2 * pi)
@@ -252,14 +255,14 @@ class DimensionLayout:
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
     def _distances(self) -> Iterator[float]:
-        """Return the distances from features to texts [mm on paper]: on a large sheet views are large too."""
+        """Yield distances from a feature to its text [mm on paper], more of them on a larger sheet."""
         away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
         while away < farthest:
             yield away
             away += _STEP
 
     def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words at any place around an oblique dimension."""
+        """Yield places for the text all around an oblique dimension."""
         points = self._on_paper(one, right)
         middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
         width, height = label.width(TEXT), label.height(TEXT)
@@ -272,7 +275,7 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """Return the middle of a text on a dimension line: between its ends, or beyond one end."""
+    """Return the centre of a text along its dimension line: between the ends, or beyond one end."""
     half = width / 2
     if width + 1.0 <= high - low:
         middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
@@ -284,5 +287,5 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
 
 
 def _nearest(lines: list[list[Point]]) -> list[list[Point]]:
-    """Return the shorter half of lines: extension lines from each leg to its own end of the arc."""
+    """Return the two shortest of four lines: an extension line from each leg to the nearer end of the arc."""
     return sorted(lines, key=lambda line: hypot(line[0][0] - line[1][0], line[0][1] - line[1][1]))[:2]

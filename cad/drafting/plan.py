@@ -1,4 +1,4 @@
-"""Plan the sheet: its areas, the scale at which everything has room, and the positions of the views."""
+"""Plan the sheet: its areas, a scale at which everything has room, and the positions of the views."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 
 @dataclass(frozen=True)
 class Plan:
-    """Size of the drawing and places of its views, in the coordinates of the section."""
+    """The sheet, its scale and the places of its views, in the coordinates of the section."""
 
     scale: float  # of the paper: mm on paper for each mm of the part
     beside: float  # by how much the end view is moved to the right
@@ -32,26 +32,34 @@ class Plan:
     format: Format = FORMATS[0]
 
     def at(self, x: float, y: float) -> Point:
-        """Return a place on the paper [mm from its lower left corner] in the drawing's coordinates."""
+        """Convert a position on the paper [mm from its lower left corner] to the drawing's coordinates."""
         return self.corner[0] + x / self.scale, self.corner[1] + y / self.scale
 
     def paper(self, point: Sequence[float], right: float = 0.0) -> Point:
-        """Return a point of a view, moved to the right, on the paper [mm]."""
+        """Convert a point of a view that is moved to the right to its position on the paper [mm]."""
         x, y = point[0] + right - self.corner[0], point[1] - self.corner[1]
         return x * self.scale, y * self.scale
 
     @property
     def scale_text(self) -> str:
-        """Return the scale in words."""
+        """Return the scale as text, such as `1:2`."""
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
 
 def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
     """Yield the plans in the order of preference.
 
-    Removed sections have `elsewhere` more dimensions. First come sheets and scales whose views fill the
-    sheet, beginning with the smallest sheet and its largest scale; then all others with enough room, the
-    fullest first.
+    Sheets and scales whose views fill the sheet come first, beginning with the smallest sheet and its largest
+    scale. All others with enough room follow, the fullest first.
+
+    Parameters
+    ----------
+    section, end
+        The two views.
+    wanted
+        The dimensions of the two views.
+    elsewhere
+        The number of dimensions in removed sections.
     """
     lanes = Lanes.sorted(wanted, section, end)
     (left, low), (right, high) = section.box

@@ -1,6 +1,6 @@
-"""Removed sections (ISO 128-3): across a bar, beside the views, with their own dimensions.
+"""Removed sections (ISO 128-3): cross-sections of a bar beside the views, with their own dimensions.
 
-A model declares in `sections` where its drawing has one, by letter:
+A model declares its removed sections in `sections`, by letter:
 
     sections = {"B": {"of": "rod", "at": {"centre_distance": 0.5}, "shows": ["shank_width"]}}
 
@@ -42,7 +42,7 @@ _LABEL = 14.0  # of a section's label above it [mm on paper]
 
 @dataclass(frozen=True)
 class RemovedSection:
-    """A removed section: its view about its own origin, its dimensions, and its height in the end view."""
+    """A removed section: its view about its own origin, its height in the end view, and its dimensions."""
 
     letter: str
     view: View
@@ -51,11 +51,11 @@ class RemovedSection:
 
     @property
     def names(self) -> set[str | None]:
-        """Return the parameters that it shows."""
+        """Return the names of the parameters that the section shows."""
         return {one.name for one in self.dimensions}
 
     def define(self, definition: Definition) -> None:
-        """Add its dimensions: level ones are across the shaft, upright ones along it."""
+        """Add the dimensions of the section: horizontal ones are across the shaft, vertical ones along it."""
         sign = self.view.frame.up.dot(Z)
         for measure in (one.measure for one in self.dimensions):
             points = measure.points
@@ -73,7 +73,7 @@ def removed_sections(
     seen: Mapping[str, PartSurfaces],
     end: View,
 ) -> list[RemovedSection]:
-    """Return the removed sections of a drawing; one that shows nothing is left out."""
+    """Return the removed sections of a drawing that show at least one dimension."""
     if (end.frame.up - Y).Length > CLEAR:
         return []  # y is not upright in the view in which the section would be marked
     return [
@@ -112,7 +112,7 @@ def _removed(
 
 
 def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
-    """Yield the distances between straight edges, level and upright, from the lowest or leftmost ends."""
+    """Yield the distances between parallel straight edges, measured at their lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
         feet: dict[float, float] = {}
@@ -129,7 +129,7 @@ def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
 
 
 def mark(page: Page, room: Room, removed: RemovedSection) -> None:
-    """Draw the line along which a section is cut, in the end view; the arrows point down."""
+    """Draw the cutting line of a removed section in the end view; its arrows point down."""
     plan = page.plan
     (left, _), (right, _) = removed.view.box
     width = width_of(removed.letter, LETTERS)
@@ -144,12 +144,12 @@ def mark(page: Page, room: Room, removed: RemovedSection) -> None:
 
 
 def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
-    """Draw a section at a free place of the sheet; return its dimensions.
+    """Draw a section at a free place of the sheet; return its dimensions with their places.
 
     Raises
     ------
     NoRoom
-        If there is no such place.
+        If the sheet has no free place for it.
     """
     plan = page.plan
     lanes = {form: [d for d in removed.dimensions if d.measure.form == form] for form in ("across", "up")}
@@ -196,7 +196,7 @@ def _is_within(one: Dimension, view: View) -> bool:
 
 
 def _found(plan: Plan, room: Room, removed: RemovedSection, sides: tuple[float, float, float]) -> Point:
-    """Lower left corner of the nearest free place for a section with its dimensions [mm on paper]."""
+    """Return the lower left corner of the nearest free place for a section [mm on paper]."""
     (x, y), (right, high) = removed.view.box
     width = sides[0] + (right - x) * plan.scale + _MARGIN
     height = sides[1] + (high - y) * plan.scale + sides[2]
@@ -222,7 +222,7 @@ def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
 
 
 def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
-    """Draw the label B–B over the section, above other texts."""
+    """Draw the label B–B above the section and the texts of its dimensions."""
     (x, _), (right, high) = view.box
     text = f"{letter}–{letter}"
     middle, top = page.plan.paper(((x + right) / 2, high))
@@ -237,7 +237,7 @@ def _moved(one: Dimension, shift: Point) -> Dimension:
 
 
 def _shifted(view: View, shift: Point) -> View:
-    """Return a view at another position."""
+    """Return a view moved by a vector."""
     curves = [curve.moved(shift) for curve in view.visible]
     cut = [
         Cut(

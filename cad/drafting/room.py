@@ -17,7 +17,7 @@ _APART = 0.8  # between two texts, and between a text and a line [mm on paper]
 
 
 class Room:
-    """What a sheet holds so far, in millimetres on paper."""
+    """The areas and lines that a sheet holds so far, in millimetres on paper."""
 
     def __init__(self, area: Rectangle) -> None:
         self.area = area
@@ -33,27 +33,27 @@ class Room:
         self._edges = np.zeros((0, 4))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
-        """Occupy a rectangle; lines to a part's faces cross only that of a view."""
+        """Occupy a rectangle; a leader may cross it only if it is a view."""
         self.boxes.append(box)
         (self.views if is_view else self.words).append(box)
 
     def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
-        """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""
+        """Occupy a polyline; no leader crosses one that is drawn for a dimension."""
         self._lines += [(*a, *b) for a, b in pairwise(points)]
         if is_drawn:
             self._drawn += [(*a, *b) for a, b in pairwise(points)]
 
     def add_leader(self, points: Sequence[Point]) -> None:
-        """Occupy a leader, from what it is about to its words or frame."""
+        """Occupy a leader, from its target to its text or frame."""
         self.leaders.append([*points])
         self.add_line(points, is_drawn=True)
 
     def add_outline(self, points: Sequence[Point]) -> None:
-        """Keep a line of a view, which words within that view avoid."""
+        """Record a line of a view, which texts within that view avoid."""
         self._outlines += [(*a, *b) for a, b in pairwise(points)]
 
     def is_free_within(self, box: Rectangle) -> bool:
-        """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
+        """Return whether a rectangle within a view is clear of its lines, of texts and of other lines."""
         if not self.holds(box) or any(overlap(box, other, _APART) for other in self.words):
             return False
         if len(self._edges) != len(self._outlines):
@@ -62,25 +62,28 @@ class Room:
         return is_blank and not self._is_crossed(box)
 
     def holds(self, box: Rectangle) -> bool:
-        """Return whether a rectangle is on the sheet's area."""
+        """Return whether a rectangle is within the area of the sheet."""
         left, low, right, high = self.area
         return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
 
     def is_clear(self, box: Rectangle, apart: float = _APART) -> bool:
-        """Return whether a rectangle is on the area and clear of all others."""
+        """Return whether a rectangle is within the area and clear of all occupied ones."""
         return self.holds(box) and not any(overlap(box, other, apart) for other in self.boxes)
 
     def is_free(self, box: Rectangle) -> bool:
-        """Return whether a rectangle is on the area and clear of all others and of all lines."""
+        """Return whether a rectangle is within the area and clear of all occupied rectangles and lines."""
         return self.is_clear(box) and not self._is_crossed(box)
 
     def passes(self, line: Sequence[Point]) -> bool:
-        """Return whether a straight line crosses no words."""
+        """Return whether a straight line crosses no text."""
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
     def is_apart(self, line: Sequence[Point], about: Point | None = None) -> bool:
-        """Return whether a line meets no dimension, and no view but that of what it is about, its start."""
+        """Return whether a line crosses no drawn dimension, and no view other than that of its target.
+
+        The target is the start of the line unless it is given.
+        """
         pieces = np.array([(*a, *b) for a, b in pairwise(line)])
         if len(self._drawn) != len(self._meeting):
             self._meeting = np.array(self._drawn)
@@ -89,17 +92,17 @@ class Room:
         return self.is_at_home(line, about or line[0])
 
     def is_at_home(self, line: Sequence[Point], about: Point) -> bool:
-        """Return whether a line crosses no view but that of the point that it is about."""
+        """Return whether a line crosses no view other than that of its target."""
         pieces = np.array([(*a, *b) for a, b in pairwise(line)])
         foreign = [box for box in self.views if not _is_in(about, box)]
         return not any(crossed(pieces, box).any() for box in foreign)
 
     def length_in_views(self, one: Point, other: Point) -> float:
-        """Return the length of a straight line within the boxes of views [mm on paper]."""
+        """Return the length of a straight line within the bounding boxes of views [mm on paper]."""
         return sum(_length_within(one, other, box) for box in self.views)
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
-        """Return the point of the first free rectangle, and occupy it."""
+        """Occupy the first free rectangle, and return its point."""
         for box, point in boxes:
             if self.is_free(box):
                 self.add(box)
@@ -113,12 +116,12 @@ class Room:
 
 
 def _is_in(point: Point, box: Rectangle) -> bool:
-    """Return whether a point is in a rectangle or on its border."""
+    """Return whether a point is in a rectangle or at its border."""
     return box[0] - _APART <= point[0] <= box[2] + _APART and box[1] - _APART <= point[1] <= box[3] + _APART
 
 
 def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    """Return which straight pieces (n, 4) a straight piece crosses, not at its own ends."""
+    """Return which segments (n, 4) a segment crosses, apart from crossings at its own ends."""
     (x, y), away = piece[:2], piece[2:] - piece[:2]
     starts, ways = lines[:, :2] - (x, y), lines[:, 2:] - lines[:, :2]
     across = away[0] * ways[:, 1] - away[1] * ways[:, 0]
@@ -130,7 +133,7 @@ def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
 
 
 def _length_within(one: Point, other: Point, box: Rectangle) -> float:
-    """Return the part of a straight line that lies within a rectangle (Liang and Barsky)."""
+    """Return the length of a segment within a rectangle (Liang and Barsky)."""
     enter, leave = 0.0, 1.0
     for axis in (0, 1):
         away = other[axis] - one[axis]
@@ -144,13 +147,13 @@ def _length_within(one: Point, other: Point, box: Rectangle) -> float:
 
 
 def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
-    """Return whether two rectangles overlap, or are closer than this distance."""
+    """Return whether two rectangles overlap, or are closer than a given distance."""
     is_beside = one[0] >= other[2] + apart or other[0] >= one[2] + apart
     return not (is_beside or one[1] >= other[3] + apart or other[1] >= one[3] + apart)
 
 
 def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray:
-    """Return which straight pieces (n, 4) are closer to a rectangle than this (Liang and Barsky)."""
+    """Return which segments (n, 4) are closer to a rectangle than a given distance (Liang and Barsky)."""
     start, away = lines[:, :2], lines[:, 2:] - lines[:, :2]
     away = np.where(np.abs(away) < 1e-12, 1e-12, away)
     low = (np.array([box[0] - apart, box[1] - apart]) - start) / away
@@ -162,6 +165,6 @@ def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray
 
 
 def around(centre: Point, width: float, height: float) -> Rectangle:
-    """Return a rectangle by its middle."""
+    """Return the rectangle with a given centre, width and height."""
     x, y = centre
     return x - width / 2, y - height / 2, x + width / 2, y + height / 2

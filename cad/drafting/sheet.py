@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section keeps its true coordinates and is drawn 1:1; the sheet around it is enlarged by the scale. So a
-DIMENSION measures the true size of the part. Each DIMENSION carries the name of its parameter.
+The section keeps its true coordinates and is drawn 1:1; the sheet around it is scaled instead. So a DIMENSION
+measures the true size of the part. Each DIMENSION carries the name of its parameter.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _MOST_PLANS = 8  # sheets and scales that are tried
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
-    """Return a dimensioned drawing; equal bodies and headers give equal bytes."""
+    """Return a dimensioned drawing as DXF; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
         document, _ = draw(bodies, header, whole)
@@ -48,9 +48,9 @@ def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Bod
 
 
 def _register_classes(document: Drawing) -> None:
-    """List the classes in one order.
+    """Register the DXF classes in a fixed order.
 
-    Ezdxf itself would iterate over a set, whose order differs by process.
+    Ezdxf itself would iterate over a set, whose order differs between processes.
     """
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
@@ -58,7 +58,7 @@ def _register_classes(document: Drawing) -> None:
 
 @contextmanager
 def _no_times() -> Iterator[None]:
-    """Let ezdxf write neither times nor random ids."""
+    """Make ezdxf write neither timestamps nor random ids."""
     kept = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
     try:
@@ -79,7 +79,10 @@ class Laid:
 
 
 def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
-    """Return the drawing as a document of ezdxf, and its sheet; `whole` are the parts of a part's model."""
+    """Return the drawing as an ezdxf document, and its sheet.
+
+    On the sheet of a part, `whole` holds all parts of its model.
+    """
     seen, declared = declared_of(bodies, header, whole)
     sheet = SheetNumber.of(bodies, whole)
     content, laid = laid_out(bodies, seen, header, declared)
@@ -104,7 +107,7 @@ def laid_out(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> tuple[Content, Laid]:
-    """Return the first sheet on which everything has room, else a sheet without removed sections."""
+    """Return the first sheet on which everything has room, with removed sections if possible."""
     for content in contents(bodies, seen, header, declared):
         tried = [*islice(content.plans(), _MOST_PLANS)]
         for plan in tried:
@@ -124,7 +127,7 @@ def _laid(
     Raises
     ------
     NoRoom
-        If something has no place, unless it is the last sheet to be tried.
+        If something has no free place and this is not the last sheet to be tried.
     """
     page = Page(document_of(plan), plan)
     centres = centre_lines(content.section, content.end, bodies, plan)
@@ -158,7 +161,7 @@ def _fill(
 
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
-    """Return the sheet with its views, which texts must avoid, and its centre lines."""
+    """Return the room of a sheet, occupied by its views and its centre lines."""
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):

@@ -9,6 +9,7 @@ import numpy as np
 from cad.model import BRIGHT_STEEL, STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
 from cad.shells.rod import Rod
+from cad.shells.split_bore import bore_clearance_rule, breadth_rule, roof_rule, sides_rule
 from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
@@ -161,27 +162,10 @@ class ConnectingRod(CadModel):
     def s_j(self) -> Array:
         return (self.A - self.D) / 2
 
-    @require("big_end_breadth", "big_end_bore", remedy="make the big end broader")
-    def bore_has_sides(self) -> Truth:
-        """The big end is at least 5 % broader than its bore."""
-        return self.A >= 1.05 * self.D
-
-    @require("shoulder_height", "cap_height", "big_end_bore", remedy="make shoulder and cap higher")
-    def bore_has_a_roof(self) -> Truth:
-        """The heights of shoulder and cap are each at least 55 % of the bore diameter."""
-        return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
-
-    @require("bolt_spacing", "bolt_hole_diameter", "big_end_bore",
-             remedy="move the bolts outwards or make their holes smaller, or 0 for none")  # fmt: skip
-    def bolts_clear_bore(self) -> Truth:
-        """The bolt holes are clear of the bore by at least 1 % of its diameter."""
-        return (self.d_b <= 0) | (self.a_b - self.d_b >= 1.01 * self.D)
-
-    @require("bolt_spacing", "bolt_hole_diameter", "big_end_breadth",
-             remedy="move the bolts inwards or make their holes smaller, or 0 for none")  # fmt: skip
-    def bolts_keep_within(self) -> Truth:
-        """The bolt holes lie within 98 % of the big end's breadth."""
-        return (self.d_b <= 0) | (self.a_b + self.d_b <= 0.98 * self.A)
+    bore_has_sides = sides_rule("big_end_breadth", "big_end_bore")
+    bore_has_a_roof = roof_rule("shoulder_height", "cap_height", "big_end_bore")
+    bolts_clear_bore = bore_clearance_rule("big_end_bore")
+    bolts_keep_within = breadth_rule("big_end_breadth")
 
     @require("bolt_hole_diameter", "big_end_width", remedy="make the holes smaller or the big end wider")
     def holes_keep_within_width(self) -> Truth:
@@ -224,13 +208,13 @@ class ConnectingRod(CadModel):
     def pockets_have_a_length(self) -> Truth:
         """The pockets are at least a tenth of the shank long.
 
-        They end as far from its ends as from its sides.
+        They are as far from the ends of the shank as from its sides.
         """
         return (self.b_p <= 0) | (self.l_s - (self.b - self.b_p) >= 0.1 * self.l_s)
 
     @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
     def web_is_thin(self) -> Truth:
-        """Between pockets the web is at most 95 % as thick as the shank."""
+        """The web between the pockets is at most 95 % as thick as the shank."""
         return (self.b_p <= 0) | (self.h_w <= 0.95 * self.h)
 
     @require("bolt_hole_diameter", "pocket_width", "big_end_bore", remedy="use 0 for none")
@@ -248,7 +232,7 @@ class ConnectingRod(CadModel):
         )
 
     def drawn(self) -> Rod:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         big_end = Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,

@@ -28,7 +28,7 @@ class Rod:
 
     @property
     def shoulder(self) -> float:
-        """Return the distance of the shank's start from the axis of the big end."""
+        """Return the distance from the axis of the big end to the start of the shank."""
         return self.big_end.block_height
 
     @property
@@ -38,7 +38,7 @@ class Rod:
         return self.shoulder + edge, self.distance - self.outside - edge
 
     def body(self) -> Shape:
-        """Return the upper half of the big end, shank and small end as one solid."""
+        """Return the upper half of the big end, the shank and the small end as one solid."""
         end, full = Vector(0, self.distance, -self.half_width), 2 * self.half_width
         shank = self._bar(self.shank_width, self.shoulder, self.distance, 0.0, self.thickness)
         if self.pocket_width > 0:

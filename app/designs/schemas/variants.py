@@ -6,8 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.calculations.schemas.evaluations import Output
+from app.calculations.schemas.evaluations import Output, UsedInput
 from app.designs.schemas.designs import RoundedValue
+from app.designs.schemas.result_table import ResultTable
 from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
 from app.schemas.problems import Problem
@@ -59,6 +60,9 @@ class VariantDetail(Answer):
     values: dict[str, Shown] = Field(
         description="overridden values as quantities, with relations resolved; others are as in the design"
     )
+    inputs: dict[str, UsedInput] = Field(
+        {}, description="inputs of its steps as used, by their names in relations"
+    )
     outputs: dict[str, Output] = Field(description="requested outputs, else all, by their names in relations")
     rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     criteria: list[Criterion] = Field(
@@ -95,6 +99,9 @@ class VariantsOut(Answer):
     variants: dict[str, dict[str, Given]] = Field(description="the table as typed; `PUT` takes the same")
     columns: list[VariantColumn]
     rows: list[VariantResult]
+    table: ResultTable = Field(
+        ResultTable(columns=[], rows=[]), description="the results in one table, with the design itself first"
+    )
     base: VariantResult | None = Field(None, description="the design itself, without any override")
     governing: GoverningVariant | None = Field(
         None, description="the worst variant of all; absent without criteria"

@@ -55,7 +55,7 @@ def test_equal_texts_are_read_once(served, film, monkeypatch):
 
 def test_what_is_kept_is_bounded():
     size = result_records._kept.getsizeof
-    assert size(Results("x" * 100, {}, {}, [], {}, {})) == 100
+    assert size(Results("x" * 100, {}, {}, [], {})) == 100
     assert result_records._kept.maxsize == result_records.KEPT
 
 
