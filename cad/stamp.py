@@ -64,6 +64,7 @@ class Stamp:
     number: str = ""
     mark: str = ""
     part: str = ""
+    rounded: str = ""  # parameters that the design rounds: calculated and chosen values
 
     @property
     def called(self) -> str:
@@ -117,6 +118,7 @@ class Stamp:
             "material": self._short_material,
             "mass": "" if self.mass is None else f"{self.mass:.4g} kg",
             "part": self.named,
+            "rounded": self.rounded,
         }
 
     def of_part(self, volume: str) -> dict[str, str]:
