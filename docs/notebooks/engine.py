@@ -67,24 +67,20 @@ COMMON = {
 }
 
 
-def film(load_x, load_y, **more):
-    """Return the film of one bearing from its loads in kN."""
-    loads = {"load_x": {"value": load_x, "unit": "kN"}, "load_y": {"value": load_y, "unit": "kN"}}
-    return oil_film_cycle(**COMMON, **loads, **more)
+def film(loads, number, **more):
+    """Return the film of one bearing; `loads` names the loads of its kind, such as `crankpin_load`."""
+    axes = {f"load_{axis}": getattr(engine, f"{loads}_{axis}")[number] for axis in "xy"}
+    return oil_film_cycle(**COMMON, **axes, **more)
 
 
 films = {}
 for number in range(5):
-    load_x, load_y = (
-        getattr(engine, f"elastic_main_load_{axis}").to("kN").magnitude[number] for axis in "xy"
-    )
     sizes = {"bearing_diameter": "55.055 mm", "bearing_width": "20 mm", "groove_start": "-90 deg"}
-    films[f"main {number + 1}"] = film(load_x, load_y, **sizes)
+    films[f"main {number + 1}"] = film("elastic_main_load", number, **sizes)
 for number in range(4):
-    load_x, load_y = (getattr(engine, f"crankpin_load_{axis}").to("kN").magnitude[number] for axis in "xy")
-    turning = {"value": engine.rod_angular_velocity.to("rpm").magnitude[number], "unit": "rpm"}
     sizes = {"bearing_diameter": "48.055 mm", "bearing_width": "22 mm", "groove_start": "90 deg"}
-    films[f"big end {number + 1}"] = film(load_x, load_y, sleeve_speed=turning, **sizes)
+    sizes["sleeve_speed"] = engine.rod_angular_velocity[number]
+    films[f"big end {number + 1}"] = film("crankpin_load", number, **sizes)
 
 print(f"{'bearing':12}{'load':>10}{'film':>10}{'pressure':>12}{'loss':>10}")
 for name, one in films.items():

@@ -12,9 +12,9 @@
 # %% [markdown]
 # # A part: from worksheet to STEP
 #
-# The oil film sizes a bearing, a CAD model builds it, and a STEP file holds it; the file is then measured. All
-# of this happens in Python, without the service. The [tutorial](../tutorial.md) does the same through the service,
-# which adds revisions, relations and reports.
+# The oil film sizes a bearing, a CAD model builds it, and a STEP file holds it; the file is then measured.
+# All of this happens in Python. The [tutorial](../tutorial.md) does the same through the service, which adds
+# revisions, relations and reports.
 
 # %%
 import io
