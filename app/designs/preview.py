@@ -31,7 +31,7 @@ from app.solids.analysis_views import output as analysis_output
 from app.solids.rows import built
 from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
-from cad.regenerate import as_quantities
+from cad.regenerate import as_typed
 from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault
 
@@ -72,11 +72,12 @@ def preview(
     changed = resolved(read_document(merge(head.document, asked.patch)), catalogues)
     catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview saves nothing, so drafts may be used
     new, mismatched = _calculated(database, catalogues, changed)
-    raise_if(new.faults)  # faults of the old document are ignored: the change may correct them
+    # faults of the old document are ignored: the change may correct them
+    raise_if([*new.faults, *tolerances.not_stated_in(new, head.document)])
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     own = judged(new)
     steps = _steps(new, own)
-    outcomes = _variants(database, catalogues, changed, new) if not mismatched else []
+    outcomes = _variants(database, catalogues, changed, new, head.document) if not mismatched else []
     everywhere = merged(own, {outcome.name: outcome.judgements for outcome in outcomes})
     content = Preview(
         revision=head.number,
@@ -101,7 +102,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 
 
 def _variants(
-    database: Database, catalogues: Catalogues, document: Document, base: Calculation
+    database: Database, catalogues: Catalogues, document: Document, base: Calculation, saved: JsonObject
 ) -> list[Outcome]:
     """Return the calculated variants of a document.
 
@@ -110,7 +111,8 @@ def _variants(
     InvalidInputs
         With the faults for which a save would refuse the table as well.
     """
-    outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
+    available = Available(catalogues, built(database), analysed(database))
+    outcomes, faults = checked(document, base, available, saved)
     raise_if(faults)
     return outcomes
 
@@ -194,7 +196,7 @@ def _model_parameters(
 
 def _parameters(calculation: Calculation, model: str) -> dict[str, Shown]:
     shape = calculation.shapes.get(model)
-    quantities = as_quantities(shape) if shape else {}
+    quantities = as_typed(shape) if shape else {}
     return {name: Shown.model_validate(quantity) for name, quantity in quantities.items()}
 
 

@@ -22,7 +22,7 @@ from app.plain import Json, JsonObject, Raw
 from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
 from cad.model import CadModel
-from cad.regenerate import as_quantities, build_key
+from cad.regenerate import as_typed, build_key
 from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
@@ -150,7 +150,7 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
         name=block.name,
         id=block.cls.id,
         version=block.cls.version,
-        parameters=as_quantities(shape) if shape else {},
+        parameters=as_typed(shape) if shape else {},
         relations={n: cell.raw for n, cell in block.cells.items() if cell.relations},
         missing=tuple(calculation.missing.get(block.name, ())),
         build=build_key(shape) if shape else None,

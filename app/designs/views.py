@@ -99,7 +99,10 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             **_heading(session, row),
             "steps": {name: results.steps.get(name) or _waiting(step) for name, step in steps.items()},
             "models": {
-                model.name: {**_model(session, model), "analyses": results.analyses.get(model.name, {})}
+                model.name: {
+                    **_model(session, model, row.document),
+                    "analyses": results.analyses.get(model.name, {}),
+                }
                 for model in models
             },
             "iterations": results.iterations,
@@ -157,8 +160,11 @@ def _waiting(typed: JsonObject) -> JsonObject:
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
 
 
-def _model(session: Session, row: RevisionModelRow) -> JsonObject:
+def _model(session: Session, row: RevisionModelRow, document: JsonObject) -> JsonObject:
+    build = rows.build(session, row.build_key) if row.build_key else None
+    stated = tolerances.stated(row, build, document["models"][row.name]["parameters"]) if build else {}
     return {
+        **({"tolerances": stated} if stated else {}),
         "id": row.model,
         "version": row.model_version,
         "parameters": row.parameters,

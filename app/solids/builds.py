@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.imported_models.programs import Programs
 from app.pool.sources import FileSource, Source, loaded, source_of
-from app.solids import measures, rows
+from app.solids import measures, rows, stated_tolerances
 from app.solids.rows import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
@@ -149,6 +149,7 @@ class Builds:
             "measures": build.measures,
             "dimensions": dimensions,
             "materials": build.materials,
+            stated_tolerances.MEMBER: stated_tolerances.recorded(build.tolerances),
         }
         if described := imported_description(type(shape)):
             measured["trust"] = described.trust

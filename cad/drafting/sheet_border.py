@@ -25,7 +25,7 @@ from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
 from cad.tolerances import Limits, TableTolerance, angle_tolerance, deviations, limits_of, number_of
-from templates.core.units.tolerance import IN_TABLE, is_toleranced
+from templates.core.units.tolerance import IN_TABLE
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
@@ -210,7 +210,7 @@ def _value(text: str, limits: Limits | None) -> str:
         return text.removesuffix(IN_TABLE)
     value, is_angle = size
     if is_angle:
-        within = angle_tolerance(text) if is_toleranced(text) else None
+        within = angle_tolerance(text)
         return " ".join((f"{number_of(value, 6)}°", *([_ends(within)] if within else [])))
     if limits is None:
         return number_of(value, 6)

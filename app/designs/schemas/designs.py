@@ -23,7 +23,7 @@ from app.schemas.criteria import Criterion, Verdict
 from app.schemas.problems import Problem
 from app.schemas.values import Given
 from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
-from app.solids.schemas.models import Measurements
+from app.solids.schemas.models import Measurements, StatedTolerance
 from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]
@@ -180,6 +180,11 @@ class RevisionModel(Answer):
     build: str | None = Field(description="key of its build; null while parameters are missing")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
     analyses: dict[str, ModelAnalysis]
+    tolerances: dict[str, StatedTolerance] = Field(
+        {},
+        description="where its files state tolerances, by parameter; absent before it is built, or if there "
+        "are none",
+    )
 
 
 class Round(Answer):

@@ -12,7 +12,7 @@ from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
 from app.schemas.problems import Problem
 from app.schemas.values import Given
-from app.solids.schemas.models import Measurements
+from app.solids.schemas.models import Measurements, StatedTolerance
 
 VariantState = Literal["current", "regenerating", "failed"]
 """`failed`: its solid could not be built or measured, see `problem`; other variants are not affected."""
@@ -29,6 +29,11 @@ class VariantModel(Answer):
     parameters: dict[str, Shown] = Field({}, description="every parameter, defaults included")
     artifacts: dict[str, str] = Field({}, description="SHA-256 of every file, by kind")
     measurements: Measurements | None = Field(None, description="absent until the model is built")
+    tolerances: dict[str, StatedTolerance] = Field(
+        {},
+        description="where its files state tolerances, by parameter; absent before it is built, or if there "
+        "are none",
+    )
     problem: Problem | None = Field(None, description="why the model could not be built; else absent")
 
 

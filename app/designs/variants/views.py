@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, tolerances
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
 from app.designs.result_table import table
@@ -145,6 +145,8 @@ class _Table:
         parts: JsonObject = {"problem": problem} if problem else {}
         if build is not None:
             parts["measurements"] = measures.measurements(**build.measurements).plain()
+            if stated := tolerances.stated(row, build):
+                parts["tolerances"] = stated
         return VariantModel.model_validate(
             {
                 "build": row.build_key,

@@ -35,6 +35,7 @@ from cad.file_kinds import plain_kind
 from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
+from cad.tolerances import not_stated
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.paper.schema import describe
 
@@ -154,6 +155,8 @@ async def build_model(
             Fault("artifacts", "unknown_name", f"{k[:40]!r} is not one of {offered}") for k in unknown
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
+    if faults := [*not_stated(type(shape), shape.ledger.typed)]:
+        raise InvalidInputs(faults)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
     job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
