@@ -58,6 +58,7 @@ class Stamp:
     title: str = ""
     number: str = ""
     mark: str = ""
+    rounded: str = ""  # parameters that the design rounds: calculated and chosen values
 
     @property
     def called(self) -> str:
@@ -111,6 +112,7 @@ class Stamp:
             "material": self._short_material,
             "mass": "" if self.mass is None else f"{self.mass:.4g} kg",
             "part": self.named,
+            "rounded": self.rounded,
         }
 
     @property

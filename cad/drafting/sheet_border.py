@@ -16,6 +16,7 @@ from cad.drafting.title import (
     FIELDS,
     GENERAL,
     HEIGHT,
+    ROUNDED,
     SIZES,
     SURFACES,
     TEXTURE,
@@ -152,8 +153,11 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
         f"build {header.build[:32]}" if header else "",
         "* no dimension shows it, or its tolerance" if unseen else "",
     ]
-    for row, text in enumerate(filter(None, lines)):
+    written = [*filter(None, lines)]
+    for row, text in enumerate(written):
         page.write(text, left, top - 5.0 * row, 2.5)
+    stamped = page.write("", left, top - 5.0 * len(written), ROUNDED.letters)
+    stamped.set_xdata(APP, [(1000, f"{MARK}{ROUNDED.mark}")])
     y = EDGE + 4.0
     text = f"Ra {TEXTURE:g}"
     reach = width_of(text, 2.5)

@@ -71,7 +71,10 @@ FIELDS = (
     Field("projection", "projection", 145, 0, 35, 9, is_stamped=False),
 )
 
-STAMPED: Mapping[str, Field] = {field.mark: field for field in FIELDS if field.is_stamped}
+ROUNDED = Field("rounded", "", 0, 0, 206, 5)
+"""The note on rounded parameters, to the left of the block; an A3 sheet has so much room for it."""
+
+STAMPED: Mapping[str, Field] = {field.mark: field for field in (*FIELDS, ROUNDED) if field.is_stamped}
 """The fields that a stamp fills in, by their marks."""
 
 GENERAL = "ISO 2768-mK"

@@ -41,8 +41,7 @@ from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
 from cad.drafting.paper import TYPESETTER
-from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import plain_kind, with_deflection, with_part
+from cad.file_kinds import DRAWINGS, MEDIA_TYPES, plain_kind, with_deflection, with_part
 from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
