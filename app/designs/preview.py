@@ -17,7 +17,8 @@ from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
 from app.designs.parameter_explanation import shown
 from app.designs.results import Outcome
-from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
+from app.designs.roundings import as_member
+from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, RoundedValue, Status
 from app.designs.variants.checks import checked
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
@@ -88,6 +89,7 @@ def preview(
         },
         warnings=[*_warnings(steps), *tolerances.warnings(changed.model_dump())],
         model_parameters=_model_parameters(old, new, mismatched),
+        **_rounded(new),
     ).in_units(asked.system)
     if asked.worksheet:
         content.steps, content.parameters = previewed(new, steps, asked.system), _values(new)
@@ -168,6 +170,10 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
         for name, step in steps.items()
         for warning in step.warnings
     ]
+
+
+def _rounded(new: Calculation) -> dict[str, list[RoundedValue]]:
+    return {name: list(map(RoundedValue.model_validate, rows)) for name, rows in as_member(new).items()}
 
 
 def _values(new: Calculation) -> dict[str, Shown]:

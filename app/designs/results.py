@@ -15,6 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
 from app.designs.result_cells import cells
+from app.designs.roundings import ROUNDED, as_member, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
@@ -52,6 +53,7 @@ def stored(
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
+        **as_member(calculation),
         "steps": steps(calculation, criteria),
         "iterations": rounds,
         "analyses": analyses(calculation),
@@ -61,7 +63,7 @@ def stored(
         outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
     }
     if outcomes:
-        base = _variant({}, own, single_outputs(calculation), {}, None)
+        base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
         results |= _governing(criteria, outcomes, results["steps"])
     return results
@@ -158,7 +160,14 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
 
 
 def _outcome(outcome: Outcome) -> JsonObject:
-    return _variant(outcome.values, outcome.judgements, outcome.outputs, outcome.failures, outcome.problem)
+    return _variant(
+        outcome.values,
+        outcome.judgements,
+        outcome.outputs,
+        outcome.failures,
+        outcome.problem,
+        rounded(outcome.calculation) if outcome.calculation else [],
+    )
 
 
 def _variant(
@@ -167,6 +176,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
+    chosen: Sequence[JsonObject],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {
@@ -174,6 +184,7 @@ def _variant(
         "outputs": dict(outputs),
         "failures": dict(failures),
         "problem": problem,
+        ROUNDED: list(chosen),
     }
     return {**{name: part for name, part in parts.items() if part}, **rendered(worst_first(judgements))}
 

@@ -106,6 +106,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
                 for model in models
             },
             "iterations": results.iterations,
+            **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
         }
@@ -113,13 +114,14 @@ def revision(session: Session, row: RevisionRow) -> Revision:
 
 
 def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
-    """Return the variant that governs, and the revision with the steps of this variant.
+    """Return the variant that governs, and the revision with the steps and rounded values of this variant.
 
     The name is empty if the design itself governs.
     """
     results, own = results_of(session, row), revision(session, row)
     steps = {**own.steps, **results.governing_steps}
-    return results.governing, own.model_copy(update={"steps": steps})
+    rounded = results.rounded.get(results.governing or None, [])
+    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:

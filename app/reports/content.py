@@ -265,5 +265,6 @@ class Report:
     steps: list[Step]
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
+    rounded: list[Line] = field(default_factory=list)
     variants: Variants | None = None
     author: str = ""  # who saved the revision; empty on a service without keys

@@ -23,8 +23,8 @@ from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
 from cad.errors import AnalysisError, GeometryError, ProgramMissing
-from cad.export import DRAWINGS, derive
-from cad.file_kinds import plain_kind
+from cad.export import derive
+from cad.file_kinds import DRAWINGS, plain_kind
 from cad.imported_models import ImportedModel, ProgramResult, imported_description
 from cad.model import CadModel
 from cad.regenerate import (

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.calculations.schemas.evaluations import Output, UsedInput
+from app.designs.schemas.designs import RoundedValue
 from app.designs.schemas.result_table import ResultTable
 from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
@@ -51,6 +52,7 @@ class VariantResult(Answer):
     verdict: Verdict | None = Field(None, description="verdict over all criteria of the variant")
     models: dict[str, VariantModel] = Field({}, description="by name")
     outputs: dict[str, Output] = Field({}, description="requested outputs, by their names in relations")
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     problem: Problem | None = Field(None, description="why the variant failed; else absent")
 
 
@@ -67,6 +69,7 @@ class VariantDetail(Answer):
         {}, description="inputs of its steps as used, by their names in relations"
     )
     outputs: dict[str, Output] = Field(description="requested outputs, else all, by their names in relations")
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     criteria: list[Criterion] = Field(
         [], description="criteria of the variant, worst first; absent if there are none"
     )

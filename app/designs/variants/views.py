@@ -13,6 +13,7 @@ from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
 from app.designs.result_table import table
 from app.designs.results import TABLE
+from app.designs.roundings import ROUNDED
 from app.designs.schemas.result_table import ResultTable
 from app.designs.schemas.variants import (
     GoverningVariant,
@@ -120,7 +121,7 @@ class _Table:
             for model in self.models.get(name, ())
         }
         parts: JsonObject = {
-            **{part: result[part] for part in ("criteria", "verdict", "problem") if part in result},
+            **{part: result[part] for part in ("criteria", "verdict", "problem", ROUNDED) if part in result},
             **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
         }
         return VariantResult.model_validate(

@@ -30,8 +30,7 @@ from app.solids.schemas.models import Build, Verification
 from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import plain_kind
+from cad.file_kinds import MEDIA_TYPES, SHOWN, plain_kind
 from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -63,9 +62,9 @@ class BuildIn(Bounded):
 
     parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
     artifacts: list[FileKind] = Field(
-        [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        list(SHOWN),
         max_length=50,
-        description="kinds of files to create; default: all but dimensioned drawings",
+        description="kinds of files to create, besides STEP; by default those that a page shows",
     )
 
 
