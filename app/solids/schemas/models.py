@@ -121,8 +121,8 @@ class StepStatement(Answer):
         "`centroid`, `density`, `material`"
     )
     name: str = Field(
-        description="name of the parameter, datum, attribute or part; a pitch circle is stated by its radius, "
-        "`bolt_circle_diameter/2`"
+        description="name of the parameter, datum, attribute or part; a pitch circle is stated by its "
+        "radius, `bolt_circle_diameter/2`"
     )
     unit: str | None = Field(description="unit of the numbers; null for texts")
     expected: list[float | str] | None = Field(
