@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from cad.drafting.cross_sections import cross_sections
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
 from cad.drafting.measures import lengths, measures
@@ -47,7 +48,8 @@ class Content:
     def plans(self) -> Iterator[Plan]:
         """Yield the sheets and scales in the order in which they are tried."""
         elsewhere = sum(len(one.dimensions) for one in self.removed)
-        return plans(self.section, self.end, self.dimensions, elsewhere)
+        below = any(one.stations for one in self.removed)
+        return plans(self.section, self.end, self.dimensions, elsewhere, below=below)
 
     def missing(self, without: Dimension | None = None) -> list[str]:
         """Return descriptions of everything that the dimensions leave undefined.
@@ -105,7 +107,10 @@ def contents(
         *standing([*seen.values()], section, end),
     ]
     features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame)
-    removed = removed_sections(declared, parameters, bodies, seen, end)
+    removed = [
+        *removed_sections(declared, parameters, bodies, seen, end),
+        *cross_sections(declared, parameters, bodies, seen, end),
+    ]
     for some in ([removed] if removed else []) + [[]]:
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}

@@ -147,7 +147,7 @@ class FileRequest:
             kind = self._stored_kind(wanted)
             is_drawing = plain_kind(kind) in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
-            stamp = self.title_block.on(stamp, wanted)
+            stamp = replace(self.title_block.on(stamp, wanted), part=self.part or "")
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:

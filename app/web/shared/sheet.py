@@ -161,7 +161,7 @@ def _hint(declared: DeclaredValue) -> str:
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:
-        return "follows from the rest"
+        return "calculated"
     example = next(iter(declared.examples), None)
     return f"such as {text_of(example)}" if example is not None else "not given"
 
