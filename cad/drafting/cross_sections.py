@@ -45,7 +45,7 @@ class _Web:
         """Return whether both sections look the same."""
         one, two = (sorted(_corners(web.view)) for web in (self, other))
         return len(one) == len(two) and all(
-            hypot(a[0] - b[0], a[1] - b[1]) < 1e-3 for a, b in zip(one, two, strict=True)
+            hypot(a[0] - b[0], a[1] - b[1]) < 2e-3 for a, b in zip(one, two, strict=True)
         )
 
 
@@ -111,9 +111,9 @@ def _pins(seen: PartSurfaces, span: tuple[float, float], frame: Frame) -> tuple[
 
 
 def _corners(view: View) -> Iterator[Point]:
+    """Yield the corners of the outer outlines; bores and drillings make no web another one."""
     for cut in view.cut:
-        for line in cut.outlines:
-            yield from ((x, y) for x, y, _ in line)
+        yield from ((round(x, 3) + 0.0, round(y, 3) + 0.0) for x, y, _ in cut.outlines[0])
 
 
 def _dimensioned(

@@ -283,7 +283,7 @@ class Definition:
 
     def _turns(self, hole: Hole) -> list[float]:
         """Return the directions of the holes that are like one, ascending [deg]."""
-        return sorted({round(one.turn % 360, 3) for one in self.features.holes if one.is_like(hole)})
+        return sorted({round(one.turn, 3) % 360 for one in self.features.holes if one.is_like(hole)})
 
     def is_spaced(self, hole: Hole) -> bool:
         """Return whether a hole belongs to at least three that are evenly spaced on a circle.

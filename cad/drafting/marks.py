@@ -114,7 +114,7 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
     middles = _middles(view, plan)
     turns = defaultdict[float, list[float]](list)
     for x, y in middles:
-        turns[round(hypot(x, y), 3)].append(degrees(atan2(y, x)) % 360)
+        turns[round(hypot(x, y), 3)].append(round(degrees(atan2(y, x)), 3) % 360)
     pitch = [size for size, some in turns.items() if size > 0 and _are_even(sorted(some))]
 
     def lines() -> Iterator[Segment]:
