@@ -59,10 +59,10 @@ def stored(
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
-    results[TABLE] = {BASE: cells(calculation)} | {
-        outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
-    }
     if outcomes:
+        results[TABLE] = {BASE: cells(calculation)} | {
+            outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
+        }
         base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
         results |= _governing(criteria, outcomes, results["steps"])
