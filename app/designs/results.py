@@ -70,7 +70,7 @@ def stored(
 
 
 def _governing(
-    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, JsonObject]
+    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, object]
 ) -> JsonObject:
     """Return the steps of the governing variant that differ from the design's own, for its report.
 
