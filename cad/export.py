@@ -86,7 +86,7 @@ def _write_3mf(bodies: Sequence[Body], header: Header | None, deflection: float 
 
 
 def _write_brep(bodies: Sequence[Body], _header: Header | None) -> bytes:
-    """Return the shapes in OpenCASCADE's own text format: one alone as it is, several as a compound."""
+    """Return the shapes in OpenCASCADE's own text format; several shapes become one compound."""
     shapes = [body.shape.moved(place) for body in bodies for place in body.places]
     stream = io.BytesIO()
     (shapes[0] if len(shapes) == 1 else Compound.makeCompound(shapes)).exportBrep(stream)

@@ -138,5 +138,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """Return the largest diagonal of the bounding box of a body [mm]; its positions do not matter."""
+    """Return the largest diagonal of the bounding box of any body [mm], regardless of positions."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

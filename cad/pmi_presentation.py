@@ -46,14 +46,14 @@ class Sheet:
         self._rows = 0
 
     def drawn(self, text: str, faces: Sequence[Shape]) -> TopoDS_Compound:
-        """Return the lines of a text [mm] and of a leader from each face to it.
+        """Return the lines of a text [mm], and a leader to it from each point.
 
         Parameters
         ----------
         text
-            Letters of `_STROKES`; others are left out.
-        faces
-            Faces of the parts at which the leaders end.
+            Letters for which `_STROKES` has strokes; others are omitted.
+        points
+            Points of the solid [mm] at which the leaders end.
         """
         start = self._corner - Vector(0, 0, self._rows * _ROW * self._unit)
         self._rows += 1
@@ -85,7 +85,7 @@ def _nearest(point: Vector, face: Shape) -> Vector:
 
 
 def strokes(letter: str) -> list[Stroke]:
-    """Return the strokes of a letter on a grid of 4 by 6; nothing if it has none."""
+    """Return the strokes of a letter on a grid of 4 by 6; an empty list if it has none."""
     return [
         tuple((float(point[0]), float(point[1])) for point in stroke.split())
         for stroke in _STROKES.get(letter, "").split(",")

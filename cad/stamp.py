@@ -78,7 +78,7 @@ class Stamp:
 
     @property
     def part_number(self) -> str:
-        """Return the product id in ASCII: the given number, or else design, variant and model.
+        """Return the product id in ASCII: the given number, otherwise design, variant and model.
 
         The id does not contain the revision, so that a PDM system sees one part with several revisions.
         """
@@ -86,7 +86,7 @@ class Stamp:
 
     @property
     def named(self) -> str:
-        """Return the model with its variant."""
+        """Return the name of the model, with its variant."""
         return ", ".join(filter(None, (self.variant, self.model)))
 
     @property
@@ -123,7 +123,7 @@ class Stamp:
 
     @property
     def material(self) -> str:
-        """Return the materials of all parts, each once; several materials have the names of their parts."""
+        """Return the distinct materials of all parts; several are listed with the names of their parts."""
         parts: dict[str, list[str]] = {}
         for part, material in self.materials.items():
             parts.setdefault(material, []).append(part)
@@ -133,13 +133,13 @@ class Stamp:
 
 
 def stamped(file: bytes, kind: str, stamp: Stamp) -> bytes:
-    """Return the file of that kind with its stamp; unchanged if the kind has no stamp."""
+    """Return a file with its stamp; a file of a kind without a stamp is unchanged."""
     write = _WRITERS.get(kind)
     return write(file.decode(_ENCODING[kind]), stamp).encode(_ENCODING[kind]) if write else file
 
 
 def takes_stamp(file: bytes, kind: str) -> bool:
-    """Return whether a file has the lines that a stamp fills in; drawings from older programs have none."""
+    """Return whether a file has the lines that a stamp fills in; drawings from older programs lack them."""
     return kind not in _MARKS or _MARKS[kind] in file
 
 
@@ -168,7 +168,7 @@ class _Hole:
 
 
 def _holes(text: str) -> list[_Hole]:
-    """Return all such positions in the order of the text: file and time, products, their versions."""
+    """Return the positions to fill in, in text order: file and time, products, product versions."""
     file = _FILE.search(text)
     holes = [_Hole(*file.span(1), 2, _file)] if file else []
     for number, product in enumerate(_PRODUCT.finditer(text)):
@@ -212,7 +212,7 @@ def _stamped_step(text: str, stamp: Stamp) -> str:
 
 
 def _behind_strings(text: str, place: int, count: int) -> int:
-    """Return the position after at most this number of strings with commas between them."""
+    """Return the position after a sequence of at most this many strings, separated by commas."""
     for number in range(count):
         if number:
             place = _behind_comma(text, place)
@@ -232,9 +232,9 @@ def _stamped_svg(text: str, stamp: Stamp) -> str:
 
 
 def _stamped_dxf(text: str, stamp: Stamp) -> str:
-    """Return the DXF with its stamp. DXF is pairs of lines, a code and its value.
+    """Return the DXF with its stamp.
 
-    The mark of a text follows the text.
+    DXF consists of pairs of lines, a code and its value; the mark of a text comes after the text.
     """
     lines, written = text.split("\n"), _lines(stamp)
     last = 0

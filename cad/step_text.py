@@ -62,14 +62,14 @@ def finished(
 
 
 def without_noise(text: str) -> str:
-    """Return the kernel's text with 0 for every coordinate below 1e-12 in magnitude."""
+    """Return the kernel's text with every coordinate below 1e-12 in magnitude replaced by 0."""
     return _POINT.sub(lambda point: _NOISE.sub("0.", point[0]), text)
 
 
 def _usage(start: str, number: int, rest: str) -> str:
-    """Return an assembly usage with its number in the file; line breaks do not depend on the kernel's number.
+    """Return an assembly usage with its number in the file; its line breaks do not depend on the kernel.
 
-    The kernel's writer may break before a comma; here a comma stays on the line of the preceding word.
+    The kernel's writer may break a line before a comma; here a comma stays on the line of the preceding word.
     """
     lines = [f"{start}'{number}',"]
     for token in _TOKEN.findall(rest.replace("\n  ", "").removesuffix(")")):
@@ -122,7 +122,7 @@ def _styles(data: str, colours: Iterable[Colour]) -> str:
 def _last_number(data: str) -> int:
     """Return the number of the last entity of a data section.
 
-    Search from its end, because the section is long.
+    The search begins at its end, because the section is long.
     """
     place = data.rfind("\n#")
     while (last := _NUMBER.match(data, place + 1)) is None:

@@ -9,6 +9,9 @@ tolerances:
         "wall": {},
     }
 
+A tolerance that no face can carry must be marked (`, in table` or `state_in_table`); the table of a drawing
+then states it.
+
 `datum` makes the faces of the dimension a datum. `cylindricity`, `perpendicularity` and `parallelism` are
 shares of the dimension's own tolerance, which is the upper minus the lower limit; the last two need `to`, the
 datum. They are written only if the dimension has a tolerance. The declaration does not affect results, so a
@@ -26,10 +29,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
-from templates.core.errors import FaultyText
+import numpy as np
+
+from cad.lists import listed
+from templates.core.errors import Fault, FaultyText
 from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity, read
-from templates.core.units.tolerance import Tolerance
+from templates.core.units.tolerance import IN_TABLE, Tolerance, is_toleranced
 from templates.core.units.units import unit
 
 if TYPE_CHECKING:
@@ -64,6 +70,22 @@ class FormTolerances:
 
 
 @dataclass(frozen=True)
+class TableTolerance:
+    """The limit deviations of a parameter in its declared unit, which only the table of a drawing states."""
+
+    lower: float
+    upper: float
+    zone: str | None = None
+
+    def written(self, text: str, unit: str) -> str:
+        """Return a quantity's text with its limits: `0.055 mm +0.005/-0.005 mm, in table`."""
+        if self.zone is not None:
+            return f"{text} {self.zone}{IN_TABLE}"
+        name = f" {unit}" if unit != "1" else ""
+        return f"{text} {self.upper:+.12g}/{self.lower:+.12g}{name}{IN_TABLE}"
+
+
+@dataclass(frozen=True)
 class Limits:
     """A dimension [mm] with its limit deviations [mm], and the zone of ISO 286 from which they come."""
 
@@ -71,6 +93,7 @@ class Limits:
     lower: float
     upper: float
     zone: str | None = None
+    state_in_table: bool = False
 
     @property
     def width(self) -> float:
@@ -78,7 +101,7 @@ class Limits:
         return round(self.upper - self.lower, _DIGITS)
 
     def share(self, part: float) -> float:
-        """Return a share of the width [mm], as the declarations of geometric tolerances use it."""
+        """Return a share of the width [mm], as declarations of geometric tolerances specify it."""
         return round(self.width * part, _DIGITS)
 
 
@@ -94,12 +117,12 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, FormTolerances]:
-    """Return the declarations of tolerances of a model, by parameter.
+    """Return the tolerance declarations of a model, by parameter.
 
     Raises
     ------
     TypeError
-        If the declaration is wrong; the message names the parameter and states what would be right.
+        If a declaration is wrong; the message names the parameter and states what would be right.
     """
     read_ = {name: _carried(cls, name, dict(said)) for name, said in cls.toleranced.items()}
     letters = {one.datum for one in read_.values() if one.datum}
@@ -143,6 +166,69 @@ def limits(model: TolerancedTemplate) -> dict[str, Limits]:
     )
 
 
+def table_tolerances(model: TolerancedTemplate) -> dict[str, TableTolerance]:
+    """Return the tolerances that only the table of a drawing may state, by parameter."""
+    on_faces = limits(model)
+    return {
+        name: TableTolerance(*_ends(typed, model.inputs[name].meaning.unit), tolerance.zone)
+        for name, typed, tolerance in _given(model)
+        if name not in on_faces and tolerance.state_in_table
+    }
+
+
+def not_stated(model: TolerancedTemplate) -> Iterator[Fault]:
+    """Yield a fault for each tolerance that no face can carry and that no table is to state."""
+    on_faces = limits(model)
+    for name, typed, tolerance in _given(model):
+        if name in on_faces:
+            continue
+        if np.ndim(tolerance.lower) or np.ndim(tolerance.upper):
+            detail = "the items of a list share one tolerance: give `plus` and `minus` beside the list"
+            yield Fault(name, "tolerance_not_stated", detail)
+        elif not tolerance.state_in_table:
+            detail = f"no file can state its tolerance at a face: {why_no_face(type(model), name, typed)}"
+            yield Fault(name, "tolerance_not_stated", f"{detail}; {REMEDY}")
+
+
+REMEDY = (
+    "omit the tolerance, or let the table of the drawing state it: end the text with `, in table`, or set "
+    "`state_in_table` to true in an object"
+)
+
+
+def why_no_face(cls: type[TolerancedTemplate], name: str, typed: TypedQuantity | str) -> str:
+    """Return why no face can carry the tolerance of a parameter."""
+    if unit(cls.inputs[name].meaning.unit).base != unit("m").base:
+        return "faces carry tolerances of lengths only"
+    if not cls.toleranced:
+        return "the model does not tell which faces have its lengths"
+    if isinstance(typed, TypedQuantity) and np.ndim(typed.si):
+        return "it is a list, and faces carry tolerances of single lengths"
+    return "this length is not the size of a face, nor the distance of two faces"
+
+
+def _given(model: TolerancedTemplate) -> Iterator[tuple[str, TypedQuantity, Tolerance]]:
+    """Yield the parameters that have a tolerance whose limits differ."""
+    for name, typed in model.ledger.typed.items():
+        if not isinstance(typed, TypedQuantity) or (tolerance := typed.tolerance) is None:
+            continue
+        if np.any(np.asarray(tolerance.upper) - tolerance.lower > 0):
+            yield name, typed, tolerance
+
+
+def _ends(typed: TypedQuantity, name: str) -> tuple[float, float]:
+    """Return the lower and upper limit deviation in a unit."""
+    tolerance, factor = typed.tolerance, unit(name).factor
+    assert tolerance is not None
+    lower, upper = (float(f"{float(end) / factor:.12g}") + 0.0 for end in (tolerance.lower, tolerance.upper))
+    return lower, upper
+
+
+def toleranced_in(texts: Mapping[str, str]) -> list[str]:
+    """Return the names of the parameters given as text that have a tolerance, of any kind and unit."""
+    return [name for name, text in texts.items() if is_toleranced(listed(text))]
+
+
 def limits_in(header: Header) -> dict[str, Limits]:
     """Return the limits in the header of a STEP file, by parameter; files without tolerances have none."""
     return limits_of(header.parameters)
@@ -171,15 +257,17 @@ def _single(pairs: Iterator[tuple[str, TypedQuantity]]) -> Iterator[tuple[str, L
             ends = tolerance.lower, tolerance.upper
             lower, upper = (round(float(end) * 1e3, _DIGITS) + 0.0 for end in ends)
             if lower < upper:
-                yield name, Limits(round(si * 1e3, _DIGITS), lower, upper, tolerance.zone)
+                nominal = round(si * 1e3, _DIGITS)
+                yield name, Limits(nominal, lower, upper, tolerance.zone, tolerance.state_in_table)
 
 
 def written(text: str, name: str, within: Limits) -> str:
-    """Return a quantity's text with its limits: `48 mm H7`, `48 mm +0.05/-0.02 mm`; `name` is its unit."""
+    """Return a quantity with its limits as text, `48 mm H7` or `48 mm +0.05/-0.02 mm`; `name` is its unit."""
+    end = IN_TABLE if within.state_in_table else ""
     if within.zone is not None:
-        return f"{text} {within.zone}"
+        return f"{text} {within.zone}{end}"
     lower, upper = in_unit(within, name)
-    return f"{text} {upper:+.12g}/{lower:+.12g} {name}"
+    return f"{text} {upper:+.12g}/{lower:+.12g} {name}{end}"
 
 
 def in_unit(within: Limits, name: str) -> tuple[float, float]:
@@ -189,8 +277,16 @@ def in_unit(within: Limits, name: str) -> tuple[float, float]:
     return lower, upper
 
 
-def deviations(limits: Limits) -> tuple[str, str]:
-    """Return the upper and lower deviation [mm] with equal decimals; `±0.1` and nothing if they are equal."""
+def angle_tolerance(text: str) -> TableTolerance:
+    """Return the limit deviations [deg] of an angle given as text."""
+    return TableTolerance(*_ends(read(text, "deg"), "deg"))
+
+
+def deviations(limits: Limits | TableTolerance) -> tuple[str, str]:
+    """Return the upper and lower deviation with equally many decimals.
+
+    If they have the same magnitude, return `±0.1` and an empty text.
+    """
     texts = [f"{end:.6f}".rstrip("0") for end in (limits.upper, limits.lower)]
     digits = max(1, *(len(text.partition(".")[2]) for text in texts))
     if limits.upper == -limits.lower:
@@ -200,5 +296,5 @@ def deviations(limits: Limits) -> tuple[str, str]:
 
 
 def number_of(value: float, digits: int) -> str:
-    """Return a number with at most this many decimals."""
+    """Return a number as text with at most the given number of decimals."""
     return f"{value:.{digits}f}".rstrip("0").rstrip(".")

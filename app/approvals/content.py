@@ -35,7 +35,7 @@ def present(session: Session, row: RevisionRow) -> Present:
 
 
 def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
-    """Return the criteria of a revision as judged; with variants, each criterion at its worst variant."""
+    """Return the judged criteria of a revision; with variants, each has the verdict of its worst variant."""
     judged = results_of(session, row).judged.get("criteria")
     return judged if isinstance(judged, list) else []
 

@@ -80,7 +80,10 @@ def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Refer
 
 
 def _of_models(graph: Graph, model: Block, called: str) -> Iterator[Reference]:
-    """Yield values with a name of models before it in the alphabet: outputs, and parameters that are set."""
+    """Yield the values with this name that other models provide: outputs, and parameters that are set.
+
+    Only models whose names come earlier in the alphabet count.
+    """
     for _, other in sorted(graph.blocks.items()):
         if other is model:
             return  # one direction alone never forms a loop
@@ -115,7 +118,7 @@ def _share_a_role(step: Block, model: Block) -> bool:
 
 
 def _is_namesake(source: Reference, model: Block) -> bool:
-    """Return whether the names of a step and a model share a word, as `front_shell` and `front_film` do."""
+    """Return whether the names of a step and a model share a word, as do `front_film` and `front_shell`."""
     block = source.block if source.output is not None else ""
     return not set(block.split("_")).isdisjoint(model.name.split("_"))
 

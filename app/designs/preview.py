@@ -56,7 +56,7 @@ def preview(
 ) -> Reply[PreviewRequest, Preview]:
     """Return the old and new values for a patch of a design; nothing is saved or built.
 
-    If values depend on deferred steps, the answer is incomplete and comes with the request to continue.
+    If values depend on deferred steps, the answer is incomplete and comes with the request to continue with.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def _variants(
     Raises
     ------
     InvalidInputs
-        With the faults that would also make a save refuse the table.
+        With the faults for which a save would refuse the table as well.
     """
     outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
     raise_if(faults)

@@ -51,12 +51,12 @@ class SensitivityQuestion:
 
     @property
     def values(self) -> list[Reference]:
-        """Return the name as a reference if it is a value; else nothing."""
+        """Return the name as a reference if it is a value; otherwise nothing."""
         return [] if self.subject else [Reference.parse(self.name)]
 
     @property
     def criteria(self) -> list[str]:
-        """Return the name if it is a criterion; else nothing."""
+        """Return the name if it is a criterion; otherwise nothing."""
         return [self.name] if self.subject else []
 
     @property
@@ -118,7 +118,7 @@ def _rank(item: Sensitivity) -> tuple[int, float]:
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """Return a sentence that the list of quantities is incomplete; None if it is complete."""
+    """Return a sentence saying that the list of quantities is incomplete; None if it is complete."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
@@ -182,20 +182,20 @@ class DifferenceRows:
             )
 
     def _at(self) -> str:
-        """Return the levels of the calculated steps as words in brackets, for a message."""
+        """Return the levels of the calculated steps in words, in brackets, for a message."""
         steps = [step.name for step in self._engine.design.steps(self.asked.wanted)]
         used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
         return f" ({', '.join(used)})" if used else ""
 
     def _check(self, value: Array, table: Table) -> None:
-        """Raise InvalidInputs if the value cannot have a slope."""
+        """Raise InvalidInputs if a slope of the value is not defined."""
         if value.ndim > 1:
             raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 
     def _missing(self, table: Table) -> str:
-        """Return why the design has no value at the design point."""
+        """Return the reason why the value is missing at the design point."""
         waiting = self._engine.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
@@ -245,7 +245,7 @@ class DifferenceRows:
 
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
-    """Return why a slope is missing or one-sided; None if it is central."""
+    """Return the reason why a slope is missing or one-sided; None if it is central."""
     missing = [row for row in (below, above) if not math.isfinite(value[row])]
     if not missing:
         return None

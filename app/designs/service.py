@@ -60,7 +60,7 @@ class CalculationCache:
         self._cache = cache or Cache(MEGABYTES)
 
     def keep(self, plain: Mapping[str, Json], prepared: DocumentCalculation) -> None:
-        """Cache the calculation of a document, which is given as JSON."""
+        """Cache the calculation of a document; the document is given as JSON."""
         text = canonical_json(plain).encode()
         self._cache.keep(_digest(text), prepared, BYTES * len(text))
 
@@ -248,7 +248,7 @@ class Designs:
     def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
         """Return a document as read, and its calculation with the existing solids.
 
-        Faults in values are left in the calculation.
+        The calculation keeps faults of values.
 
         Raises
         ------
@@ -272,7 +272,7 @@ class Designs:
         once: Once,
         action: str,
     ) -> SaveResult:
-        """Return the revision after `base` with another document; `base` if the document is unchanged."""
+        """Return the revision after `base` with another document, or `base` if the document is unchanged."""
         draft = self.draft(raw, note, action)
         is_changed = base.document != draft.written.document
 
@@ -321,7 +321,7 @@ class Designs:
             return None
 
     def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
-        """Return the revision to save for a document; a job adds its results if any value is pending.
+        """Return the revision to save for a document; a job adds its results if a value is pending.
 
         Raises
         ------
@@ -362,7 +362,7 @@ class Designs:
         return checked(document, base, Available(self.catalogues, *self._solids))
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
-        """Return all faults in the variants of a document that would make a save refuse it.
+        """Return all faults of a document's variants that would prevent a save.
 
         Raises
         ------
@@ -411,7 +411,7 @@ def _with_builds(session: Session, draft: Draft) -> Draft:
 
 
 def _kind(graph: Graph, is_deferred: bool) -> str:
-    """Return the kind of job that completes a design."""
+    """Return the kind of job that completes a revision of the design."""
     if analyses_wanted(graph):
         return REGENERATE_SLOWLY
     return CALCULATE if is_deferred else REGENERATE
@@ -429,7 +429,7 @@ class _UsualWay(Exception):
 
 
 def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> StoredRevision:
-    """Return the content of a revision under a new name."""
+    """Return the content of the new revision that a renaming creates."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)

@@ -170,7 +170,7 @@ class _SolutionText:
         yield Warning(code="tolerance_unmet", name=self.curve.y.name, detail=f"{detail}{self._kept_level()}")
 
     def _kept_level(self) -> str:
-        """Return the words that the design fixes the level of the target's step; empty if it does not."""
+        """Return a remark that the design fixes the level of the target's step; empty if it does not."""
         step = self.document.steps.get(self.solution.scanned.target.block)
         level = step.level if step else None
         return f": the design fixes level {level} for {self.solution.scanned.target.block}" if level else ""

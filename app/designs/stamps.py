@@ -38,7 +38,7 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
 
 
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
-    """Return the stamp with the title-block entries of the approval, which change with every approval step.
+    """Return the stamp with the title-block entries of the approval, which every approval step changes.
 
     After the submission, the name of the author no longer changes.
     """

@@ -58,7 +58,7 @@ def _design(
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
-            **{name: document[name] for name in ("criteria",) if name in document},
+            **{name: document[name] for name in ("criteria", "table") if name in document},
             **_variants(document),
             "problem": problem,
             "created": created,
@@ -68,7 +68,7 @@ def _design(
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """Return the member `variants` of a design, in natural order of the names; empty if there are none."""
+    """Return the member `variants` of a design in natural order of the names; empty if there are none."""
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -109,6 +109,16 @@ def revision(session: Session, row: RevisionRow) -> Revision:
     )
 
 
+def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
+    """Return the variant that governs, and the revision with the steps of this variant.
+
+    The name is empty if the design itself governs.
+    """
+    results, own = results_of(session, row), revision(session, row)
+    steps = {**own.steps, **results.governing_steps}
+    return results.governing, own.model_copy(update={"steps": steps})
+
+
 def summary(session: Session, row: RevisionRow) -> Revision:
     """Return a revision without its steps, models and results."""
     return Revision.model_validate({**_heading(session, row), "steps": {}, "models": {}, "iterations": []})
@@ -130,18 +140,18 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """Return the released revision that this one replaces, and the state of its approval, if any."""
+    """Return the released revision that this one replaces, and the state of its approval, if there is one."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Return the author of an action with their present name; None if no author is recorded."""
+    """Return the author of an action under their present name; None if no author is recorded."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """Return a step as typed while it waits for a solid or a job."""
+    """Return a step as its user typed it, while it waits for a solid or a job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
@@ -185,7 +195,7 @@ def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, 
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """Return the model to serve: from one revision, or from the newest valid one.
+    """Return the model to serve, from the given revision or from the newest valid one.
 
     Raises
     ------

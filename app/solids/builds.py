@@ -1,4 +1,4 @@
-"""Create builds in a worker process, and store them with their STEP files; other files only on request.
+"""Create builds in a worker process, and store them with their STEP files; create other files on request.
 
 If a file that a row names is missing or damaged, it is rebuilt. Equal rows give equal bytes, so the hash in
 the row verifies the result.
@@ -201,7 +201,7 @@ def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Progr
 
 
 def rehearse(called: Callable[[], bool]) -> None:
-    """Build a small solid in an idle worker process, because a first build takes twice as long as a second.
+    """Build a small solid in an idle worker process, because a process's first build takes twice as long.
 
     Raises
     ------

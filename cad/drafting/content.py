@@ -20,6 +20,7 @@ from cad.header import Header
 from cad.inspect import look_at
 from cad.step import Body, rigid
 from cad.surfaces import PartSurfaces, Surface, Z
+from cad.tolerances import toleranced_in
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Content:
     Attributes
     ----------
     unseen
-        Parameters that no dimension shows.
+        Parameters that no dimension shows, or whose tolerances none shows.
     undefined
         Features that the dimensions must define; None for an assembly, whose parts have their own sheets.
     repeated
@@ -112,6 +113,7 @@ def contents(
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
         dimensions, unseen = matched(rest, declared.sizes, shown, declared.limits)
+        unseen += _in_table_alone(parameters, dimensions, some, unseen)
         if features is not None:
             definition = Definition.of(features)
             for one in some:
@@ -127,6 +129,18 @@ def _standing(seen: PartSurfaces, body: Body) -> PartSurfaces:
     if len(body.places) > 1 or not rings or hypot(*shift[:2]) < max(one.diameter for one in rings):
         return seen
     return seen.moved(turn, shift)
+
+
+def _in_table_alone(
+    parameters: Mapping[str, str],
+    dimensions: Sequence[Dimension],
+    removed: Sequence[RemovedSection],
+    unseen: Sequence[str],
+) -> list[str]:
+    """Return further parameters whose tolerances no dimension shows."""
+    drawn = [*dimensions, *(one for section in removed for one in section.dimensions)]
+    stated = {one.name for one in drawn if one.limits} | {*unseen}
+    return [name for name in toleranced_in(parameters) if name not in stated]
 
 
 def _defined(declared: DrawingDeclaration, seen: Mapping[str, PartSurfaces]) -> list[Surface]:

@@ -160,7 +160,7 @@ def smoothed(points: Polyline) -> Polyline:
 def joined(curves: Iterable[Curve], without: Sequence[Curve] = ()) -> list[Curve]:
     """Return the curves with the pieces of each line or circle joined.
 
-    Whatever the curves in `without` already show is omitted.
+    Stretches that the curves in `without` cover are omitted.
     """
     lines, arcs, rest = _Spans(), _Spans(), []
     for curve, is_kept in [*((c, True) for c in curves), *((c, False) for c in without)]:

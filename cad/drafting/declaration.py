@@ -11,6 +11,7 @@ from cad.catalogue import models
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
+from cad.pmi import on_faces
 from cad.surfaces import PartSurfaces, Size
 from cad.tolerances import Limits, carried, limits_in
 from templates.core.errors import InvalidInputs
@@ -104,6 +105,7 @@ class DrawingDeclaration:
             return DrawingDeclaration(limits=limits)
         carriers = carried(model)
         sizes = _sizes(model, header, seen)
+        limits = {name: limits[name] for name in on_faces(sizes) if name in limits and name in carriers}
         controls = tuple(_controls(model, limits))
         every = {one.datum for one in carriers.values()}
         shown = ({control.to for control in controls} if is_assembly else every) - {""}

@@ -293,7 +293,7 @@ def _of_slopes(section: View, standing: Sequence[Surface]) -> Iterator[Measure]:
 
 
 def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
-    """Return whether a plane contains a point of a view, taken in the view plane through the origin."""
+    """Return whether a plane contains a point of a view, placed in the view plane through the origin."""
     at = frame.right * point[0] + frame.up * point[1]
     return abs((at - plane.point).dot(plane.direction)) < _ARC
 

@@ -24,7 +24,7 @@ _SORTS: dict[Kind, tuple[Sort, ...]] = {
     "edge": ("edge",),
 }
 _AMOUNT = re.compile(
-    r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}| [-+±].*)?"
+    r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}(?:, in table)?| [-+±].*)?"
 )  # with a tolerance behind it
 _WITHIN = ("aligned", "circle", "arc", "angle")  # dimensions that do not stand beside the view
 _PRECISION = 1e-6  # relative and in mm
@@ -72,18 +72,12 @@ def matched(
         if fitting := _fitting(sizes[name], measures) if name in sizes else []:
             measure = _clearest(fitting, matches)
             alike = tuple(m for m in fitting if _kind(m) == _kind(measure) and m is not measure)
-            if (several := _repeats(sizes[name])) > 1:
+            if (several := len(sizes[name].places)) > 1:
                 measure = replace(measure, count=measure.count * several)
             matches.append(Dimension(measure, name, limits.get(name), alike))
         else:
             unseen.append(name)
     return matches, unseen
-
-
-def _repeats(size: Size) -> int:
-    """Return how often a size occurs: the number of its places, or of equal slots that it spans."""
-    first, second = size.places[0].first, size.places[0].second
-    return len(first) // 2 if first == second else len(size.places)
 
 
 def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
@@ -129,10 +123,12 @@ def _same(one: float, other: float) -> bool:
 def _is_on(measure: Measure, size: Size) -> bool:
     """Return whether a measure is taken on the faces of a size.
 
-    A measure from an axis has no second faces; the faces of the size are then about that axis.
+    A measure from an axis has no second faces; the faces of the size are then about that axis. Those of a
+    pitch circle are its holes.
     """
     for place in size.places:
-        for first, second in ((place.first, place.second), (place.second, place.first)):
+        sides = (place.first, place.second), (place.second, place.first)
+        for first, second in sides[:1] if size.kind == "circle" else sides:
             if not measure.first.isdisjoint(first) and (
                 not (measure.second and second) or not measure.second.isdisjoint(second)
             ):
@@ -150,7 +146,7 @@ def length_of(text: str) -> float:
     """
     size = size_of(text)
     if size is None or size[1]:
-        raise ValueError(f"{text!r} is no length")
+        raise ValueError(f"{text!r} is not a length")
     return size[0]
 
 

@@ -24,7 +24,8 @@ from cad.drafting.title import (
 from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
-from cad.tolerances import Limits, deviations, limits_of, number_of
+from cad.tolerances import Limits, TableTolerance, angle_tolerance, deviations, limits_of, number_of
+from templates.core.units.tolerance import IN_TABLE, is_toleranced
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
@@ -149,7 +150,7 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
         "size is a two-point size, independent of form (ISO 8015)",
         general.note,
         f"build {header.build[:32]}" if header else "",
-        "* not between two surfaces that are drawn" if unseen else "",
+        "* no dimension shows it, or its tolerance" if unseen else "",
     ]
     for row, text in enumerate(filter(None, lines)):
         page.write(text, left, top - 5.0 * row, 2.5)
@@ -206,14 +207,18 @@ def _value(text: str, limits: Limits | None) -> str:
     """Return a length in mm with its deviations, an angle in degrees, and other values unchanged."""
     size = size_of(text)
     if size is None:
-        return text
+        return text.removesuffix(IN_TABLE)
     value, is_angle = size
     if is_angle:
-        return f"{number_of(value, 6)}°"
+        within = angle_tolerance(text) if is_toleranced(text) else None
+        return " ".join((f"{number_of(value, 6)}°", *([_ends(within)] if within else [])))
     if limits is None:
         return number_of(value, 6)
-    ends = "/".join(filter(None, deviations(limits)))
-    return " ".join(filter(None, (number_of(value, 6), limits.zone, ends)))
+    return " ".join(filter(None, (number_of(value, 6), limits.zone, _ends(limits))))
+
+
+def _ends(limits: Limits | TableTolerance) -> str:
+    return "/".join(filter(None, deviations(limits)))
 
 
 def _wrapped(text: str, width: float) -> list[str]:

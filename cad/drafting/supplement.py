@@ -192,7 +192,7 @@ class Supplement:
             yield self._turn(loose[0], count=2 if mirrored else 1)
 
     def _turn(self, one: Station, count: int = 1) -> Measure:
-        """Return the angle of a direction from the nearest one that is located."""
+        """Return the angle between a direction and the nearest direction that is already located."""
         known: list[Station] = [("turn", at) for at in (0.0, 90.0, 180.0, 270.0)]
         others = self.definition.optional if one in self.definition.optional else self.definition.needed
         if count == 1:

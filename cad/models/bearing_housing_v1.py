@@ -135,7 +135,7 @@ class BearingHousing(CadModel):
         )
 
     def drawn(self) -> Housing:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         return Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,
@@ -149,7 +149,7 @@ class BearingHousing(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the block and cap together."""
+        """Return the box of block and cap together."""
         a, b = mm(self.A) / 2, mm(self.B) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.H_b), b))
 

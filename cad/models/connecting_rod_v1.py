@@ -125,7 +125,7 @@ class ConnectingRod(RodRules):
         return tuple(parts)
 
     def drawn(self) -> Rod:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         return Rod(
             self._big_end(),
             distance=mm(self.L),

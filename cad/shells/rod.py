@@ -42,7 +42,7 @@ class Rod:
 
     @property
     def shoulder(self) -> float:
-        """Return the distance of the shank's start from the axis of the big end."""
+        """Return the distance from the axis of the big end to the start of the shank."""
         return self.big_end.rod.height
 
     @property
@@ -167,7 +167,7 @@ class Rod:
         return axis(low + c), axis(high - c)
 
     def body(self) -> Shape:
-        """Return the upper half of the big end, shank and small end as one solid."""
+        """Return the upper half of the big end, the shank and the small end as one solid."""
         h, b = self.thickness / 2, self.half_width
         shank = self._rooted().prism(-h, h)
         eye = Solid.makeCylinder(self.outside, 2 * b, Vector(0, self.distance, -b), Vector(0, 0, 1))

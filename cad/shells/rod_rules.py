@@ -144,7 +144,7 @@ class RodRules(RodParameters):
     def pockets_have_a_length(self) -> Truth:
         """The pockets are at least a tenth of the shank long.
 
-        They end as far from its ends as from its sides.
+        They are as far from the ends of the shank as from its sides.
         """
         return (self.b_p <= 0) | (self.pocket_length >= 0.1 * self.l_s)
 
@@ -158,7 +158,7 @@ class RodRules(RodParameters):
 
     @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
     def web_is_thin(self) -> Truth:
-        """Between pockets the web is at most 95 % as thick as the shank."""
+        """The web between the pockets is at most 95 % as thick as the shank."""
         return (self.b_p <= 0) | (self.h_w <= 0.95 * self.h)
 
     @require("oil_hole_diameter", "small_end_bore", "bush_wall", "small_end_width",

@@ -56,7 +56,7 @@ def calculate(
 
 
 def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
-    """Return a calculation without faults, continued: only its pending values are calculated."""
+    """Continue a calculation without faults: calculate only its pending values, and return it."""
     result = _copy(before)
     result.pending, result.deferred, result.faults = set(), set(), []
     result.shapes, result.measures = dict(before.shapes), dict(before.measures)
@@ -74,7 +74,7 @@ def constants(calculation: Calculation) -> Calculation:
 
 
 def rows(shared: Calculation, count: int, given: Mapping[Reference, Array]) -> Calculation:
-    """Return the calculation of some rows, starting from the values that all rows share."""
+    """Return the calculation of some rows, based on the values that all rows share."""
     result = _copy(shared)
     result.count, result.given = count, given
     result.faults, result.broken = list(shared.faults), set(shared.broken)
@@ -90,9 +90,9 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """Return the calculation repeated with given step outputs [SI]; solids do not change.
+    """Repeat a calculation with given step outputs [SI]; solids do not change.
 
-    Each step is calculated at its level in `levels`, so that no other level changes the result. Steps in
+    Each step is calculated at its level in `levels`, so that no change of level affects the result. Steps in
     `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
     """
     result = _copy(before)
@@ -115,7 +115,7 @@ def recalculated(
 
 
 def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -> None:
-    """Recalculate a step, possibly for other outputs than those that the design requests."""
+    """Recalculate a step, perhaps for other outputs than those that the design requests."""
     asked = block if outputs is None else replace(block, outputs=outputs)
     _block(result, asked)
     if asked in result.pending:
@@ -149,7 +149,7 @@ def _is_disjoint(cell: Cell, changed: Collection[Reference]) -> bool:
 
 
 def _copy(before: Calculation) -> Calculation:
-    """Return a copy of the calculation to continue; it shares the data of solids with the original."""
+    """Return a copy of the calculation to be continued; it shares the data of solids with the original."""
     return replace(
         before,
         values=dict(before.values),
@@ -248,7 +248,7 @@ def literal(cell: Cell) -> TypedQuantity:
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Calculate the value of a cell from its relations; inside a block it gets the declared unit."""
+    """Calculate the value of a cell from its relations; in a block the value gets the declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -258,9 +258,10 @@ def _related(result: Calculation, cell: Cell) -> None:
 
 
 def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
-    """Add the operations of a cell's relations on arrays to the total, and refuse too many.
+    """Count the operations of a cell's relations on arrays, and refuse the design if the total is too large.
 
-    Relations between single values are not counted, because the limited text keeps them few.
+    Relations between single values are not counted, because the length limit of a relation keeps their number
+    small.
     """
     if any(column.rank for column in uses.values()):
         limit_values(count := spanned(column.places for column in uses.values()))
@@ -336,7 +337,7 @@ def _refuse(result: Calculation, refusals: Mapping[int, Refusal]) -> None:
 
 
 def _block(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or check the parameters of a model; while a cell is pending, check what is known."""
+    """Evaluate a step, or check a model's parameters; while a cell is pending, check the known values."""
     cells = block.cells
     waiting = {n for n, cell in cells.items() if cell in result.pending} if result.pending else set()
     broken, typed, values = result.broken, result.typed, result.values
@@ -361,7 +362,7 @@ def _block(result: Calculation, block: Block) -> None:
 
 
 def _given(result: Calculation, cell: Cell) -> Column | Raw:
-    """Return the value of a cell as an input of a step: a column if it differs from row to row."""
+    """Return the value of a cell as an input of a step, as a column if it differs between rows."""
     column = result.values.get(cell.name)
     if column is not None and column.is_row:
         return column
@@ -369,7 +370,7 @@ def _given(result: Calculation, cell: Cell) -> Column | Raw:
 
 
 def _rows_of(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or a model's own formulas, for all rows that have their inputs."""
+    """Evaluate a step, or the formulas of a model, for all rows whose inputs exist."""
     for states in (result.pending, result.broken):
         if not states.isdisjoint(block.cells.values()):
             states.add(block)
@@ -443,7 +444,7 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that another calculation has prepared, or None."""
+    """Return the evaluation of a step that another calculation has prepared; None if there is none."""
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:
         raise StepDeferred

@@ -76,7 +76,7 @@ CHANGED = {**later(Design), **refusals(404, 429)}
 
 
 def seconds_waited(prefer: str | None) -> float:
-    """Return how long a request waits for expensive steps [s]; never longer than its deadline."""
+    """Return the time for which a request waits for expensive steps [s], at most its deadline."""
     return patience(prefer, math.inf)
 
 
@@ -100,7 +100,7 @@ async def answer_saved(
 
 
 def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """Return a design as a response whose ETag is the revision."""
+    """Return a design as a response; its ETag is the revision."""
     return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})
 
 

@@ -44,6 +44,6 @@ async def watch_design(
 
 
 def _start(database: Database, id: str, last: int | None) -> RegenerationState | None:
-    """Return the state of a design; None if the client can continue after its last event."""
+    """Return the state of a design; None if the client can continue after the last event it received."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

@@ -79,6 +79,13 @@ class DesignCriterion(Answer):
     waived: str | None = Field(None, description="why the criterion is waived")
 
 
+class DesignTable(Answer):
+    """The columns of the table of results that a design chooses."""
+
+    columns: list[str] = Field([], description="values of the design, in order")
+    changes: bool = Field(False, description="whether each row also shows its change from the first row")
+
+
 class DesignSummary(Answer):
     """A design in a list."""
 
@@ -111,6 +118,9 @@ class Design(Answer):
     criteria: dict[str, DesignCriterion] = Field({}, description="absent if there are none")
     variants: dict[str, dict[str, Given]] = Field(
         {}, description="values that each variant overrides, by name; absent if there are none"
+    )
+    table: DesignTable | None = Field(
+        None, description="the table of results; absent if its columns are the main results of the templates"
     )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str

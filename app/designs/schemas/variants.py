@@ -6,7 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.calculations.schemas.evaluations import Output
+from app.calculations.schemas.evaluations import Output, UsedInput
+from app.designs.schemas.result_table import ResultTable
 from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
 from app.schemas.problems import Problem
@@ -57,6 +58,9 @@ class VariantDetail(Answer):
     values: dict[str, Shown] = Field(
         description="overridden values as quantities, with relations resolved; others are as in the design"
     )
+    inputs: dict[str, UsedInput] = Field(
+        {}, description="inputs of its steps as used, by their names in relations"
+    )
     outputs: dict[str, Output] = Field(description="requested outputs, else all, by their names in relations")
     criteria: list[Criterion] = Field(
         [], description="criteria of the variant, worst first; absent if there are none"
@@ -92,6 +96,9 @@ class VariantsOut(Answer):
     variants: dict[str, dict[str, Given]] = Field(description="the table as typed; `PUT` takes the same")
     columns: list[VariantColumn]
     rows: list[VariantResult]
+    table: ResultTable = Field(
+        ResultTable(columns=[], rows=[]), description="the results in one table, with the design itself first"
+    )
     base: VariantResult | None = Field(None, description="the design itself, without any override")
     governing: GoverningVariant | None = Field(
         None, description="the worst variant of all; absent without criteria"

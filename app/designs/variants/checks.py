@@ -42,5 +42,5 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
 
 
 def row_faults(base: Calculation) -> list[Fault]:
-    """Return a fault for every step of a design with variants that is calculated at several points."""
+    """Return a fault for every step that is calculated at several points, in a design with variants."""
     return [fault.within("variants") for fault in row_arrays(base)]

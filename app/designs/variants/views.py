@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
+from app.designs.document import Document
+from app.designs.graph import Graph, build_graph
+from app.designs.result_table import table
+from app.designs.results import TABLE
+from app.designs.schemas.result_table import ResultTable
 from app.designs.schemas.variants import (
     GoverningVariant,
     ModelState,
@@ -53,17 +58,31 @@ def variants(
     worst = _governing(everybody)
     parts: JsonObject = {"base": base, "by_criterion": worst or None, "problem": row.problem}
     checked = [one for one in worst.values() if one.verdict != "not_checked"]
-    parts["governing"] = min(checked, key=_rank_of_governing, default=None)
+    governing = min(checked, key=_rank_of_governing, default=None)
+    document = Document.model_validate(row.document)
+    graph, _ = build_graph(document, catalogues)
+    parts |= {"governing": governing, "table": _results(row, everybody, document, graph, governing)}
     return VariantsOut(
         design=row.design_id,
         name=row.document["name"],
         revision=row.number,
         state=row.state,
         variants={name: row.document["variants"][name] for name in names},
-        columns=columns(row.document, catalogues),
+        columns=columns(document, graph),
         rows=results,
         **{name: part for name, part in parts.items() if part is not None},
     )
+
+
+def _results(
+    row: RevisionRow,
+    rows: Sequence[VariantResult],
+    document: Document,
+    graph: Graph,
+    governing: GoverningVariant | None,
+) -> ResultTable:
+    stored = (row.results or {}).get(TABLE, {})
+    return table(rows, stored, graph, governing, with_changes=document.table.changes)
 
 
 def _require_outputs(outputs: Collection[str], stored: Mapping[str, JsonObject]) -> None:
@@ -150,7 +169,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; the first of equally bad ones."""
+    """Return the worst variant of each criterion; of several equally bad ones the first."""
     worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
@@ -165,5 +184,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant
 
 
 def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return a sort key that puts the worst first."""
+    """Return a sort key that places the worst first."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

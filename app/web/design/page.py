@@ -234,14 +234,14 @@ def _blocks(
 
 
 async def _before(request: Request, services: PageServices, design: Design) -> RevisionWorksheet | None:
-    """Return the previous revision, of which the page shows only the parameters of models."""
+    """Return the previous revision; the page shows only its model parameters."""
     if design.revision == 1 or not design.models:
         return None
     return await revision_of(request, services, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
 async def step_section(request: Request, services: PageServices, id: str, name: str) -> Response:
-    """Return the unfolded section of one step, which the script of a long design's page fetches.
+    """Return the unfolded section of one step, which the script of a long design's page requests.
 
     Raises
     ------
@@ -274,7 +274,7 @@ async def _analyses(
 async def _fields_of_solids(
     services: PageServices, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
-    """Return the fields that can be painted on each model; empty for a model without analyses."""
+    """Return the fields that can be shown in colour on each model; none for a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
@@ -295,7 +295,7 @@ async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
 def _loose(
     fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
 ) -> dict[str, str]:
-    """Return the faults that belong neither to a field of the worksheet nor to a field of a small form."""
+    """Return the faults that belong to no field of the worksheet or of a small form."""
     shown = {name for name, _ in wrong.values()}
     loose = sheet.loose_faults(fields, faults)
     return {name: detail for name, detail in loose.items() if name not in shown}

@@ -62,7 +62,7 @@ async def finished_analyses(
     model: Model,
     declared: Mapping[str, ModelAnalysis] | None = None,
 ) -> list[Analysis]:
-    """Return the analyses of a build that have results, under the load of the design if it sets one."""
+    """Return the analyses of a build that have results, under the load that the design sets, if any."""
     if not model.analyses or build is None:
         return []
     units = units_of(request)
@@ -96,12 +96,12 @@ async def _built(
 
 
 async def _begun(services: PageServices, model: Model, cells: Mapping[str, Given]) -> str:
-    """Start the build, wait a moment for it, and return its key.
+    """Start the build, wait a short time for it, and return its key.
 
     Raises
     ------
     Refused
-        If the parameters are wrong, or give no sound solid.
+        If the parameters are wrong, or do not give a valid solid.
     """
     with refusals():
         AUTHOR.check()

@@ -43,7 +43,7 @@ class StepBlock:
 
     @property
     def main(self) -> list[str]:
-        """Return the results shown at first: all if they are few, else those that no formula uses."""
+        """Return the results shown first: all if they are few, otherwise those that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}
@@ -79,7 +79,7 @@ class ModelBlock:
 
     @property
     def targets(self) -> set[str]:
-        """Return the names of the model's parameters in a design."""
+        """Return the names that the model's parameters have in the design."""
         return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
 
 
@@ -100,7 +100,10 @@ def steps_of(
     templates: Mapping[str, Template],
     computed: Mapping[str, Sequence[str] | None] | None = None,
 ) -> list[StepBlock]:
-    """Return every step with its results and pictures; `computed` names outputs if only some are."""
+    """Return every step with its results and pictures.
+
+    If only some outputs are computed, `computed` names them.
+    """
     return [
         _step(name, template, revision.steps[name], (computed or {}).get(name))
         for name, template in templates.items()
@@ -122,14 +125,14 @@ def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
 
 
 def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
-    """Return a step with its formulas if they are `written` out; a step without results yet has none."""
+    """Return a step with its results, and with its formulas if they are `written` out."""
     return block if written is None or written.pending else replace(block, result=written)
 
 
 def with_fields(
     block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
 ) -> StepBlock:
-    """Return a step of a design with the fields of its form; `tables` are those of the library."""
+    """Return a step of a design with the fields of its form; `tables` are the tables of the library."""
     step, template, result = design.steps[block.name], block.template, block.result
     used = {} if result.pending or not result.outputs else result.inputs
     typed, faults = refusal.typed, refusal.faults
@@ -179,7 +182,7 @@ def _changed(before: RevisionModel | None, values: Mapping[str, Shown]) -> dict[
 
 
 def painted(steps: Iterable[StepBlock], models: Sequence[ModelBlock]) -> dict[str, object] | None:
-    """Return the film pressure to paint on a plain bearing.
+    """Return the film pressure to show in colour on a plain bearing.
 
     It is the pressure of the step whose bearing diameter drives the bore.
     """

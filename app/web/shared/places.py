@@ -39,9 +39,9 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
 def set_aside(
     design: Design, network: DesignNetwork, own: list[PlaceOption], values: Mapping[str, object]
 ) -> list[PlaceOption]:
-    """Return parameters and inputs that a relation sets, and whose relation a study may replace.
+    """Return parameters and inputs that a relation sets and whose relation a study may replace.
 
-    `own` are the parameters and inputs with values of their own.
+    `own` are the parameters and inputs that have typed values.
     """
     typed, single = dict(_typed(design)), {place.name for place in own}
     return [
@@ -103,7 +103,7 @@ def suggested(place: PlaceOption) -> tuple[str, str]:
 
 
 def times(text: str, factor: float) -> str:
-    """Return a typed positive quantity multiplied by a factor; empty for other texts and for temperatures."""
+    """Return a typed positive quantity times a factor; an empty text for other texts and for temperatures."""
     number, _, symbol = text.partition(" ")
     try:
         value = float(number)

@@ -45,7 +45,7 @@ class Field:
 
     @property
     def main(self) -> bool:
-        """Return whether the field is shown at first: it is required, has a value, or is wrong."""
+        """Return whether the field is shown first: it is required, has a value, or is wrong."""
         return self.needed or bool(self.text) or self.error is not None
 
 
@@ -120,7 +120,10 @@ def of_options(
 
 
 def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
-    """Return the name of an option's fault: of its place, `steps.film.tolerance`, or of its value."""
+    """Return the name under which a fault of an option is reported.
+
+    It is the place of the option, such as `steps.film.tolerance`, or its value.
+    """
     names = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
     return next(names, option)
 
@@ -145,7 +148,7 @@ def _field(
 
 
 def _hint(declared: DeclaredValue) -> str:
-    """Return the hint of a field: the meaning of an empty field, or how to write a value."""
+    """Return the hint of a field: what an empty field means, or how to write a value."""
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:

@@ -47,12 +47,12 @@ class StudyForm:
         return self.fields.get(name, default)
 
     def wrong(self, *names: str) -> list[str]:
-        """Return the faults of these members of a study, or of their parts."""
+        """Return the faults of the given members of a study, or of their parts."""
         heads = tuple(f"{name}." for name in names if name)
         return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
 
     def wrong_in(self, line: int) -> list[str]:
-        """Return the faults of the varied value in a line."""
+        """Return the faults of the varied value in one line of the form."""
         place = self.text(f"place.{line}")
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
@@ -205,7 +205,7 @@ def has_limit(criterion: Criterion) -> bool:
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """Return the outputs in criteria with limits, which a study keeps by default."""
+    """Return the outputs that criteria with limits judge; a study stores them by default."""
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
@@ -220,7 +220,7 @@ def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
 
 
 def _words(criterion: str, require: str) -> set[str]:
-    """Return the names in a criterion, with the step in front if it belongs to a template."""
+    """Return the names that a criterion uses, prefixed with the step if it belongs to a template."""
     name = Reference.parse(criterion)
     bare = require.replace(">=", " ").replace("<=", " ").split()
     return {f"{name.block}.{word}" if name.output else word for word in bare}

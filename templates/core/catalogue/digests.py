@@ -26,7 +26,7 @@ from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "main_results", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # digests to cache, keyed by the source text; every page shows them
@@ -72,7 +72,7 @@ def _declares(base: type) -> bool:
 
 
 def _content(tree: ast.Module) -> str:
-    """Return the calculating content of a file as text: the imported names, then the syntax tree.
+    """Return the part of a file that affects results, as text: the imported names, then the syntax tree.
 
     The tree is serialised field by field, because `ast.unparse` and `ast.dump` differ between Python
     versions.
@@ -86,7 +86,7 @@ def _is_import(node: ast.AST) -> bool:
 
 
 def _imported(node: Any) -> Iterator[tuple[str, str]]:
-    """Yield each imported name without its module path, together with its name in the file."""
+    """Yield each imported name without its module path, together with the name used in the file."""
     for alias in node.names:
         name = alias.name.rpartition(".")[2]
         yield name, alias.asname or name

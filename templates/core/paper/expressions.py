@@ -70,7 +70,7 @@ def relation_latex(raw: object) -> str:
     """Return the LaTeX of a relation as typed.
 
     The result is empty for a single name, a list of relations, text that is not a relation, and a relation
-    nested too deeply to be readable.
+    that is nested too deeply to be readable.
     """
     try:
         relation = parse(str(raw)) if is_relation(raw) else None
@@ -188,5 +188,5 @@ def _roman(name: str) -> str:
 
 
 def _words(text: str) -> str:
-    """Return a text in upright letters, with percent signs outside it, where they do not begin a comment."""
+    """Return the LaTeX of a text in upright letters, with its percent signs escaped."""
     return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

@@ -102,14 +102,14 @@ class Relation:
         return _checked(self.text, self._kinds(kinds))
 
     def misfit(self, kinds: Mapping[str, Kind], declared: str) -> str:
-        """Return why the value does not fit the declared unit, and a remedy; empty if it fits.
+        """Return the reason why the value does not fit the declared unit, and a remedy; empty if it fits.
 
         The text continues a sentence about the declared name and its unit: `, but this gives a length`.
 
         Raises
         ------
         FaultyText
-            As `kind`.
+            As `kind` does.
         """
         return _misfit(self.text, self._kinds(kinds), declared)
 
