@@ -62,7 +62,7 @@ class ConnectingRod(RodRules):
         "centre_distance": "144 mm",
         "small_end_bore": "24 mm",
         "small_end_diameter": "34 mm",
-        "small_end_width": "24 mm",
+        "small_end_width": "23 mm",
         "bush_wall": "1.5 mm",
         "shank_width": "22 mm",
         "shank_taper": "5 deg",

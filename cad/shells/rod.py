@@ -191,14 +191,11 @@ class Rod:
     def bush_body(self) -> Shape:
         """Return the bush about the origin; see `bush_place`."""
         b, up = self.half_width, Vector(0, 0, 1)
-        ring = cut(
-            Solid.makeCylinder(self.bore, 2 * b, Vector(0, 0, -b), up),
-            Solid.makeCylinder(self.pin_bore, 4 * b, Vector(0, 0, -2 * b), up),
-        )
+        body: Shape = Solid.makeCylinder(self.bore, 2 * b, Vector(0, 0, -b), up)
         for radius, side in ((self.oil_hole, 1.5), (self.drilling, -1.5)):
             if radius > 0:
-                ring = cut(ring, _upright(radius, *sorted((0.0, side * self.bore))))
-        return ring
+                body = cut(body, _upright(radius, *sorted((0.0, side * self.bore))))
+        return cut(body, Solid.makeCylinder(self.pin_bore, 4 * b, Vector(0, 0, -2 * b), up))
 
     @property
     def bush_place(self) -> Location:

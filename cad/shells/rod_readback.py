@@ -160,21 +160,17 @@ class RodReadback:
         }
 
     def _oil(self) -> dict[str, float]:
-        """Return the diameters of the oil hole and of the drilling, in the rod and in the bush."""
-        parts = [
-            (self.rod, self.wanted.distance),
-            *((one, 0.0) for n, one in self.seen.items() if n == "bush"),
-        ]
-        upper, lower = (
-            [Size.diameter(holes) for part, axis in parts if (holes := _upright(part, axis, side))]
-            for side in (1, -1)
-        )
-        return {"oil_hole_diameter": _in_parts(upper), "oil_drilling_diameter": _in_parts(lower)}
+        """Return the diameters of the oil hole and of the drilling in the rod, which continue in the bush."""
+        upper, lower = (self._upright(side) for side in (1, -1))
+        return {
+            "oil_hole_diameter": Size.diameter(upper) if upper else 0.0,
+            "oil_drilling_diameter": Size.diameter(lower) if lower else 0.0,
+        }
 
-
-def _upright(part: PartSurfaces, axis: float, side: int) -> list[Surface]:
-    """Return the holes along the middle of the rod, beyond the axis of the small end or before it."""
-    return [hole for hole in part.about(Y) if side * (sum(hole.reach) / 2 - axis) > 0]
+    def _upright(self, side: int) -> list[Surface]:
+        """Return the holes along the middle of the rod, beyond the axis of the small end or before it."""
+        axis = self.wanted.distance
+        return [hole for hole in self.rod.about(Y) if side * (sum(hole.reach) / 2 - axis) > 0]
 
 
 def _round(part: PartSurfaces, *axes: Point) -> list[Surface]:
