@@ -99,10 +99,14 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             **_heading(session, row),
             "steps": {name: results.steps.get(name) or _waiting(step) for name, step in steps.items()},
             "models": {
-                model.name: {**_model(session, model), "analyses": results.analyses.get(model.name, {})}
+                model.name: {
+                    **_model(session, model, row.document),
+                    "analyses": results.analyses.get(model.name, {}),
+                }
                 for model in models
             },
             "iterations": results.iterations,
+            **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
         }
@@ -110,13 +114,14 @@ def revision(session: Session, row: RevisionRow) -> Revision:
 
 
 def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
-    """Return the variant that governs, and the revision with the steps of this variant.
+    """Return the variant that governs, and the revision with the steps and rounded values of this variant.
 
     The name is empty if the design itself governs.
     """
     results, own = results_of(session, row), revision(session, row)
     steps = {**own.steps, **results.governing_steps}
-    return results.governing, own.model_copy(update={"steps": steps})
+    rounded = results.rounded.get(results.governing or None, [])
+    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:
@@ -157,8 +162,11 @@ def _waiting(typed: JsonObject) -> JsonObject:
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
 
 
-def _model(session: Session, row: RevisionModelRow) -> JsonObject:
+def _model(session: Session, row: RevisionModelRow, document: JsonObject) -> JsonObject:
+    build = rows.build(session, row.build_key) if row.build_key else None
+    stated = tolerances.stated(row, build, document["models"][row.name]["parameters"]) if build else {}
     return {
+        **({"tolerances": stated} if stated else {}),
         "id": row.model,
         "version": row.model_version,
         "parameters": row.parameters,
