@@ -1,6 +1,9 @@
 """Where the files of a build state a tolerance: at faces and a dimension, or in the drawing's table alone."""
 
 import io
+import json
+import subprocess
+from pathlib import Path
 
 import ezdxf
 import pytest
@@ -162,3 +165,35 @@ def test_a_row_with_a_marked_tolerance_is_read_again():
     again = THROW.from_quantities(rows)
     assert as_text(again) == as_text(one)
     assert build_key(again) == build_key(one) != build_key(throw(journal_length="40 mm"))
+
+
+FREECAD = Path("/usr/lib/freecad-python3/lib")
+DIAMETERS = """
+import sys
+sys.path.append(sys.argv[1])
+import FreeCAD
+import Part
+shape = Part.Shape()
+shape.read(sys.argv[2])
+(solid,) = shape.Solids
+print([2 * getattr(face.Surface, "Radius", 0.0) for face in solid.Faces])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FREECAD.exists(), reason="FreeCAD is not installed (Debian: freecad-python3)")
+def test_faces_have_the_numbers_of_freecad(tmp_path):
+    cls = models().get("thrust_washer", 1)
+    texts = as_text(cls.from_quantities(cls.example))
+    wanted = {name: f"{texts[name]} h9" for name in ("inner_diameter", "outer_diameter", "pin_hole_diameter")}
+    build = regenerate_class(cls, {**texts, **wanted})
+    file = tmp_path / "washer.step"
+    file.write_bytes(build.step)
+    program = ["/usr/bin/python3", "-c", DIAMETERS, str(FREECAD), str(file)]
+    done = subprocess.run(
+        program, capture_output=True, text=True, timeout=120, check=True, env={"PATH": "/usr/bin"}
+    )
+    diameters = json.loads(done.stdout.splitlines()[-1])
+    for name in wanted:
+        ((_, number),) = build.tolerances[name].faces
+        assert diameters[number] == pytest.approx(float(texts[name].split(" ")[0]), abs=1e-6)

@@ -120,7 +120,10 @@ class StepStatement(Answer):
         "`perpendicularity` or `parallelism` (width and datum), `attribute`, `volume`, `surface area`, "
         "`centroid`, `density`, `material`"
     )
-    name: str = Field(description="name of the parameter, datum, attribute or part")
+    name: str = Field(
+        description="name of the parameter, datum, attribute or part; a pitch circle is stated by its "
+        "radius, `bolt_circle_diameter/2`"
+    )
     unit: str | None = Field(description="unit of the numbers; null for texts")
     expected: list[float | str] | None = Field(
         description="value in the build; null if it makes no such statement"
